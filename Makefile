@@ -1,0 +1,50 @@
+# Four words do the work: check, test, prove, demo. Each installs what it needs.
+
+RAVENCHART := .venv/bin/ravenchart
+PYTHON     := .venv/bin/python
+EXAMPLES   := examples/cartesian_robot examples/three_components
+
+.PHONY: help setup demo test check prove generate bench docs lock clean
+
+help:
+	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
+	@echo 'make test      every test'
+	@echo 'make check     style, types, warnings as errors'
+	@echo 'make prove     gnatprove on the runtime, the HAL and the examples'
+	@echo 'make generate  the examples'' generated/ from their models'
+	@echo 'make bench     figures: runtime operations, generator, analysis'
+	@echo 'make docs      model reference, JSON Schema and error list from the code'
+
+setup:
+	@scripts/setup.sh
+
+demo: setup
+	@$(RAVENCHART) run examples/cartesian_robot/model.yaml --scenario examples/cartesian_robot/scenario.yaml --report build/demo
+
+test: setup
+	@$(PYTHON) -m pytest -q
+
+check: setup
+	@$(PYTHON) -m ruff check .
+	@$(PYTHON) -m ruff format --check .
+	@$(PYTHON) -m mypy
+	@$(PYTHON) -m ravenchart.house check
+
+prove: setup
+	@$(PYTHON) -m ravenchart.house prove
+
+generate: setup
+	@for e in $(EXAMPLES); do $(RAVENCHART) generate $$e/model.yaml || exit 1; done
+
+bench: setup
+	@$(PYTHON) -m ravenchart.bench
+
+docs: setup
+	@$(PYTHON) -m gen.reference
+
+lock:
+	@.venv/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --extra dev \
+	   --no-header --no-emit-index-url --output-file requirements.lock pyproject.toml
+
+clean:
+	rm -rf build obj .venv

@@ -1,0 +1,58 @@
+#!/bin/sh
+# Install what is missing: Debian's GNAT and gprbuild, and a virtual
+# environment in .venv from requirements.lock. Does nothing when all is there.
+set -eu
+cd "$(dirname "$0")/.."
+
+say() { printf 'setup: %s\n' "$*"; }
+
+packages=
+command -v gnatmake >/dev/null 2>&1 || packages="$packages gnat"
+command -v gprbuild >/dev/null 2>&1 || packages="$packages gprbuild"
+python3 -c 'import ensurepip, venv' 2>/dev/null || packages="$packages python3-venv"
+if [ -n "$packages" ]; then
+   as_root=
+   if [ "$(id -u)" -ne 0 ]; then
+      if ! command -v sudo >/dev/null 2>&1; then
+         say "needs the Debian packages$packages; as root: apt-get install$packages" >&2
+         exit 2
+      fi
+      as_root=sudo
+   fi
+   say "installing the Debian packages$packages"
+   log=$(mktemp)
+   if ! { $as_root apt-get update && DEBIAN_FRONTEND=noninteractive \
+          $as_root apt-get install -y --no-install-recommends $packages; } >"$log" 2>&1
+   then
+      tail -n 20 "$log" >&2
+      say "apt-get failed (above); are the package sources reachable?" >&2
+      exit 2
+   fi
+   rm -f "$log"
+fi
+
+python3 - <<'EOF' || { say "Python 3.11 or later is needed" >&2; exit 2; }
+import sys
+sys.exit(sys.version_info < (3, 11))
+EOF
+
+stamp=.venv/.installed
+wanted=$(cat requirements.lock pyproject.toml | cksum)
+if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
+   say "making the virtual environment .venv from requirements.lock"
+   rm -rf .venv
+   python3 -m venv .venv
+   if ! .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+        --require-hashes -r requirements.lock
+   then
+      rm -rf .venv
+      say "pip failed (above); is the package index reachable?" >&2
+      exit 2
+   fi
+   # The checkout itself goes on the path; nothing of it is copied.
+   site=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+   pwd > "$site/ravenchart-checkout.pth"
+   printf '#!/bin/sh\nexec "%s/.venv/bin/python" -m ravenchart "$@"\n' "$(pwd)" > .venv/bin/ravenchart
+   chmod +x .venv/bin/ravenchart
+   printf '%s' "$wanted" > "$stamp"
+fi
