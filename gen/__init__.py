@@ -1,0 +1,1 @@
+"""Model to System to SPARK Ada: the generator half of Ravenchart."""

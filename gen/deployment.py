@@ -1,0 +1,343 @@
+"""Deployment resolved: nodes, buses, instances, connections, messages and processors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from .components import Parts
+from .derive import table_deadline, table_period
+from .model import (
+    Bus,
+    Connection,
+    Direction,
+    End,
+    Instance,
+    Message,
+    Node,
+    Port,
+    Processor,
+    Shutdown,
+    Slot,
+    Timing,
+    Work,
+)
+from .names import Findings, Scope
+from .schema import (
+    BusForm,
+    ConnectionForm,
+    InstanceForm,
+    MessageForm,
+    NodeForm,
+    ProcessorForm,
+    ShutdownForm,
+)
+from .signals import length_of, signals_of
+from .terms import Ns, Origin, Scalar
+from .values import constant
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """What the elements of a deployment may refer to."""
+
+    nodes: Scope[Node]
+    buses: Scope[Bus]
+    parts: Scope[Parts]
+    instances: Scope[Instance]
+    findings: Findings
+
+
+def node_of(name: str, form: NodeForm) -> Node:
+    """A node."""
+    times = Ns(form.context_switch), Ns(form.critical_section)
+    return Node(name, form.origin, *times, form.trace)
+
+
+def bus_of(name: str, form: BusForm) -> Bus:
+    """A bus."""
+    return Bus(
+        name,
+        form.origin,
+        form.bit_rate,
+        form.receive_depth,
+        form.transmit_depth,
+        Ns(form.driver_wcet),
+    )
+
+
+def instance_of(name: str, form: InstanceForm, site: Site) -> Instance | None:
+    """An instance with all its parameters; None when its component or node is not sound."""
+    findings = site.findings
+    parts = site.parts.look_up(form.component, form.at("component"), findings)
+    node = site.nodes.look_up(form.node, form.at("node"), findings)
+    if parts is None:
+        return None
+    given = {key.lower(): key for key in form.parameters or {}}
+    lost = {key.lower() for key in form.dropped("parameters")}
+    values: list[tuple[str, Scalar]] = []
+    for _, key in given.items():
+        origin = form.entry_at("parameters", key)
+        parts.members.parameters.look_up(key, origin, findings)
+    for parameter in parts.component.parameters:
+        entry = given.get(parameter.name.lower())
+        value = parameter.default
+        if entry is not None and form.parameters is not None:
+            place = form.place("parameters", entry)
+            value = constant(
+                form.parameters[entry], place, parameter.name, parameter.type, findings
+            )
+        elif value is None and parameter.name.lower() not in lost and not form.lost("parameters"):
+            message = f"{name} does not set the parameter `{parameter.name}`, which has no default"
+            notes = [(parameter.origin, f"`{parameter.name}` is declared here")]
+            hint = f"add `parameters: {{{parameter.name}: ...}}`"
+            findings.error("RV-0314", form.origin, message, notes=notes, hint=hint)
+        if value is not None:
+            values.append((parameter.name, value))
+    if node is None:
+        return None
+    return Instance(name, form.origin, parts.component, node.name, tuple(values))
+
+
+def _split(text: str, shape: str, origin: Origin, findings: Findings) -> tuple[str, str] | None:
+    owner, dot, name = text.partition(".")
+    if not dot or not owner or not name or "." in name:
+        findings.error("RV-0306", origin, f"`{text}` must have the form {shape}")
+        return None
+    return owner, name
+
+
+def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
+    """The port that ``instance.port`` names."""
+    pair = _split(text, "instance.port", origin, site.findings)
+    if pair is None:
+        return None
+    instance = site.instances.look_up(pair[0], origin, site.findings)
+    if instance is None:
+        return None
+    parts = site.parts.find(instance.component.name)
+    if parts is None:
+        return None
+    named = Scope(f"port of {instance.component.name}", parts.members.ports.items)
+    named.open = parts.members.ports.open
+    port = named.look_up(pair[1], origin, site.findings)
+    return None if port is None else (End(instance.name, port.name), port)
+
+
+def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
+    """The (instance, event) that ``instance.Event`` names."""
+    pair = _split(text, "instance.Event", origin, site.findings)
+    if pair is None:
+        return None
+    instance = site.instances.look_up(pair[0], origin, site.findings)
+    if instance is None:
+        return None
+    parts = site.parts.find(instance.component.name)
+    if parts is None:
+        return None
+    named = Scope(f"event of {instance.component.name}", parts.members.events.items)
+    named.open = parts.members.events.open
+    event = named.look_up(pair[1], origin, site.findings)
+    return None if event is None else (instance.name, event.name)
+
+
+def _end(text: str, origin: Origin, wanted: Direction, site: Site) -> tuple[End, Port] | None:
+    """A port of the wanted direction."""
+    found = port_at(text, origin, site)
+    if found is None or found[1].direction is wanted:
+        return found
+    other = Direction.IN if wanted is Direction.OUT else Direction.OUT
+    key = "from" if wanted is Direction.OUT else "to"
+    message = f"{found[0]} is an {other.value}put port; `{key}` takes an {wanted.value}put port"
+    notes = [(found[1].origin, f"`{found[1].name}` is declared here")]
+    site.findings.error("RV-0601", origin, message, notes=notes)
+    return None
+
+
+def connection_of(form: ConnectionForm, site: Site) -> Connection | None:
+    """A connection between two ports that exist, of the right directions."""
+    source = _end(form.from_, form.at("from"), Direction.OUT, site)
+    target = _end(form.to, form.at("to"), Direction.IN, site)
+    if source is None or target is None:
+        return None
+    return Connection(form.origin, source[0], target[0])
+
+
+def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
+    """A message, its signals laid out; its type is that of its ports."""
+    findings = site.findings
+    bus = site.buses.look_up(form.bus, form.at("bus"), findings)
+    source = None
+    if form.from_ is not None:
+        source = _end(form.from_, form.at("from"), Direction.OUT, site)
+    texts: list[tuple[str, Origin]] = []
+    if isinstance(form.to, str):
+        texts = [(form.to, form.at("to"))]
+    elif form.to is not None:
+        texts = [(text, form.item_at("to", index)) for index, text in enumerate(form.to)]
+    targets = [_end(text, origin, Direction.IN, site) for text, origin in texts]
+    sound = [target for target in targets if target is not None]
+    gone = form.lost("from") or form.lost("to") or form.list_damaged("to")
+    if form.from_ is None and not texts and not gone:
+        message = f"the message {name} has neither `from` nor `to`"
+        hint = "name the port that sends it, or the one that receives it"
+        findings.error("RV-0608", form.origin, message, hint=hint)
+        return None
+    period = _message_period(name, form, source, site)
+    broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
+    if bus is None or broken or gone or period is None:
+        return None
+    type_ = (source or sound[0])[1].type
+    signals = signals_of(type_)
+    return Message(
+        name=name,
+        origin=form.origin,
+        bus=bus.name,
+        identifier=form.id,
+        extended=form.extended,
+        type=type_,
+        signals=signals,
+        length=length_of(signals),
+        source=None if source is None else source[0],
+        targets=tuple(target[0] for target in sound),
+        period=period,
+    )
+
+
+def _message_period(
+    name: str, form: MessageForm, source: tuple[End, Port] | None, site: Site
+) -> Ns | None:
+    """The period given, or the shortest of what sends the message."""
+    findings = site.findings
+    if form.from_ is None:
+        if form.period is None and not form.lost("period") and not form.lost("from"):
+            message = f"the message {name} comes from outside and needs the key `period`"
+            hint = "give the least time between two of its frames"
+            findings.error("RV-0609", form.origin, message, hint=hint)
+        return None if form.period is None else Ns(form.period)
+    if form.period is not None:
+        message = f"the message {name} has the period of what sends it; leave `period` out"
+        findings.error("RV-0609", form.at_key("period"), message)
+    if source is None:
+        return None
+    instance = site.instances.find(source[0].instance)
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    if instance is None or parts is None:
+        return None
+    senders = instance.component.runnables()
+    periods = [s.timing.period for s in senders if source[1].name in s.sends]
+    if not periods and not parts.is_damaged:
+        message = f"the message {name} has no period: nothing sends on {source[0]}"
+        notes = [(source[1].origin, f"`{source[1].name}` is declared here")]
+        hint = "send on the port by an activity (`sends:`) or in a flow (`send:`)"
+        findings.error("RV-0609", form.at("from"), message, notes=notes, hint=hint)
+    return min(periods, default=None)
+
+
+# --- Processors --------------------------------------------------------------------
+
+
+def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None:
+    """A processor with its table; divisors and priority are left to `derive`."""
+    findings = site.findings
+    node = site.nodes.look_up(form.node, form.at("node"), findings)
+    bus = None
+    if form.released_by is not None:
+        bus = site.buses.look_up(form.released_by, form.at("released_by"), findings)
+        if form.period is None and not form.lost("period"):
+            message = f"the sporadic processor {name} needs the key `period`"
+            hint = "give the least time between two of its releases"
+            findings.error("RV-0202", form.origin, message, hint=hint)
+        if form.offset and form.has("offset"):
+            message = "`offset` has no meaning for a sporadic processor"
+            findings.error("RV-0210", form.at_key("offset"), message, hint="remove it")
+    slots = [
+        _slot(text, form.item_at("activities", index), form, site)
+        for index, text in enumerate(form.activities)
+    ]
+    misses = [
+        event_at(text, form.item_at("on_deadline_miss", index), site)
+        for index, text in enumerate(form.on_deadline_miss or ())
+    ]
+    sound = tuple(slot for slot in slots if slot is not None)
+    whole = len(sound) == len(slots) and not form.list_damaged("activities")
+    own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
+    period = table_period(own) if form.period is None else Ns(form.period)
+    if node is None or period is None or (form.released_by is not None and bus is None):
+        return None
+    if form.lost("period") or form.lost("released_by"):
+        return None
+    if form.deadline is not None and form.deadline > period and whole:
+        message = f"the deadline of {name} is longer than its period"
+        findings.error("RV-0703", form.at("deadline"), message)
+    deadline = table_deadline(sound, period) if form.deadline is None else Ns(form.deadline)
+    return Processor(
+        name=name,
+        origin=form.origin,
+        node=node.name,
+        period=period,
+        offset=Ns(form.offset),
+        deadline=deadline,
+        priority=form.priority or 0,
+        stack_bytes=form.stack,
+        released_by=None if bus is None else bus.name,
+        slots=sound,
+        on_deadline_miss=tuple(miss for miss in misses if miss is not None),
+    )
+
+
+def _slot(text: str, origin: Origin, form: ProcessorForm, site: Site) -> Slot | None:
+    """One row of a table."""
+    pair = _split(text, "instance.name or bus.receive", origin, site.findings)
+    if pair is None:
+        return None
+    owner, name = pair
+    if site.buses.knows(owner) and not site.instances.knows(owner):
+        return _receive_slot(text, name, owner, origin, form, site)
+    instance = site.instances.look_up(owner, origin, site.findings)
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    if instance is None or parts is None:
+        return None
+    if name.lower() == "ports" and not parts.rows.knows(name):
+        message = f"{instance.component.name} has no input ports, so no row `{text}`"
+        site.findings.error("RV-0305", origin, message, hint="remove the row")
+        return None
+    row = parts.rows.look_up(name, origin, site.findings)
+    if row is None:
+        return None
+    component = instance.component
+    if row == "ports" and component.port_region is not None:
+        timing, work = component.port_region, Work.PORT_REGION
+    elif any(region.name == row for region in component.regions):
+        timing, work = component.region(row).timing, Work.REGION
+    else:
+        activity = next(one for one in component.activities if one.name == row)
+        timing, work = activity.timing, Work.ACTIVITY
+    return Slot(origin, instance.name, work, row, timing, 1, 0)
+
+
+def _receive_slot(
+    text: str, name: str, owner: str, origin: Origin, form: ProcessorForm, site: Site
+) -> Slot | None:
+    """The row ``bus.receive``: the driver's time for one frame."""
+    bus = site.buses.find(owner)
+    if name.lower() != "receive":
+        message = f"`{text}` is no row: a bus has the row `{owner}.receive` only"
+        site.findings.error("RV-0305", origin, message)
+        return None
+    if bus is None or form.period is None:
+        return None
+    deadline = form.period if form.deadline is None else form.deadline
+    timing = Timing(Ns(form.period), bus.driver_wcet, Ns(deadline))
+    return Slot(origin, bus.name, Work.BUS_RECEIVE, "receive", timing, 1, 0)
+
+
+def shutdown_of(form: ShutdownForm | None, site: Site) -> Shutdown:
+    """What a request to stop does."""
+    if form is None:
+        return Shutdown((), Ns(0))
+    raised: Iterable[tuple[str, str] | None] = (
+        event_at(text, form.item_at("raises", index), site)
+        for index, text in enumerate(form.raises)
+    )
+    return Shutdown(tuple(pair for pair in raised if pair is not None), Ns(form.grace))

@@ -1,0 +1,265 @@
+"""What follows from a valid model: tables, priorities, tasks and shared objects.
+
+All times in ns, every figure on the safe side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from .model import (
+    Activity,
+    Bus,
+    Instance,
+    Processor,
+    Region,
+    SharedObject,
+    Slot,
+    System,
+    Task,
+)
+from .terms import Ns
+
+MAIN = "main"
+"""The environment task: priority 0, below all tasks, and not among them."""
+
+FRAME_DISTANCE_BITS = 47
+"""Bit times between the beginnings of two frames, at least: a CAN 2.0A data frame with an
+11-bit identifier and no data has 44 bits (without stuff bits, the shortest case), followed by
+3 bits of interframe space."""
+
+
+# --- Tables ------------------------------------------------------------------------
+
+
+def table_period(slots: Iterable[Slot]) -> Ns | None:
+    """The shortest period in a table; None for an empty one."""
+    return min((slot.timing.period for slot in slots), default=None)
+
+
+def table_deadline(slots: Iterable[Slot], period: Ns) -> Ns:
+    """The shortest deadline in a table, at most the processor's period."""
+    return min((slot.timing.deadline for slot in slots), default=period)
+
+
+def _with_divisors(processor: Processor) -> Processor:
+    """Each row's divisor: how many releases lie between two of its runs."""
+    slots = tuple(
+        replace(slot, divisor=slot.timing.period // processor.period, phase=0)
+        for slot in processor.slots
+    )
+    deadline = min(processor.deadline, processor.period)
+    return replace(processor, slots=slots, deadline=deadline)
+
+
+# --- Priorities --------------------------------------------------------------------
+
+
+def prioritised(processors: Sequence[Processor]) -> tuple[Processor, ...]:
+    """The processors with priorities: given ones kept, the others deadline-monotonic.
+
+    The shorter the deadline the larger the number; of two with one deadline
+    the earlier in the model has the larger. Numbers count from 1 and step over
+    given ones.
+    """
+    taken = {processor.priority for processor in processors if processor.priority}
+    free = (number for number in range(1, len(processors) + len(taken) + 1) if number not in taken)
+    order = sorted(
+        (index for index, processor in enumerate(processors) if not processor.priority),
+        key=lambda index: (-processors[index].deadline, -index),
+    )
+    chosen = dict(zip(order, free, strict=False))
+    return tuple(
+        replace(processor, priority=chosen.get(index, processor.priority))
+        for index, processor in enumerate(processors)
+    )
+
+
+# --- Tasks -------------------------------------------------------------------------
+
+
+def frame_distance(bus: Bus) -> Ns:
+    """The least time between two frames on a bus, rounded down."""
+    return Ns(FRAME_DISTANCE_BITS * 10**9 // bus.bit_rate)
+
+
+def tasks_of(system: System) -> tuple[Task, ...]:
+    """Processors in model order, then for each message the driver's work on it.
+
+    A driver has two tasks, one that receives and one that transmits, both of
+    the priority above all processors. Each serves a frame at a time, so what it
+    does is described by one entry for each message, at the message's period.
+    """
+    tasks = [
+        Task(
+            element=processor.name,
+            origin=processor.origin,
+            node=processor.node,
+            period=processor.period,
+            offset=processor.offset,
+            deadline=processor.deadline,
+            budget=Ns(processor.wcet + 2 * _switch(system, processor.node)),
+            priority=processor.priority,
+        )
+        for processor in system.processors
+    ]
+    top = max((processor.priority for processor in system.processors), default=0)
+    for message in system.messages:
+        bus = next(item for item in system.buses if item.name == message.bus)
+        node = system.nodes[0].name
+        budget = Ns(bus.driver_wcet + 2 * _switch(system, node))
+        ways = [] if message.source is None else ["tx"]
+        ways += ["rx"] if message.targets else []
+        for way in ways:
+            element = f"{bus.name}.driver_{way}.{message.name}"
+            period = message.period
+            tasks.append(
+                Task(element, message.origin, node, period, Ns(0), period, budget, top + 1)
+            )
+    return tuple(tasks)
+
+
+def _switch(system: System, node: str) -> Ns:
+    return next(item.context_switch for item in system.nodes if item.name == node)
+
+
+# --- Shared objects ----------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Sharing:
+    """Who calls what, worked out over a system whose priorities are known."""
+
+    system: System
+    priorities: dict[str, int]
+
+    def made(self, element: str, users: Iterable[str]) -> SharedObject:
+        """The object with these users, each once, and the ceiling that they need."""
+        once = tuple(dict.fromkeys(users))
+        node = self.system.nodes[0]
+        ceiling = max((self.priorities[user] for user in once), default=0)
+        return SharedObject(element, node.name, once, ceiling, node.critical_section)
+
+    def runs(self, instance: str, name: str) -> str:
+        """The processor that runs a row."""
+        return self.system.processor_of(f"{instance}.{name}").name
+
+    def of_instance(self, instance: Instance) -> Iterable[SharedObject]:
+        """The objects of one instance: mailboxes and boards, data, regions."""
+        component = instance.component
+        runnables = component.runnables()
+        for port in component.inputs():
+            handler = self.runs(instance.name, "ports")
+            element = f"{instance.name}.{port.name}"
+            yield self.made(
+                f"{element}.mailbox", [*self.writers(instance.name, port.name), handler]
+            )
+            readers = [self.runs(instance.name, r.name) for r in runnables if port.name in r.reads]
+            if readers:
+                yield self.made(element, [handler, *readers])
+        for data in component.data:
+            users = [self.runs(instance.name, name) for name in component.users(data.name)]
+            if len(users) > 1:
+                yield self.made(f"{instance.name}.{data.name}", users)
+        for region in component.regions:
+            own = self.runs(instance.name, region.name)
+            readers = [
+                self.runs(instance.name, item.name)
+                for item in runnables
+                if region.name in item.reads or _works_in(item, region.name)
+            ]
+            yield self.made(f"{instance.name}.{region.name}", [own, *readers])
+            if region.events():
+                raisers = self.raisers(instance, region)
+                yield self.made(f"{instance.name}.{region.name}.queue", [own, *raisers])
+
+    def writers(self, instance: str, port: str) -> Iterable[str]:
+        """The processors that put values into an input port's mailbox."""
+        for connection in self.system.connections:
+            if (connection.target.instance, connection.target.port) == (instance, port):
+                source = self.system.instance(connection.source.instance)
+                for sender in source.component.runnables():
+                    if connection.source.port in sender.sends:
+                        yield self.runs(source.name, sender.name)
+        for message in self.system.messages:
+            if any((end.instance, end.port) == (instance, port) for end in message.targets):
+                yield self.runs(message.bus, "receive")
+
+    def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
+        """The tasks that may put an event into a region's queue."""
+        component, named = instance.component, set(region.events())
+        for item in component.runnables():
+            overflow = item.on_overflow if isinstance(item, Region) else None
+            if named & set(item.raises):
+                yield self.runs(instance.name, item.name)
+            if overflow in named and isinstance(item, Region):
+                # the event is raised by whoever fills that queue, or by the region itself
+                yield self.runs(instance.name, item.name)
+                if item.name != region.name:
+                    yield from self.raisers_once(instance, item)
+        for port in component.inputs():
+            if named & {port.on_arrival, port.on_stale, port.on_overflow}:
+                yield self.runs(instance.name, "ports")
+        for processor in self.system.processors:
+            if any(one == instance.name and e in named for one, e in processor.on_deadline_miss):
+                yield processor.name
+        if any(one == instance.name and e in named for one, e in self.system.shutdown.raises):
+            yield MAIN
+
+    def raisers_once(self, instance: Instance, region: Region) -> Iterable[str]:
+        """As `raisers`, without following overflows further."""
+        quiet = replace(
+            instance,
+            component=replace(
+                instance.component,
+                regions=tuple(replace(r, on_overflow=None) for r in instance.component.regions),
+            ),
+        )
+        yield from self.raisers(quiet, region)
+
+
+def _works_in(item: Region | Activity, region: str) -> bool:
+    """Whether an activity works only in a state of that region."""
+    return (
+        isinstance(item, Activity) and item.while_in is not None and item.while_in.region == region
+    )
+
+
+def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...]:
+    """Every protected object of the generated program, with its users and ceiling.
+
+    ``system`` has its priorities. The users of `health` and `trace` are all processors.
+    """
+    sharing = _Sharing(system, {task.element: task.priority for task in tasks} | {MAIN: 0})
+    objects: list[SharedObject] = []
+    for instance in system.instances:
+        objects.extend(sharing.of_instance(instance))
+    for bus in system.buses:
+        senders = [
+            sharing.runs(source.instance, sender.name)
+            for message in system.messages
+            for source in (message.source,)
+            if message.bus == bus.name and source is not None
+            for sender in system.instance(source.instance).component.runnables()
+            if source.port in sender.sends
+        ]
+        receivers = [p.name for p in system.processors if p.released_by == bus.name]
+        drivers = [t.element for t in tasks if t.element.startswith(f"{bus.name}.driver_")]
+        objects.append(sharing.made(f"{bus.name}.transmit", [*senders, *drivers]))
+        objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
+    for processor in system.processors:
+        objects.append(sharing.made(f"{processor.name}.monitor", [processor.name]))
+    everyone = [*(processor.name for processor in system.processors), MAIN]
+    objects.append(sharing.made("health", everyone))
+    if any(node.trace_depth for node in system.nodes):
+        objects.append(sharing.made("trace", everyone))
+    return tuple(objects)
+
+
+def completed(system: System) -> System:
+    """A valid system with divisors, priorities, tasks and shared objects."""
+    processors = prioritised([_with_divisors(processor) for processor in system.processors])
+    told = replace(system, processors=processors)
+    tasks = tasks_of(told)
+    return replace(told, tasks=tasks, objects=objects_of(told, tasks))

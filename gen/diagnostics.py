@@ -1,0 +1,214 @@
+"""Diagnostics: what is wrong with a model, where, and what to do about it.
+
+A wrong model is a value, never an exception. Codes are stable: a code is not
+given a second meaning, and one that falls out of use is not given again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from .terms import Origin
+
+
+class Severity(Enum):
+    """An error stops generation, a warning does not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+GROUPS: Mapping[str, str] = {
+    "01": "Files and YAML",
+    "02": "Form",
+    "03": "Names, types and values",
+    "04": "Expressions and flows",
+    "05": "Components and charts",
+    "06": "Instances, connections and messages",
+    "07": "Processors and timing",
+    "08": "The system",
+}
+
+CODES: Mapping[str, str] = {
+    "RV-0101": "A model file cannot be read.",
+    "RV-0102": "A model file is larger than 4 MiB, or there are more than 100 of them.",
+    "RV-0103": "A model file is not UTF-8 text.",
+    "RV-0104": "A model file has no content.",
+    "RV-0105": "A model file holds a tab; YAML indents with spaces only.",
+    "RV-0106": "A model file is not well-formed YAML.",
+    "RV-0107": "Mappings and lists are nested more than 64 deep.",
+    "RV-0108": "Anchors and aliases are not part of the language: what is written is what counts.",
+    "RV-0109": "A mapping has the same key twice.",
+    "RV-0110": "YAML tags are not part of the language.",
+    "RV-0111": "A model file holds more than one YAML document.",
+    "RV-0112": "A file includes itself, directly or through others.",
+    "RV-0113": "A key is not plain text.",
+    "RV-0201": "A key is unknown here.",
+    "RV-0202": "A key that is required is missing.",
+    "RV-0203": "A value has the wrong kind: a list where a mapping is wanted, text for a number.",
+    "RV-0204": "A number is outside the range that the key allows.",
+    "RV-0205": "A duration is not well-formed, or outside the range that the key allows.",
+    "RV-0206": "A size is not well-formed, or outside the range that the key allows.",
+    "RV-0207": "A bit rate is not well-formed, or outside the range that CAN allows.",
+    "RV-0208": "A value is not one of the words that the key allows.",
+    "RV-0209": "A list or mapping has too few or too many elements.",
+    "RV-0210": "A key has no meaning together with, or without, another one.",
+    "RV-0301": "A name is not an Ada identifier of at most 60 letters, digits and underscores.",
+    "RV-0302": "A name is a reserved word of Ada.",
+    "RV-0303": "Two elements of one scope have the same name; case does not count.",
+    "RV-0304": "A name would clash with another in the generated program.",
+    "RV-0305": "A name is not declared.",
+    "RV-0306": "A reference does not have the form owner.name.",
+    "RV-0310": "A range is empty.",
+    "RV-0311": "A field of a record is a record.",
+    "RV-0312": "A value does not belong to its type.",
+    "RV-0313": "A record's value does not give every field once.",
+    "RV-0314": "A parameter is not set and has no default.",
+    "RV-0401": "An expression is not well-formed.",
+    "RV-0402": "An expression is too long or too deeply nested.",
+    "RV-0403": "A name in an expression denotes nothing that can be read there.",
+    "RV-0404": "An operand has the wrong type.",
+    "RV-0405": "Two operands count different units.",
+    "RV-0406": "A divisor may be zero.",
+    "RV-0407": "A value may leave the range of its target.",
+    "RV-0408": "An intermediate result may need more than 64 bits.",
+    "RV-0409": "A function is unknown, or has the wrong number of arguments.",
+    "RV-0410": "An enumeration literal is unknown, or its type cannot be told.",
+    "RV-0411": "A flow sets what is not a data item, or sends on what is not an output port.",
+    "RV-0412": "A data item has two writers.",
+    "RV-0413": "One step or execution may send twice on the same port.",
+    "RV-0414": "What an activity declares to read, write, send or raise is not what its flow does.",
+    "RV-0415": "A record is set or sent incompletely, or as a whole where fields are wanted.",
+    "RV-0416": "A region asks for its own state.",
+    "RV-0501": "An initial state is not inside the state or region that names it.",
+    "RV-0502": "A transition does not have exactly one trigger.",
+    "RV-0503": "An internal transition has a target other than its source.",
+    "RV-0504": "A region that is triggered by events has no queue.",
+    "RV-0505": "A state is unreachable.",
+    "RV-0506": "The safe state cannot be reached from every state.",
+    "RV-0507": "A transition can never fire: an earlier one always takes its event.",
+    "RV-0508": "A transition can never fire: its condition is always false.",
+    "RV-0509": "Nothing raises an event that a region waits for.",
+    "RV-0510": "No region waits for an event.",
+    "RV-0511": "The port region is missing, or there is no input port for it.",
+    "RV-0512": "An output port is never sent on.",
+    "RV-0513": "A component has nothing to run.",
+    "RV-0601": "A connection does not lead from an output port to an input port.",
+    "RV-0602": "An input port has no source.",
+    "RV-0603": "An input port has two sources.",
+    "RV-0604": "An output port leads nowhere.",
+    "RV-0605": "The two ends of a connection or message have different types.",
+    "RV-0606": "A connection or message joins the wrong nodes.",
+    "RV-0607": "A CAN identifier is outside its range, or used twice on its bus.",
+    "RV-0608": "A message has neither sender nor receiver in the system.",
+    "RV-0609": "A message's period is missing, or given although it is its sender's.",
+    "RV-0610": "A payload does not fit into the 64 bits of a CAN frame.",
+    "RV-0611": "A region that makes several steps in one execution sends a message.",
+    "RV-0701": "An activity, region or port region is allocated to no processor.",
+    "RV-0702": "An activity, region or port region is allocated twice.",
+    "RV-0703": "A worst-case execution time or a deadline is longer than the period.",
+    "RV-0704": "A period in a table is no multiple of the processor's period.",
+    "RV-0705": "A sporadic processor does not hold exactly the reception of its bus.",
+    "RV-0706": "A bus with received messages is not served by exactly one processor.",
+    "RV-0707": "A processor's table holds an activity of an instance on another node.",
+    "RV-0708": "A processor's offset is not shorter than its period.",
+    "RV-0801": "A section without which there is no system is missing or empty.",
+    "RV-0802": "Distribution over several nodes or buses is not there yet.",
+    "RV-0803": "Something that the system has once is given twice.",
+}
+"""Every code with what it says; docs/errors.md is written from this table."""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding about a model.
+
+    ``notes`` show other places, ``hint`` says what to do.
+    """
+
+    code: str
+    severity: Severity
+    origin: Origin
+    message: str
+    notes: tuple[tuple[Origin, str], ...] = ()
+    hint: str | None = None
+
+    @property
+    def is_error(self) -> bool:
+        """Whether it stops generation."""
+        return self.severity is Severity.ERROR
+
+
+def error(
+    code: str,
+    origin: Origin,
+    message: str,
+    *,
+    notes: Iterable[tuple[Origin, str]] = (),
+    hint: str | None = None,
+) -> Diagnostic:
+    """An error with that code at that place."""
+    return Diagnostic(code, Severity.ERROR, origin, message, tuple(notes), hint)
+
+
+def warning(
+    code: str,
+    origin: Origin,
+    message: str,
+    *,
+    notes: Iterable[tuple[Origin, str]] = (),
+    hint: str | None = None,
+) -> Diagnostic:
+    """A warning with that code at that place."""
+    return Diagnostic(code, Severity.WARNING, origin, message, tuple(notes), hint)
+
+
+def in_order(
+    diagnostics: Iterable[Diagnostic], files: Iterable[str] = ()
+) -> tuple[Diagnostic, ...]:
+    """The diagnostics by file (as read), line and column, each once."""
+    rank = {name: index for index, name in enumerate(files)}
+
+    def key(item: Diagnostic) -> tuple[int, Origin, str, str]:
+        return (rank.get(item.origin.file, len(rank)), item.origin, item.code, item.message)
+
+    return tuple(sorted(dict.fromkeys(diagnostics), key=key))
+
+
+Sources = Mapping[str, tuple[str, ...]]
+"""The lines of each file, by its name as given."""
+
+MARGIN = 120
+"""Longest excerpt of a line, in characters."""
+
+
+def render(diagnostic: Diagnostic, sources: Sources) -> str:
+    """The diagnostic as compilers print it, with the line it speaks of."""
+    head = f"{diagnostic.origin}: {diagnostic.severity.value}: {diagnostic.message}"
+    lines = [
+        f"{head} [{diagnostic.code}]",
+        *_excerpt(diagnostic.origin, sources),
+        *(f"{origin}: note: {text}" for origin, text in diagnostic.notes),
+    ]
+    if diagnostic.hint is not None:
+        lines.append(f"{diagnostic.origin}: hint: {diagnostic.hint}")
+    return "\n".join(_printable(line) for line in lines)
+
+
+def _excerpt(origin: Origin, sources: Sources) -> tuple[str, ...]:
+    """The source line with a caret under the column; nothing where there is no such line."""
+    lines = sources.get(origin.file, ())
+    if not 1 <= origin.line <= len(lines):
+        return ()
+    line = lines[origin.line - 1]
+    column = min(origin.column, len(line) + 1)
+    start = 0 if len(line) <= MARGIN else max(0, column - 1 - MARGIN // 2)
+    shown = line[start : start + MARGIN]
+    return (f"{origin.line:5} | {shown}".rstrip(), f"      | {' ' * (column - 1 - start)}^")
+
+
+def _printable(text: str) -> str:
+    """The text with everything that could disturb a terminal replaced."""
+    return "".join(char if char.isprintable() else " " if char == "\t" else "?" for char in text)

@@ -1,0 +1,217 @@
+"""What all instances of a component share: events, states, port views, activities."""
+
+from __future__ import annotations
+
+from ..model import Activity, Component, Direction, Region, System
+from ..terms import Raise, Send, Set, Type
+from .ada import (
+    FALSE,
+    SPARK,
+    Aspect,
+    Assign,
+    Comment,
+    Decl,
+    EnumType,
+    Instance,
+    Package,
+    Param,
+    PlainType,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    number,
+)
+from .naming import ada_case, component_package, default_value, states_package, type_name
+from .terms import Scope, emit_flow, flow_names, flow_operators
+
+RAISED_PER_STEP = 16
+"""Events that one region execution can raise; the rules keep each step below it."""
+
+
+def leaf_type(component: Component, region: Region) -> str:
+    """The type of a region's published state, seen from a sibling package."""
+    return f"{ada_case(component.name)}.{states_package(region)}.Leaf"
+
+
+def view_type(component: Component, port: str) -> str:
+    """The type of an input port's view."""
+    return f"{ada_case(component.name)}.{ada_case(port)}_View"
+
+
+def reading_type(system: System, component: Component, name: str) -> str:
+    """The type in which a region or activity sees what it reads."""
+    return _readings(system, component)[name.lower()]
+
+
+def _readings(system: System, component: Component) -> dict[str, str]:
+    types: dict[str, str] = {}
+    for port in component.inputs():
+        types[port.name.lower()] = view_type(component, port.name)
+    for region in component.regions:
+        types[region.name.lower()] = leaf_type(component, region)
+    items: list[tuple[str, Type]] = [(d.name, d.type) for d in component.data]
+    items += [(p.name, p.type) for p in component.parameters]
+    for name, of_type in items:
+        types[name.lower()] = type_name(system, of_type)
+    return types
+
+
+def emit_component(system: System, component: Component, header: str) -> Unit:
+    """The package of a component type: pure, no state."""
+    items: list[Decl] = []
+    if component.events:
+        items.append(Comment(f"[{component.name}.events]"))
+        items.append(EnumType("Event", tuple(ada_case(e.name) for e in component.events)))
+        items.append(
+            Instance(
+                "Event_Lists",
+                "Ravenchart.Event_Lists",
+                arguments(
+                    Event=Ref(f"{ada_case(component.name)}.Event"), Capacity=number(RAISED_PER_STEP)
+                ),
+            )
+        )
+    for region in component.regions:
+        items.append(Comment(f"[{component.name}.{region.name}.states]"))
+        items.append(_states(region))
+    for port in component.inputs():
+        name = ada_case(port.name)
+        items.append(Comment(f"[{component.name}.{port.name}] what its readers see"))
+        items.append(
+            Instance(
+                f"{name}_Port",
+                "Ravenchart.Port_Regions",
+                arguments(
+                    Value_Type=Ref(type_name(system, port.type)),
+                    Default=default_value(system, port.type),
+                ),
+            )
+        )
+        items.append(PlainType(f"{name}_View", f"{name}_Port.Port", subtype=True))
+    withs = ["Ravenchart.Event_Lists"] if component.events else []
+    withs += ["Ravenchart.Port_Regions"] if component.inputs() else []
+    package = component_package(system, component)
+    return Unit(header, tuple(withs), Package(package, tuple(items), (SPARK,)))
+
+
+def _states(region: Region) -> Package:
+    """Leaf states in tree order; a composite is the subtype of its leaves."""
+    items: list[Decl] = [EnumType("Leaf", tuple(ada_case(n) for n in region.leaves()))]
+    for state in region.states:
+        if not state.is_leaf:
+            leaves = region.leaves(state.name)
+            parent = ada_case(state.parent) if state.parent else "Leaf"
+            bounds = f"{parent} range {ada_case(leaves[0])} .. {ada_case(leaves[-1])}"
+            items.append(PlainType(ada_case(state.name), bounds, subtype=True))
+    return Package(states_package(region), tuple(items))
+
+
+# --- Activities --------------------------------------------------------------
+
+
+def raise_flag(event: str) -> str:
+    """The parameter by which an activity raises an event."""
+    return f"Raise_{ada_case(event)}"
+
+
+def send_flag(port: str) -> str:
+    """The parameter by which a flow says that it sends."""
+    return f"Send_{ada_case(port)}"
+
+
+def activity_params(system: System, component: Component, activity: Activity) -> tuple[Param, ...]:
+    """The profile of an activity: what it reads, what it writes, what it raises."""
+    params = [
+        Param(ada_case(name), "in", reading_type(system, component, name))
+        for name in activity.reads
+        if name not in activity.writes
+    ]
+    params += [
+        Param(ada_case(name), _write_mode(activity, name), reading_type(system, component, name))
+        for name in activity.writes
+    ]
+    for port in component.ports:
+        if port.direction is Direction.OUT and port.name in activity.sends:
+            params.append(Param(ada_case(port.name), "out", type_name(system, port.type)))
+            if activity.flow is not None:
+                params.append(Param(send_flag(port.name), "out", "Boolean"))
+    params += [Param(raise_flag(event), "out", "Boolean") for event in activity.raises]
+    return tuple(params)
+
+
+def emit_activities(system: System, component: Component, header: str) -> tuple[Unit, ...]:
+    """The spec of the user's activities; spec and body of those given as flows."""
+    package = component_package(system, component)
+    users = tuple(a for a in component.activities if a.flow is None)
+    flows = tuple(a for a in component.activities if a.flow is not None)
+    units: list[Unit] = []
+    if users:
+        items = _specs(system, component, users, Aspect("Global", Ref("null")))
+        units.append(Unit(header, (), Package(f"{package}.Activities", items, (SPARK,))))
+    if flows:
+        items = _specs(system, component, flows, Aspect("Global", Ref("null")))
+        units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
+        bodies = (
+            *(
+                UseType(n)
+                for n in sorted(set().union(*(flow_operators(a.flow or ()) for a in flows)))
+            ),
+            *(_flow_body(system, component, a) for a in flows),
+        )
+        units.append(Unit(header, (), Package(f"{package}.Flows", bodies, (SPARK,), is_body=True)))
+    return tuple(units)
+
+
+def _write_mode(activity: Activity, data: str) -> str:
+    """``out`` for a flow that never reads the item and always sets it whole."""
+    if activity.flow is None or data in flow_names(activity.flow):
+        return "in out"
+    whole = any(isinstance(a, Set) and a.data == data and not a.field for a in activity.flow)
+    return "out" if whole else "in out"
+
+
+def _specs(
+    system: System, component: Component, activities: tuple[Activity, ...], aspect: Aspect
+) -> tuple[Decl, ...]:
+    items: list[Decl] = []
+    for activity in activities:
+        params = activity_params(system, component, activity)
+        items.append(Subprogram(ada_case(activity.name), params, aspects=(aspect,)))
+        timing = activity.timing
+        items.append(
+            Comment(
+                f"[{component.name}.{activity.name}] budget {timing.wcet:_} ns, "
+                f"every {timing.period:_} ns"
+                + (f", while in {activity.while_in.state}" if activity.while_in else "")
+            )
+        )
+    return tuple(items)
+
+
+def _flow_body(system: System, component: Component, activity: Activity) -> Subprogram:
+    assert activity.flow is not None
+    scope = Scope(
+        system,
+        component,
+        variable=ada_case,
+        target=ada_case,
+        sent=lambda port: (ada_case(port), send_flag(port)),
+        raised=lambda event: Assign(raise_flag(event), Ref("True")),
+    )
+    #  what the flow always does at its top level needs no value before
+    sure = {a.port for a in activity.flow if isinstance(a, Send)}
+    sure |= {a.event for a in activity.flow if isinstance(a, Raise)}
+    start: list[Stmt] = []
+    for port in component.outputs():
+        if port.name in activity.sends and port.name not in sure:
+            start.append(Assign(ada_case(port.name), default_value(system, port.type)))
+            start.append(Assign(send_flag(port.name), FALSE))
+    start += [Assign(raise_flag(e), FALSE) for e in activity.raises if e not in sure]
+    return Subprogram(
+        ada_case(activity.name),
+        activity_params(system, component, activity),
+        body=(*start, *emit_flow(scope, activity.flow)),
+    )

@@ -1,0 +1,120 @@
+"""Names in the generated Ada: one place decides how a model element is called."""
+
+from __future__ import annotations
+
+from ..model import Component, Instance, Processor, Region, Slot, System
+from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Scalar, Type, Value
+from .ada import Aggregate, Arg, Expr, Ref, number
+
+
+def ada_case(name: str) -> str:
+    """``joint_x`` as ``Joint_X``; capitals already there stay."""
+    return "_".join(word[:1].upper() + word[1:] for word in name.split("_"))
+
+
+def unit_type(system: System, unit: str | None) -> str:
+    """The Ada type that integers counted in ``unit`` belong to."""
+    if unit is None:
+        return "Ravenchart.Number"
+    words = unit.replace("/", "_Per_").replace("%", "Percent").replace("^", "_")
+    safe = "".join(c if c.isalnum() else "_" for c in words)
+    while "__" in safe:
+        safe = safe.replace("__", "_")
+    return f"{ada_case(system.name)}.Unit_{ada_case(safe.strip('_'))}"
+
+
+def type_name(system: System, of_type: Type) -> str:
+    """The expanded name of a model type, visible from every generated unit."""
+    if of_type == BOOLEAN:
+        return "Boolean"
+    return f"{ada_case(system.name)}.{ada_case(of_type.name)}"
+
+
+def default_name(system: System, of_type: RecordType) -> str:
+    """The constant that stands for a value nobody has given yet."""
+    return f"{ada_case(system.name)}.Default_{ada_case(of_type.name)}"
+
+
+def scalar(system: System, of_type: IntegerType | EnumerationType, value: Scalar) -> Expr:
+    """A scalar value as Ada text."""
+    if isinstance(of_type, IntegerType):
+        return number(int(value))
+    if of_type == BOOLEAN:
+        return Ref(str(value).capitalize())
+    return Ref(f"{ada_case(system.name)}.{ada_case(str(value))}")
+
+
+def value(system: System, of_type: Type, given: Value) -> Expr:
+    """A value of any model type as Ada text."""
+    if not isinstance(of_type, RecordType):
+        assert not isinstance(given, tuple)
+        return scalar(system, of_type, given)
+    assert isinstance(given, tuple)
+    return Aggregate(
+        tuple(
+            Arg(ada_case(field), scalar(system, of_type.field(field).type, item))
+            for field, item in given
+        )
+    )
+
+
+def default(of_type: Type) -> Value:
+    """The value before any is known: nearest to zero, first literal, field by field."""
+    if isinstance(of_type, IntegerType):
+        return min(max(0, of_type.first), of_type.last)
+    if isinstance(of_type, EnumerationType):
+        return of_type.literals[0]
+    return tuple((f.name, _scalar_default(f.type)) for f in of_type.fields)
+
+
+def _scalar_default(of_type: IntegerType | EnumerationType) -> Scalar:
+    given = default(of_type)
+    assert not isinstance(given, tuple)
+    return given
+
+
+def default_value(system: System, of_type: Type) -> Expr:
+    """The default as an expression; a record's is its constant."""
+    if isinstance(of_type, RecordType):
+        return Ref(default_name(system, of_type))
+    return value(system, of_type, default(of_type))
+
+
+def component_package(system: System, component: Component) -> str:
+    """Package of a component type."""
+    return f"{ada_case(system.name)}.{ada_case(component.name)}"
+
+
+def states_package(region: Region) -> str:
+    """Nested package that holds a region's leaf states."""
+    return f"{ada_case(region.name)}_States"
+
+
+def region_package(system: System, component: Component, region: Region) -> str:
+    """Child package with the logic of a region."""
+    return f"{component_package(system, component)}.{ada_case(region.name)}"
+
+
+def instance_package(system: System, instance: Instance) -> str:
+    """Package of a component instance."""
+    return f"{ada_case(system.name)}.{ada_case(instance.name)}"
+
+
+def processor_package(system: System, processor: Processor) -> str:
+    """Package of a processor."""
+    return f"{ada_case(system.name)}.{ada_case(processor.name)}"
+
+
+def row_name(slot: Slot) -> str:
+    """Literal of a row in its processor's table."""
+    return f"{ada_case(slot.owner)}_{ada_case(slot.name)}"
+
+
+def constant_name(element: str) -> str:
+    """An element id as one Ada name."""
+    return "_".join(ada_case(part) for part in element.split("."))
+
+
+def priority(level: int) -> Ref:
+    """A priority of the model as one of the target, counted from the default."""
+    return Ref("System.Priority'First" if level == 0 else f"System.Default_Priority + {level}")

@@ -1,0 +1,247 @@
+"""Expressions and flows of the model as Ada expressions and statements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from .. import terms as m
+from ..model import Component, System
+from .ada import (
+    FALSE,
+    TRUE,
+    Aggregate,
+    Arg,
+    Assign,
+    Call,
+    Chain,
+    Do,
+    Expr,
+    If,
+    IfExpr,
+    Prefix,
+    Ref,
+    Stmt,
+    arguments,
+    member,
+    number,
+)
+from .naming import ada_case, states_package, type_name, unit_type
+
+_CHAINS = {"and": "and then", "or": "or else"}
+_FUNCTIONS = {"min": "Min", "max": "Max"}
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """How names read in one place of the generated program.
+
+    ``variable`` gives a data item, parameter or port view, ``target`` a data
+    item to be set, ``sent`` the slot of an output port, ``raised`` the
+    statement that raises an event.
+    """
+
+    system: System
+    component: Component
+    variable: Callable[[str], str]
+    target: Callable[[str], str]
+    sent: Callable[[str], tuple[str, str]]
+    raised: Callable[[str], Stmt]
+
+
+def unit_of(expression: m.Expression) -> str | None:
+    """What an integer expression counts; None for a bare number."""
+    match expression:
+        case m.Operation():
+            return expression.unit
+        case m.Name(_, _, field, of_type):
+            scalar = (
+                of_type.field(field).type
+                if isinstance(of_type, m.RecordType) and field
+                else of_type
+            )
+            return scalar.unit if isinstance(scalar, m.IntegerType) else None
+        case _:
+            return None
+
+
+def names_in(expression: m.Expression) -> set[str]:
+    """The data, parameters, ports and regions that an expression reads."""
+    match expression:
+        case m.Literal():
+            return set()
+        case m.Name(_, name):
+            return {name}
+        case m.PortTest(port):
+            return {port}
+        case m.InState(region):
+            return {region}
+        case m.Operation(_, operands):
+            return {name for operand in operands for name in names_in(operand)}
+
+
+def operators_in(expression: m.Expression) -> set[str]:
+    """The runtime's types whose operators an expression uses."""
+    match expression:
+        case m.PortTest():
+            return {"Ravenchart.Freshness"}
+        case m.Operation(operator, operands):
+            found = {name for operand in operands for name in operators_in(operand)}
+            plain = any(_is_plain(o) for o in operands)
+            if operator not in ("min", "max", "clamp", "if") and plain:
+                found.add("Ravenchart.Number")
+            return found
+        case _:
+            return set()
+
+
+def _is_plain(operand: m.Expression) -> bool:
+    """An integer that counts nothing, and is more than a literal."""
+    match operand:
+        case m.Operation(_, _, of_type):
+            return of_type is None and operand.unit is None
+        case m.Name(_, _, field, of_type):
+            scalar = (
+                of_type.field(field).type
+                if isinstance(of_type, m.RecordType) and field
+                else of_type
+            )
+            return isinstance(scalar, m.IntegerType) and scalar.unit is None
+        case _:
+            return False
+
+
+def expressions_in(flow: m.Flow) -> Iterator[m.Expression]:
+    """Every expression that stands in a flow."""
+    for action in flow:
+        match action:
+            case m.Set():
+                yield action.value
+            case m.Send():
+                yield from (value for _, value in action.values)
+            case m.If():
+                yield action.condition
+                yield from expressions_in(action.then)
+                yield from expressions_in(action.otherwise)
+
+
+def flow_operators(flow: m.Flow) -> set[str]:
+    """The runtime's types whose operators a flow uses."""
+    return {name for expression in expressions_in(flow) for name in operators_in(expression)}
+
+
+def flow_names(flow: m.Flow) -> set[str]:
+    """The data, parameters, ports and regions that a flow reads."""
+    return {name for expression in expressions_in(flow) for name in names_in(expression)}
+
+
+def emit_expression(scope: Scope, expression: m.Expression) -> Expr:
+    """One model expression as Ada."""
+    match expression:
+        case m.Literal(value, of_type):
+            return _literal(scope, value, of_type)
+        case m.Name():
+            return Ref(_name(scope, expression))
+        case m.PortTest(port, state):
+            view = scope.variable(port)
+            return Chain("=", (Ref(f"{view}.State"), Ref(f"Ravenchart.{ada_case(state)}")))
+        case m.InState(region, state):
+            return _in_state(scope, region, state)
+        case m.Operation():
+            return _operation(scope, expression)
+
+
+def _literal(scope: Scope, value: m.Scalar, of_type: m.ScalarType | None) -> Expr:
+    if isinstance(value, int) and not isinstance(value, bool):
+        return number(value)
+    if of_type is None or of_type == m.BOOLEAN:
+        return TRUE if str(value).lower() == "true" else FALSE
+    return Ref(f"{ada_case(scope.system.name)}.{ada_case(str(value))}")
+
+
+def _name(scope: Scope, name: m.Name) -> str:
+    text = scope.variable(name.name)
+    if name.kind is m.Reading.PORT:
+        text += ".Value"
+    return text if name.field is None else f"{text}.{ada_case(name.field)}"
+
+
+def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
+    region = scope.component.region(region_name)
+    qualified = f"{states_package(region)}.{ada_case(state)}"
+    current = Ref(scope.variable(region_name))
+    if region.state(state).is_leaf:
+        return Chain("=", (current, Ref(qualified)))
+    return member(current, qualified)
+
+
+def _operation(scope: Scope, operation: m.Operation) -> Expr:
+    operator = operation.operator
+    operands = tuple(emit_expression(scope, o) for o in operation.operands)
+    if operator == "not":
+        return Prefix("not", operands[0])
+    if operator == "neg":
+        return Prefix("-", operands[0])
+    if operator == "abs":
+        return Prefix("abs", operands[0])
+    if operator == "if":
+        return IfExpr(((operands[0], operands[1]),), operands[2])
+    if operator in _FUNCTIONS or operator == "clamp":
+        return _bounded(scope, operation, operands)
+    if operator in ("*", "/"):
+        return Chain(operator, tuple(_scaled(scope, operation, o) for o in operation.operands))
+    return Chain(_CHAINS.get(operator, operator), operands)
+
+
+def _bounded(scope: Scope, operation: m.Operation, operands: tuple[Expr, ...]) -> Expr:
+    base = unit_type(scope.system, operation.unit)
+    if operation.operator == "clamp":
+        item, low, high = operands
+        inner = Call(f"{base}'Max", arguments(item, low))
+        return Call(f"{base}'Min", arguments(inner, high))
+    return Call(f"{base}'{_FUNCTIONS[operation.operator]}", arguments(*operands))
+
+
+def _scaled(scope: Scope, operation: m.Operation, operand: m.Expression) -> Expr:
+    """A factor in the unit type of the product, for Ada multiplies only within a type."""
+    text = emit_expression(scope, operand)
+    if isinstance(operand, m.Literal) or unit_of(operand) == operation.unit:
+        return text
+    return Call(unit_type(scope.system, operation.unit), arguments(text))
+
+
+def emit_flow(scope: Scope, flow: m.Flow) -> tuple[Stmt, ...]:
+    """The actions of a flow, in order."""
+    return tuple(statement for action in flow for statement in _action(scope, action))
+
+
+def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
+    match action:
+        case m.Set(_, data, field, value):
+            target = scope.target(data) + (f".{ada_case(field)}" if field else "")
+            return (Assign(target, emit_expression(scope, value)),)
+        case m.Send(_, port, values):
+            slot, flag = scope.sent(port)
+            return (Assign(slot, _sent_value(scope, port, values)), Assign(flag, TRUE))
+        case m.Raise(_, event):
+            return (scope.raised(event),)
+        case m.If(_, condition, then, otherwise):
+            branch = (emit_expression(scope, condition), emit_flow(scope, then))
+            return (If((branch,), emit_flow(scope, otherwise)),)
+
+
+def _sent_value(
+    scope: Scope, port: str, values: tuple[tuple[str | None, m.Expression], ...]
+) -> Expr:
+    of_type = scope.component.port(port).type
+    if not isinstance(of_type, m.RecordType):
+        return emit_expression(scope, values[0][1])
+    return Aggregate(
+        tuple(Arg(ada_case(f or ""), emit_expression(scope, v)) for f, v in values),
+        type_name(scope.system, of_type),
+    )
+
+
+def raise_in_list(list_package: str, target: str, event: str) -> Stmt:
+    """Append ``event`` to the list of events raised in this step."""
+    return Do(f"{list_package}.Append", arguments(Ref(target), Ref(event)))

@@ -1,0 +1,32 @@
+"""Trace calls: present only when the node declares a trace."""
+
+from __future__ import annotations
+
+from ..model import System
+from .ada import Do, Expr, Ref, Stmt, arguments, number
+from .naming import constant_name
+
+
+def traced(system: System) -> bool:
+    """Does the system keep a trace?"""
+    return any(n.trace_depth > 0 for n in system.nodes)
+
+
+def note(
+    system: System, kind: str, element: str, element_kind: str, value: Expr | None = None
+) -> tuple[Stmt, ...]:
+    """One trace record about ``element``, or nothing when there is no trace."""
+    if not traced(system):
+        return ()
+    args = arguments(
+        Ref(f"Ravenchart.Traces.{kind}"),
+        Ref(f"Elements.{element_constant(element, element_kind)}"),
+        value or number(0),
+    )
+    return (Do("Trace.Note", args),)
+
+
+def element_constant(element: str, kind: str) -> str:
+    """The constant that holds an element's number."""
+    suffix = {"row": "_Row", "processor": "_Processor", "message": "_Message"}.get(kind, "")
+    return constant_name(element) + suffix

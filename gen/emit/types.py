@@ -1,0 +1,50 @@
+"""The root package: one Ada type per unit, one subtype or type per model type."""
+
+from __future__ import annotations
+
+from ..model import System
+from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Type
+from .ada import SPARK, Aspect, Comment, Decl, EnumType, Object, Package, PlainType, Unit
+from .ada import Component as RecordComponent
+from .ada import RecordType as AdaRecord
+from .naming import ada_case, default, default_name, type_name, unit_type, value
+
+
+def emit_root(system: System, header: str) -> Unit:
+    """``package <System>``: pure, and visible from every other unit."""
+    units = dict.fromkeys(
+        t.unit for t in system.types if isinstance(t, IntegerType) and t.unit is not None
+    )
+    items: list[Decl] = []
+    for unit in units:
+        items.append(Comment(f"All values counted in {unit}."))
+        items.append(PlainType(unit_type(system, unit).split(".")[-1], "new Ravenchart.Number"))
+    scalars = [t for t in system.types if not isinstance(t, RecordType)]
+    records = [t for t in system.types if isinstance(t, RecordType)]
+    for item in (*scalars, *records):
+        if item != BOOLEAN:
+            items += _declare(system, item)
+    withs = ("Ravenchart",)
+    name = ada_case(system.name)
+    return Unit(header, withs, Package(name, tuple(items), (SPARK, Aspect("Pure"))))
+
+
+def _declare(system: System, item: Type) -> list[Decl]:
+    name = ada_case(item.name)
+    match item:
+        case IntegerType(_, _, first, last, unit):
+            bounds = f"{first:_} .. {last:_}"
+            base = unit_type(system, unit).removeprefix(f"{ada_case(system.name)}.")
+            return [PlainType(name, f"{base} range {bounds}", subtype=True)]
+        case EnumerationType(_, _, literals):
+            return [EnumType(name, tuple(ada_case(i) for i in literals))]
+        case RecordType(_, _, fields):
+            rows = tuple(
+                RecordComponent(ada_case(f.name), type_name(system, f.type)) for f in fields
+            )
+            constant = default_name(system, item).split(".")[-1]
+            start = value(system, item, default(item))
+            return [
+                AdaRecord(name, rows),
+                Object(constant, name, start, constant=True),
+            ]

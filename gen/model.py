@@ -1,0 +1,525 @@
+"""The one intermediate representation: a `System`, frozen, typed and located.
+
+The loader builds it, `rules` checks it, `derive` completes it (priorities,
+ceilings, shared objects), and every back end reads it: the Ada emitters, the
+analysis, the diagrams. All times are integers in nanoseconds. Names are Ada
+identifiers, unique without regard to case within their scope.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from .terms import Expression, Flow, Ns, Origin, Scalar, ScalarType, Type, Value, named
+
+NO_TIME = Ns(0)
+
+# --- Components --------------------------------------------------------------
+
+
+class Direction(Enum):
+    """Which way a port carries values, seen from its component."""
+
+    IN = "in"
+    OUT = "out"
+
+
+class PortKind(Enum):
+    """How an input port keeps what arrives between two runs of its handler."""
+
+    SAMPLED = "sampled"
+    QUEUED = "queued"
+
+
+class Overflow(Enum):
+    """What a full queue does with one element more; either way the loss is counted."""
+
+    REJECT_NEWEST = "reject_newest"
+    DROP_OLDEST = "drop_oldest"
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """A typed port. All but name, direction and type matter to inputs only."""
+
+    name: str
+    origin: Origin
+    direction: Direction
+    type: Type
+    kind: PortKind = PortKind.SAMPLED
+    depth: int = 1
+    overflow: Overflow = Overflow.REJECT_NEWEST
+    max_age: Ns | None = None
+    """Older than this is Stale; None: never stale."""
+    on_arrival: str | None = None
+    on_stale: str | None = None
+    on_overflow: str | None = None
+    """Events of the component, raised by the port's handler."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An event of a component, without parameters."""
+
+    name: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """A data item of a component: one writer, any number of readers."""
+
+    name: str
+    origin: Origin
+    type: Type
+    initial: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A constant that each instance of the component may set."""
+
+    name: str
+    origin: Origin
+    type: ScalarType
+    default: Scalar | None
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Period, worst-case execution time and relative deadline of an activity."""
+
+    period: Ns
+    wcet: Ns
+    deadline: Ns
+
+
+@dataclass(frozen=True, slots=True)
+class StateRef:
+    """A state of a region of the same component."""
+
+    region: str
+    state: str
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """A named, bounded piece of work: the user's SPARK procedure, or a flow.
+
+    ``reads`` names data, parameters, input ports and regions (their published
+    state), ``writes`` data, ``sends`` output ports (a user body sends each at
+    every execution, a flow where it says so), ``raises`` events. All in model
+    order. With ``while_in`` it is the do activity of that state.
+    """
+
+    name: str
+    origin: Origin
+    timing: Timing
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    sends: tuple[str, ...]
+    raises: tuple[str, ...]
+    while_in: StateRef | None
+    flow: Flow | None
+    """None: the body is the user's."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A state; ``initial`` names the default substate of a composite."""
+
+    name: str
+    origin: Origin
+    parent: str | None
+    initial: str | None
+    entry: Flow
+    exit: Flow
+
+    @property
+    def is_leaf(self) -> bool:
+        """No substates."""
+        return self.initial is None
+
+
+class TransitionKind(Enum):
+    """External leaves its source, internal leaves nothing."""
+
+    EXTERNAL = "external"
+    INTERNAL = "internal"
+
+
+@dataclass(frozen=True, slots=True)
+class OnEvent:
+    """Triggered by an event from the region's queue."""
+
+    event: str
+
+
+@dataclass(frozen=True, slots=True)
+class After:
+    """Triggered this long after the source was entered, in whole executions."""
+
+    delay: Ns
+    executions: int
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """Triggered by a condition, read when no other occurrence waits."""
+
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """One transition; internal ones have their source as target."""
+
+    name: str
+    origin: Origin
+    source: str
+    target: str
+    kind: TransitionKind
+    trigger: OnEvent | After | When
+    guard: Expression | None
+    effect: Flow
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A top-level region. ``states`` stand in tree order: parent first, then its children.
+
+    ``reads`` and ``writes`` are derived from its guards and flows.
+    """
+
+    name: str
+    origin: Origin
+    timing: Timing
+    queue_depth: int
+    overflow: Overflow
+    on_overflow: str | None
+    steps_per_execution: int
+    initial: str
+    safe_state: str | None
+    states: tuple[State, ...]
+    transitions: tuple[Transition, ...]
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    sends: tuple[str, ...]
+    raises: tuple[str, ...]
+
+    def state(self, name: str) -> State:
+        """The state called ``name``; KeyError where there is none."""
+        return named(self.states, name)
+
+    def children(self, name: str | None) -> tuple[State, ...]:
+        """The direct substates of ``name``, or the top states for None."""
+        return tuple(s for s in self.states if s.parent == name)
+
+    def ancestors(self, name: str) -> tuple[str, ...]:
+        """``name`` and its enclosing states, innermost first."""
+        chain: list[str] = []
+        at: str | None = name
+        while at is not None:
+            chain.append(at)
+            at = self.state(at).parent
+        return tuple(chain)
+
+    def leaves(self, name: str | None = None) -> tuple[str, ...]:
+        """The leaf states inside ``name`` (itself, when a leaf), in tree order."""
+        return tuple(
+            s.name
+            for s in self.states
+            if s.is_leaf and (name is None or name in self.ancestors(s.name))
+        )
+
+    def default_leaf(self, name: str) -> str:
+        """The leaf that entering ``name`` by default leads to."""
+        initial = self.state(name).initial
+        return name if initial is None else self.default_leaf(initial)
+
+    def precedence(self) -> tuple[Transition, ...]:
+        """The transitions, innermost source first, then in model order."""
+        return tuple(sorted(self.transitions, key=lambda t: -len(self.ancestors(t.source))))
+
+    def events(self) -> tuple[str, ...]:
+        """The events that the region names in its triggers, each once, in model order."""
+        named = (t.trigger.event for t in self.transitions if isinstance(t.trigger, OnEvent))
+        return tuple(dict.fromkeys(named))
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A component type. ``port_region`` is None exactly when it has no input port."""
+
+    name: str
+    origin: Origin
+    parameters: tuple[Parameter, ...]
+    ports: tuple[Port, ...]
+    events: tuple[Event, ...]
+    data: tuple[Data, ...]
+    port_region: Timing | None
+    regions: tuple[Region, ...]
+    activities: tuple[Activity, ...]
+
+    def inputs(self) -> tuple[Port, ...]:
+        """The input ports, in model order."""
+        return tuple(p for p in self.ports if p.direction is Direction.IN)
+
+    def outputs(self) -> tuple[Port, ...]:
+        """The output ports, in model order."""
+        return tuple(p for p in self.ports if p.direction is Direction.OUT)
+
+    def port(self, name: str) -> Port:
+        """The port called ``name``; KeyError where there is none."""
+        return named(self.ports, name)
+
+    def region(self, name: str) -> Region:
+        """The region called ``name``; KeyError where there is none."""
+        return named(self.regions, name)
+
+    def runnables(self) -> tuple[Region | Activity, ...]:
+        """The regions, then the activities, each in model order."""
+        return (*self.regions, *self.activities)
+
+    def users(self, data: str) -> tuple[str, ...]:
+        """The regions and activities that read or write ``data``, in model order."""
+        return tuple(r.name for r in self.runnables() if data in r.reads or data in r.writes)
+
+
+# --- Deployment --------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A processor core with its platform figures, all worst cases in ns."""
+
+    name: str
+    origin: Origin
+    context_switch: Ns
+    critical_section: Ns
+    """Longest time inside any protected operation of the runtime on this node."""
+    trace_depth: int
+    """Records that the trace holds between two looks at it; 0: no trace."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bus:
+    """A CAN bus and what its driver costs on a node: one frame in, one frame out."""
+
+    name: str
+    origin: Origin
+    bit_rate: int
+    """Nominal, in bit/s."""
+    receive_depth: int
+    transmit_depth: int
+    driver_wcet: Ns
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """One end of a connection: a port of an instance."""
+
+    instance: str
+    port: str
+
+    def __str__(self) -> str:
+        """``instance.port``."""
+        return f"{self.instance}.{self.port}"
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """One component instance on a node, its parameters all set."""
+
+    name: str
+    origin: Origin
+    component: Component
+    node: str
+    parameters: tuple[tuple[str, Scalar], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """An output port wired to an input port of the same node."""
+
+    origin: Origin
+    source: End
+    target: End
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """One scalar in a frame: raw value = value - ``offset``, little-endian bits.
+
+    ``start`` counts bits from the least significant bit of byte 0. Enumerations
+    are coded by position.
+    """
+
+    field: str | None
+    type: ScalarType
+    start: int
+    width: int
+    offset: int
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A CAN message: a port's value on a bus.
+
+    ``source`` None: sent by a party outside the system; ``targets`` empty:
+    received outside. ``period`` is the least time between two instances.
+    """
+
+    name: str
+    origin: Origin
+    bus: str
+    identifier: int
+    extended: bool
+    type: Type
+    signals: tuple[Signal, ...]
+    length: int
+    """Data length in bytes, 1 .. 8."""
+    source: End | None
+    targets: tuple[End, ...]
+    period: Ns
+
+
+class Work(Enum):
+    """What an entry of a processor's table runs."""
+
+    PORT_REGION = "ports"
+    REGION = "region"
+    ACTIVITY = "activity"
+    BUS_RECEIVE = "receive"
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """One row of a processor's table: runs when release mod ``divisor`` = ``phase``."""
+
+    origin: Origin
+    owner: str
+    """Instance, or bus for BUS_RECEIVE."""
+    work: Work
+    name: str
+    """``ports``, ``receive``, or the name of the region or activity."""
+    timing: Timing
+    divisor: int
+    phase: int
+
+    @property
+    def element(self) -> str:
+        """Stable id of the row: ``owner.name``."""
+        return f"{self.owner}.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Processor:
+    """A command processor: one task. Sporadic when ``released_by`` names a bus.
+
+    ``period`` is the minimum separation of a sporadic one. ``priority`` counts
+    upwards from 1, larger is more urgent, unique in the node unless given.
+    """
+
+    name: str
+    origin: Origin
+    node: str
+    period: Ns
+    offset: Ns
+    deadline: Ns
+    priority: int
+    stack_bytes: int
+    released_by: str | None
+    slots: tuple[Slot, ...]
+    on_deadline_miss: tuple[tuple[str, str], ...]
+    """(instance, event) raised when a release completes after its deadline."""
+
+    @property
+    def cycle(self) -> int:
+        """Releases after which the table repeats."""
+        return math.lcm(*(slot.divisor for slot in self.slots))
+
+    @property
+    def wcet(self) -> Ns:
+        """Sum of the table's budgets: no release needs more."""
+        return Ns(sum(slot.timing.wcet for slot in self.slots))
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One schedulable task as the analysis sees it: a processor or a driver's.
+
+    ``budget`` includes two context switches.
+    """
+
+    element: str
+    origin: Origin
+    node: str
+    period: Ns
+    offset: Ns
+    deadline: Ns
+    budget: Ns
+    priority: int
+    jitter: Ns = NO_TIME
+
+
+@dataclass(frozen=True, slots=True)
+class SharedObject:
+    """A protected object: its ceiling is the highest priority among its users."""
+
+    element: str
+    node: str
+    users: tuple[str, ...]
+    """Elements of the tasks that call it."""
+    ceiling: int
+    section: Ns
+    """Longest time inside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shutdown:
+    """On a request to stop: raise these (instance, event), wait, end."""
+
+    raises: tuple[tuple[str, str], ...]
+    grace: Ns
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A whole system, resolved. ``tasks`` and ``objects`` are filled in by `derive`."""
+
+    name: str
+    origin: Origin
+    digest: str
+    """SHA-256 of the model files, in the order read."""
+    types: tuple[Type, ...]
+    components: tuple[Component, ...]
+    nodes: tuple[Node, ...]
+    buses: tuple[Bus, ...]
+    instances: tuple[Instance, ...]
+    connections: tuple[Connection, ...]
+    messages: tuple[Message, ...]
+    processors: tuple[Processor, ...]
+    shutdown: Shutdown
+    tasks: tuple[Task, ...] = ()
+    objects: tuple[SharedObject, ...] = ()
+
+    def instance(self, name: str) -> Instance:
+        """The instance called ``name``; KeyError where there is none."""
+        return named(self.instances, name)
+
+    def processor_of(self, element: str) -> Processor:
+        """The processor whose table holds the row ``owner.name``; KeyError where none does."""
+        for processor in self.processors:
+            if any(slot.element == element for slot in processor.slots):
+                return processor
+        raise KeyError(element)
+
+    def object(self, element: str) -> SharedObject:
+        """The protected object with that id; KeyError where there is none."""
+        for item in self.objects:
+            if item.element == element:
+                return item
+        raise KeyError(element)

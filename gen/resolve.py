@@ -1,0 +1,262 @@
+"""Forms to a `System`: every name resolved, every type known, every place kept.
+
+What is wrong is reported and left out; what was left out keeps its name, so
+that its uses are not reported as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from .components import parts_of
+from .deployment import (
+    Site,
+    bus_of,
+    connection_of,
+    instance_of,
+    message_of,
+    node_of,
+    processor_of,
+    shutdown_of,
+)
+from .model import Connection, Shutdown, System
+from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
+from .schema import ModelFile
+from .terms import BOOLEAN, EnumerationType, Origin, Type
+from .values import types_of
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """A system as far as it is sound, and where it is not.
+
+    ``damaged`` holds ``Component`` for a component that had any error and
+    ``Component.Name`` for a region or activity; ``sound_sections`` the
+    top-level sections in which no element was lost.
+    """
+
+    system: System
+    damaged: frozenset[str]
+    sound_sections: frozenset[str]
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """The sections of all files of a model, in the order read."""
+
+    files: Sequence[ModelFile]
+
+    def entries(self, section: str) -> list[tuple[str, Any]]:
+        """The named elements of a section."""
+        found: list[tuple[str, Any]] = []
+        for file in self.files:
+            found.extend((getattr(file, section) or {}).items())
+        return found
+
+    def dropped(self, section: str) -> list[str]:
+        """The names of the elements that were wrong in form."""
+        return [name for file in self.files for name in file.dropped(section)]
+
+    def is_lost(self, section: str) -> bool:
+        """Whether a whole section was wrong in form somewhere."""
+        return any(file.lost(section) for file in self.files)
+
+    def origin(self, section: str) -> Origin:
+        """Where the section begins first; the beginning of the model without it."""
+        given = [file.at_key(section) for file in self.files if file.has(section)]
+        return given[0] if given else self.files[0].origin
+
+
+def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Findings) -> Resolved:
+    """The system that the files describe, main file first.
+
+    ``whole`` tells that all files could be read.
+    """
+    model = Merged(files)
+    main = files[0]
+    name = main.system
+    if name is None:
+        if not main.lost("system"):
+            message = "the model has no name"
+            hint = "begin with `system: Name_Of_The_System`"
+            findings.error("RV-0801", main.origin, message, hint=hint)
+        name = ""
+    elif name.lower() in PREDEFINED_TYPES:
+        message = f"a system cannot be named `{name}`, like a unit or type of Ada"
+        findings.error("RV-0304", main.at("system"), message, hint="choose another name")
+    for file in files[1:]:
+        if file.system is not None:
+            message = "only the main file names the system"
+            notes = [(main.at("system"), "the system is named here")]
+            findings.error("RV-0803", file.at_key("system"), message, notes=notes)
+    _check_sections(model, whole, findings)
+    _check_units(model, name, findings)
+    return _build(model, name, whole, digest, findings)
+
+
+def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
+    """What no system can do without, and what this version has once."""
+    for section, noun in (
+        ("components", "component"),
+        ("nodes", "node"),
+        ("instances", "instance"),
+        ("processors", "processor"),
+    ):
+        empty = not model.entries(section) and not model.dropped(section)
+        if whole and empty and not model.is_lost(section):
+            hint = f"declare one under `{section}:`"
+            findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
+    for section, noun in (("nodes", "node"), ("buses", "bus")):
+        for _, form in model.entries(section)[1:]:
+            first = model.entries(section)[0][1].origin
+            message = f"a second {noun}: distribution over several {section} is not there yet"
+            hint = f"declare one {noun}; another system may hold the other"
+            notes = [(first, "the first is here")]
+            findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
+    shutdowns = [file for file in model.files if file.shutdown is not None]
+    for file in shutdowns[1:]:
+        message = "`shutdown` is given twice"
+        notes = [(shutdowns[0].at_key("shutdown"), "the first is here")]
+        findings.error("RV-0803", file.at_key("shutdown"), message, notes=notes)
+
+
+def _check_units(model: Merged, system: str, findings: Findings) -> None:
+    """Names that become child units of the system must differ from each other and from others."""
+    taken: dict[str, tuple[str, str, Origin]] = {}
+    for section, kind in (
+        ("components", "component"),
+        ("buses", "bus"),
+        ("instances", "instance"),
+        ("processors", "processor"),
+    ):
+        for name, form in model.entries(section):
+            other = None
+            if name.lower() == system.lower():
+                other = f"the system {system}"
+            elif name.lower() in CHILDREN:
+                other = CHILDREN[name.lower()]
+            elif name.lower() in PREDEFINED_TYPES:
+                other = "a unit or type of Ada"
+            if other is not None:
+                message = f"the {kind} `{name}` is named like {other}"
+                findings.error("RV-0304", form.origin, message, hint="choose another name")
+                continue
+            known = taken.setdefault(name.lower(), (kind, name, form.origin))
+            if known[0] != kind:
+                message = f"the {kind} `{name}` is named like the {known[0]} `{known[1]}`"
+                notes = [(known[2], f"the {known[0]} is here")]
+                hint = "components, buses, instances and processors become units: rename one"
+                findings.error("RV-0304", form.origin, message, notes=notes, hint=hint)
+
+
+@dataclass(slots=True)
+class _Sections:
+    """The sections as they are resolved; ``sound`` names those without an error."""
+
+    model: Merged
+    whole: bool
+    findings: Findings
+    sound: set[str] = field(default_factory=set)
+
+    def named(self, section: str, kind: str, make: Callable[[str, Any], T | None]) -> Scope[T]:
+        """The named elements of a section, each made from its form."""
+        scope = self.scope(section, kind)
+        self.fill(section, scope, make)
+        return scope
+
+    def scope(self, section: str, kind: str) -> Scope[Any]:
+        """The names of what was wrong in form in a section."""
+        scope: Scope[Any] = Scope(kind, open=self.model.is_lost(section) or not self.whole)
+        for gone in self.model.dropped(section):
+            scope.declare(gone, None, None)
+        return scope
+
+    def fill(self, section: str, scope: Scope[T], make: Callable[[str, Any], T | None]) -> None:
+        """Add the elements of a section to its scope."""
+        before = self.findings.count()
+        for name, form in self.model.entries(section):
+            scope.declare(name, form.origin, make(name, form), self.findings)
+        if self.findings.count() == before and not scope.has_lost():
+            self.sound.add(section)
+
+    def connections(self, site: Site) -> tuple[Connection, ...]:
+        """The connections, which have no names."""
+        before, lost = self.findings.count(), False
+        made: list[Connection | None] = []
+        for file in self.model.files:
+            made += [connection_of(form, site) for form in file.connections or ()]
+            lost = lost or file.list_damaged("connections") or file.lost("connections")
+        if self.whole and self.findings.count() == before and None not in made and not lost:
+            self.sound.add("connections")
+        return tuple(item for item in made if item is not None)
+
+    def shutdown(self, site: Site) -> Shutdown:
+        """What a request to stop does."""
+        given = [file.shutdown for file in self.model.files if file.shutdown is not None]
+        lost = any(file.lost("shutdown") for file in self.model.files)
+        if lost or any(form.list_damaged("raises") for form in given):
+            self.sound.discard("processors")
+        return shutdown_of(given[0] if given else None, site)
+
+
+def _build(model: Merged, name: str, whole: bool, digest: str, findings: Findings) -> Resolved:
+    """Section by section, in the order in which they refer to each other."""
+    sections = _Sections(model, whole, findings)
+    type_forms = [(key, form.origin, form) for key, form in model.entries("types")]
+    types = types_of(type_forms, model.dropped("types"), name, findings)
+    types.open = model.is_lost("types") or not whole
+    literals = frozenset(
+        literal.lower()
+        for type_ in types.sound()
+        if isinstance(type_, EnumerationType)
+        for literal in type_.literals
+    )
+    parts = sections.named(
+        "components",
+        "component",
+        lambda key, form: parts_of(key, form, types, literals, name, findings),
+    )
+    nodes = sections.named("nodes", "node", node_of)
+    buses = sections.named("buses", "bus", bus_of)
+    instances = sections.scope("instances", "instance")
+    site = Site(nodes, buses, parts, instances, findings)
+    sections.fill("instances", instances, lambda key, form: instance_of(key, form, site))
+    connections = sections.connections(site)
+    messages = sections.named("messages", "message", lambda key, form: message_of(key, form, site))
+    processors = sections.named(
+        "processors", "processor", lambda key, form: processor_of(key, form, site)
+    )
+    if any(
+        made is None or len(made.slots) < len(form.activities) or form.damaged
+        for made, form in ((processors.find(k), f) for k, f in model.entries("processors"))
+    ):
+        sections.sound.discard("processors")
+    stop = sections.shutdown(site)
+    damaged = {part.component.name for part in parts.sound() if part.is_damaged}
+    for part in parts.sound():
+        damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
+    system = System(
+        name=name,
+        origin=model.files[0].at_key("system"),
+        digest=digest,
+        types=_declared(types),
+        components=tuple(part.component for part in parts.sound()),
+        nodes=nodes.sound(),
+        buses=buses.sound(),
+        instances=instances.sound(),
+        connections=connections,
+        messages=messages.sound(),
+        processors=processors.sound(),
+        shutdown=stop,
+    )
+    return Resolved(system, frozenset(damaged), frozenset(sections.sound))
+
+
+def _declared(types: Scope[Type]) -> tuple[Type, ...]:
+    """The types that the model declares, in model order."""
+    return tuple(type_ for type_ in types.sound() if type_ is not BOOLEAN)

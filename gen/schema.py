@@ -1,0 +1,383 @@
+"""The file format of models: every key, what it means, its units and its range.
+
+The one source for the validation of files, for docs/model.schema.json and for
+docs/model-reference.md. What needs more than one element to be judged is in
+`resolve` and `rules`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Tag
+from pydantic import Field as PydanticField
+
+from .schema_base import (
+    BitRate,
+    Constant,
+    Element,
+    ExpressionText,
+    Name,
+    OwnedReference,
+    PositiveSpan,
+    Reference,
+    Span,
+    StackSize,
+    key,
+    optional,
+    shaped,
+)
+
+# --- Types -----------------------------------------------------------------------
+
+
+class RangeType(Element):
+    """An integer range."""
+
+    range: list[int] = key(
+        "First and last value, both included, within -2^62 .. 2^62 - 1.", min_length=2, max_length=2
+    )
+    unit: str | None = optional("What the values count, for example `um/s`.", max_length=20)
+
+
+class ValuesType(Element):
+    """An enumeration."""
+
+    values: list[Name] = key("The literals, in order; 1 to 256.", min_length=1, max_length=256)
+
+
+class FieldsType(Element):
+    """A record of scalars."""
+
+    fields: dict[Name, Reference] = key(
+        "Field names with their scalar types, in order; 1 to 64.", min_length=1, max_length=64
+    )
+
+
+def _has(*keys: str) -> Any:
+    """The tag of the first of these keys that a mapping has."""
+
+    def tag(value: Any) -> str | None:
+        if isinstance(value, dict):
+            return next((f"<{name}>" for name in keys if name in value), None)
+        return None
+
+    return tag
+
+
+def _one_of(what: str, *keys: str) -> Discriminator:
+    message = f"{what} is a mapping with one of the keys {', '.join(f'`{name}`' for name in keys)}"
+    return Discriminator(
+        _has(*keys),
+        custom_error_type="choice",
+        custom_error_message=message,
+    )
+
+
+TypeForm = Annotated[
+    Annotated[RangeType, Tag("<range>")]
+    | Annotated[ValuesType, Tag("<values>")]
+    | Annotated[FieldsType, Tag("<fields>")],
+    _one_of("a type", "range", "values", "fields"),
+]
+
+
+# --- Flows -----------------------------------------------------------------------
+
+
+class SetForm(Element):
+    """Give a data item, or one field of it, a value."""
+
+    set: str = key("The data item `item`, or a field of it: `item.field`.")
+    to: ExpressionText = key("Expression that provably fits the target's range.")
+
+
+class SendForm(Element):
+    """Send one value on an output port."""
+
+    send: Reference = key("The output port.")
+    with_: Annotated[
+        Annotated[ExpressionText, Tag("<one>")]
+        | Annotated[dict[str, ExpressionText], Tag("<map>")],
+        shaped("an expression, or a mapping from fields to expressions"),
+    ] = key(
+        "Expression for a scalar port; for a record one expression for each field.", alias="with"
+    )
+
+
+class RaiseForm(Element):
+    """Raise an event of the component."""
+
+    raise_: Reference = key("The event.", alias="raise")
+
+
+class IfForm(Element):
+    """Do one flow or another."""
+
+    if_: ExpressionText = key("Boolean expression.", alias="if")
+    then: list[ActionForm] = key("Actions when it is true.")
+    else_: list[ActionForm] | None = optional("Actions when it is false.", alias="else")
+
+
+ActionForm = Annotated[
+    Annotated[SetForm, Tag("<set>")]
+    | Annotated[SendForm, Tag("<send>")]
+    | Annotated[RaiseForm, Tag("<raise>")]
+    | Annotated[IfForm, Tag("<if>")],
+    _one_of("an action", "set", "send", "raise", "if"),
+]
+
+
+# --- Components ------------------------------------------------------------------
+
+
+class ParameterForm(Element):
+    """A constant that each instance may set."""
+
+    type: Reference = key("A scalar type.")
+    default: Constant | None = optional("Value for instances that set none; without it all must.")
+
+
+class InputForm(Element):
+    """An input port."""
+
+    in_: Reference = key("The type of what arrives.", alias="in")
+    kind: Literal["sampled", "queued"] = PydanticField(
+        default="sampled",
+        description="`sampled` keeps the last value, `queued` the last `depth` ones.",
+    )
+    depth: int | None = optional(
+        "Values that wait at most, 1 to 1024; `queued` needs it.", ge=1, le=1024
+    )
+    overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
+        "What a full queue loses; only for `queued`; `reject_newest` unless given."
+    )
+    max_age: PositiveSpan | None = optional("A value older than this is stale.")
+    on_arrival: Reference | None = optional("Event raised when a value arrives.")
+    on_stale: Reference | None = optional("Event raised when the value becomes stale.")
+    on_overflow: Reference | None = optional("Event raised when values were lost; only `queued`.")
+
+
+class OutputForm(Element):
+    """An output port."""
+
+    out: Reference = key("The type of what is sent.")
+
+
+PortForm = Annotated[
+    Annotated[InputForm, Tag("<in>")] | Annotated[OutputForm, Tag("<out>")],
+    _one_of("a port", "in", "out"),
+]
+
+
+class PortRegionForm(Element):
+    """When the handlers of the input ports run."""
+
+    period: PositiveSpan = key("Period of the handlers.")
+    wcet: PositiveSpan = key("Worst-case execution time of all handlers together.")
+    deadline: PositiveSpan | None = optional("Relative deadline; the period unless given.")
+
+
+class DataForm(Element):
+    """A data item: one writer, any number of readers."""
+
+    type: Reference = key("Any type.")
+    initial: Annotated[
+        Annotated[Constant, Tag("<one>")] | Annotated[dict[str, Constant], Tag("<map>")],
+        shaped("a value, or a mapping from fields to values"),
+    ] = key("Initial value; for a record a value for each field.")
+
+
+class StateForm(Element):
+    """A state; with `states` it is composite."""
+
+    entry: list[ActionForm] | None = optional("Actions on entry.")
+    exit: list[ActionForm] | None = optional("Actions on exit.")
+    initial: Reference | None = optional("State inside it entered by default; composites need it.")
+    states: dict[Name, StateForm] | None = optional("Substates.", min_length=1)
+
+
+class TransitionForm(Element):
+    """A transition, with exactly one of `on`, `after` and `when`."""
+
+    from_: Reference = key("Source state.", alias="from")
+    to: Reference | None = optional("Target state; without it the transition is internal.")
+    on: Reference | None = optional("Trigger: this event from the region's queue.")
+    after: PositiveSpan | None = optional(
+        "Trigger: this long after the source was entered, in whole executions, rounded up."
+    )
+    when: ExpressionText | None = optional("Trigger: a condition, read when nothing else waits.")
+    guard: ExpressionText | None = optional("Condition without which the transition is disabled.")
+    effect: list[ActionForm] | None = optional("Actions between exits and entries.")
+    internal: bool | None = optional("`true`: no state is left; `to` may then be left out.")
+
+
+class RegionForm(Element):
+    """A top-level region: one state machine."""
+
+    period: PositiveSpan = key("Period of the region's executions.")
+    wcet: PositiveSpan = key("Worst-case execution time of one execution.")
+    deadline: PositiveSpan | None = optional("Relative deadline; the period unless given.")
+    queue: int | None = optional(
+        "Events that wait at most, 1 to 1024; needed when a transition has `on`.", ge=1, le=1024
+    )
+    overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
+        "What a full queue loses; `reject_newest` unless given."
+    )
+    on_overflow: Reference | None = optional("Event raised when the queue lost one.")
+    steps: int = PydanticField(
+        default=1, ge=1, le=16, description="Steps in one execution at most, 1 to 16."
+    )
+    initial: Reference = key("State entered first; any state of the region.")
+    safe_state: Reference | None = optional("State that must be reachable from every other.")
+    states: dict[Name, StateForm] = key("The top states.", min_length=1)
+    transitions: dict[Name, TransitionForm] | None = optional(
+        "Transitions by name; the earlier goes before the later."
+    )
+
+
+class ActivityForm(Element):
+    """A named, bounded piece of work."""
+
+    period: PositiveSpan = key("Period of its executions.")
+    wcet: PositiveSpan = key("Worst-case execution time of one execution.")
+    deadline: PositiveSpan | None = optional("Relative deadline; the period unless given.")
+    while_: OwnedReference | None = optional(
+        "`Region.State`: it works only while that state is active.", alias="while"
+    )
+    reads: list[Reference] | None = optional("Data, parameters, input ports and regions it reads.")
+    writes: list[Reference] | None = optional("Data items it writes.")
+    sends: list[Reference] | None = optional("Output ports it sends on.")
+    raises: list[Reference] | None = optional("Events it raises.")
+    body: Annotated[
+        Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],
+        shaped("`user` or a list of actions"),
+    ] = key(
+        "`user` for a procedure written by hand, or a list of actions; the four lists above may "
+        "then be left out."
+    )
+
+
+class ComponentForm(Element):
+    """A component: what its instances have in common."""
+
+    parameters: dict[Name, ParameterForm] | None = optional("Constants that instances set.")
+    ports: dict[Name, PortForm] | None = optional("Input and output ports.")
+    port_region: PortRegionForm | None = optional(
+        "When input ports are handled; required with an input port, refused without."
+    )
+    events: list[Name] | None = optional("Events, each offered to every region that names it.")
+    data: dict[Name, DataForm] | None = optional("Data items.")
+    regions: dict[Name, RegionForm] | None = optional("State machines, run side by side.")
+    activities: dict[Name, ActivityForm] | None = optional("Activities.")
+
+
+# --- Deployment ------------------------------------------------------------------
+
+
+class NodeForm(Element):
+    """A processor core and its platform figures, all of them worst cases."""
+
+    context_switch: Span = key("Time of one context switch.")
+    critical_section: Span = key("Longest time inside any protected operation.")
+    trace: int = PydanticField(
+        default=0, ge=0, le=1_048_576, description="Records the trace holds, 0 to 1048576; 0: none."
+    )
+
+
+class BusForm(Element):
+    """A CAN bus."""
+
+    bit_rate: BitRate = key("Nominal bit rate, 10 kbit/s to 1 Mbit/s.")
+    driver_wcet: PositiveSpan = key("Worst-case time of the driver for one frame in or out.")
+    receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
+    transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
+
+
+class InstanceForm(Element):
+    """An instance of a component on a node."""
+
+    component: Reference = key("The component.")
+    node: Reference = key("The node it runs on.")
+    parameters: dict[str, Constant] | None = optional("Values of the component's parameters.")
+
+
+class ConnectionForm(Element):
+    """An output port wired to an input port of the same node."""
+
+    from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
+    to: OwnedReference = key("`instance.port`, an input port.")
+
+
+class MessageForm(Element):
+    """A port's value on a CAN bus."""
+
+    bus: Reference = key("The bus.")
+    id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
+    extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
+    from_: OwnedReference | None = optional(
+        "`instance.port` that sends; without it the sender is outside the system.", alias="from"
+    )
+    to: (
+        Annotated[
+            Annotated[OwnedReference, Tag("<one>")]
+            | Annotated[list[OwnedReference], Tag("<list>")],
+            shaped("`instance.port`, or a list of these"),
+        ]
+        | None
+    ) = optional("`instance.port` that receives, or a list; without it all receivers are outside.")
+    period: PositiveSpan | None = optional(
+        "Least time between two frames; only for messages from outside, the others have the period "
+        "of what sends them."
+    )
+
+
+class ProcessorForm(Element):
+    """A processor: one task with a fixed table of activities."""
+
+    node: Reference = key("The node it runs on.")
+    released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
+    period: PositiveSpan | None = optional(
+        "Shortest period in the table unless given; the least separation of a sporadic processor, "
+        "which needs it."
+    )
+    offset: Span = PydanticField(default=0, description="Time of the first release after start.")
+    deadline: PositiveSpan | None = optional("Relative deadline; the shortest of its table if none")
+    priority: int | None = optional(
+        "1 to 30, larger is more urgent; deadline-monotonic unless given.", ge=1, le=30
+    )
+    stack: StackSize = key("Stack of the task, 1 KiB to 64 MiB.")
+    activities: list[OwnedReference] = key(
+        "The table, in order: `instance.activity`, `instance.Region`, `instance.ports`, "
+        "`bus.receive`.",
+        min_length=1,
+        max_length=1024,
+    )
+    on_deadline_miss: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when a release completes after the deadline."
+    )
+
+
+class ShutdownForm(Element):
+    """What a request to stop does."""
+
+    raises: list[OwnedReference] = key("`instance.Event`s raised.")
+    grace: Span = key("Time between these events and the end.")
+
+
+class ModelFile(Element):
+    """A model file. Every section may stand in any file, `system` in one only."""
+
+    system: Name | None = optional("Name of the system; in the main file, and only there.")
+    include: list[str] | None = optional(
+        "Files whose sections belong to the model, relative to this file."
+    )
+    types: dict[Name, TypeForm] | None = optional("Types of data, ports and parameters.")
+    components: dict[Name, ComponentForm] | None = optional("Components.")
+    nodes: dict[Name, NodeForm] | None = optional("Nodes; exactly one in this version.")
+    buses: dict[Name, BusForm] | None = optional("CAN buses; at most one in this version.")
+    instances: dict[Name, InstanceForm] | None = optional("Instances of components.")
+    connections: list[ConnectionForm] | None = optional("Connections inside a node.")
+    messages: dict[Name, MessageForm] | None = optional("Messages on buses.")
+    processors: dict[Name, ProcessorForm] | None = optional("Processors: the tasks.")
+    shutdown: ShutdownForm | None = optional("What a request to stop does; nothing unless given.")

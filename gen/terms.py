@@ -1,0 +1,212 @@
+"""Types, expressions and flows: the terms that a model is written in.
+
+Every element carries the `Origin` it was read from. Expressions are resolved
+and typed: their names are known, their integer bounds computed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NewType, Protocol, TypeVar
+
+Ns = NewType("Ns", int)
+"""A duration in nanoseconds."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Origin:
+    """Where an element stands in the model: file as given, 1-based line and column."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        """``file:line:column``, as editors read it."""
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class Named(Protocol):
+    """Anything with a name."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+
+N = TypeVar("N", bound=Named)
+
+
+def named(items: tuple[N, ...], name: str) -> N:
+    """The item called ``name``, without regard to case; KeyError where there is none."""
+    for item in items:
+        if item.name.lower() == name.lower():
+            return item
+    raise KeyError(name)
+
+
+# --- Types -------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class IntegerType:
+    """An integer range ``first .. last``, both included, counted in ``unit``."""
+
+    name: str
+    origin: Origin
+    first: int
+    last: int
+    unit: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class EnumerationType:
+    """An enumeration; ``Boolean`` is the one that every system has."""
+
+    name: str
+    origin: Origin
+    literals: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One scalar field of a record."""
+
+    name: str
+    origin: Origin
+    type: IntegerType | EnumerationType
+
+
+@dataclass(frozen=True, slots=True)
+class RecordType:
+    """A flat record: the type of what ports carry and blackboards hold."""
+
+    name: str
+    origin: Origin
+    fields: tuple[Field, ...]
+
+    def field(self, name: str) -> Field:
+        """The field called ``name`` (any case); KeyError where there is none."""
+        return named(self.fields, name)
+
+
+ScalarType = IntegerType | EnumerationType
+Type = IntegerType | EnumerationType | RecordType
+
+BUILT_IN = Origin("<built in>", 1, 1)
+BOOLEAN = EnumerationType("Boolean", BUILT_IN, ("False", "True"))
+Scalar = int | str
+"""A scalar value: an integer, or the name of a literal as declared."""
+Value = Scalar | tuple[tuple[str, Scalar], ...]
+"""A value of any type; a record's is (field, value) in the type's field order."""
+
+
+# --- Expressions and flows ---------------------------------------------------
+
+
+class Reading(Enum):
+    """What a name in an expression denotes."""
+
+    DATA = "data"
+    PARAMETER = "parameter"
+    PORT = "port"
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A number or an enumeration literal; ``type`` is None for a bare number."""
+
+    value: Scalar
+    type: ScalarType | None
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A data item, parameter or input port of the component, or a field of one."""
+
+    kind: Reading
+    name: str
+    field: str | None
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
+class PortTest:
+    """``fresh(port)``, ``stale(port)`` or ``never_received(port)``."""
+
+    port: str
+    state: str
+
+
+@dataclass(frozen=True, slots=True)
+class InState:
+    """``in(Region.State)``: what the region last published is that state or inside it."""
+
+    region: str
+    state: str
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """An operator or function applied to its operands.
+
+    ``operator`` is one of ``and or not = /= < <= > >= + - * / neg abs min max
+    clamp if``; ``and`` and ``or`` stop early, ``/`` rounds towards zero, ``if``
+    has condition, then, else. For an integer, ``low .. high`` bounds
+    the value and ``unit`` is what it counts.
+    """
+
+    operator: str
+    operands: tuple[Expression, ...]
+    type: ScalarType | None
+    """None for an integer: it then has a unit and bounds instead."""
+    unit: str | None = None
+    low: int = 0
+    high: int = 0
+
+
+Expression = Literal | Name | PortTest | InState | Operation
+
+
+@dataclass(frozen=True, slots=True)
+class Set:
+    """``set: data[.field]`` ``to: expression``; the expression fits the target's range."""
+
+    origin: Origin
+    data: str
+    field: str | None
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Send:
+    """``send: port``: one value on an output port; every field is given."""
+
+    origin: Origin
+    port: str
+    values: tuple[tuple[str | None, Expression], ...]
+    """(field, expression) in the type's field order; field None for a scalar port."""
+
+
+@dataclass(frozen=True, slots=True)
+class Raise:
+    """``raise: event``: offered to every region of the component that names it."""
+
+    origin: Origin
+    event: str
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """``if: condition`` ``then: [...]`` ``else: [...]``."""
+
+    origin: Origin
+    condition: Expression
+    then: tuple[Action, ...]
+    otherwise: tuple[Action, ...]
+
+
+Action = Set | Send | Raise | If
+Flow = tuple[Action, ...]

@@ -1,0 +1,80 @@
+"""Element ids: numbers in the generated program, names and places in trace.json.
+
+The numbers follow model order; the rows of a processor follow its own number
+directly, so that row k of the table is the processor's number + 1 + k.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+from .model import System
+from .terms import Origin
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One traced element; ``states`` and ``transitions`` are a region's, in order of number."""
+
+    number: int
+    element: str
+    kind: str
+    origin: Origin
+    leaves: tuple[str, ...] = ()
+    transitions: tuple[str, ...] = ()
+
+
+def elements(system: System) -> tuple[Element, ...]:
+    """Every traced element of the system, numbered from 1."""
+    found: list[Element] = []
+
+    def add(element: str, kind: str, origin: Origin, **more: tuple[str, ...]) -> None:
+        found.append(Element(len(found) + 1, element, kind, origin, **more))
+
+    for processor in system.processors:
+        add(processor.name, "processor", processor.origin)
+        for slot in processor.slots:
+            add(slot.element, "row", slot.origin)
+    for instance in system.instances:
+        component = instance.component
+        for port in component.ports:
+            add(f"{instance.name}.{port.name}", "port", port.origin)
+        for event in component.events:
+            add(f"{instance.name}.{event.name}", "event", event.origin)
+        for region in component.regions:
+            add(
+                f"{instance.name}.{region.name}",
+                "region",
+                region.origin,
+                leaves=region.leaves(),
+                transitions=tuple(t.name for t in region.precedence()),
+            )
+    for message in system.messages:
+        add(message.name, "message", message.origin)
+    return tuple(found)
+
+
+def number_of(system: System, element: str, kind: str) -> int:
+    """The number of one element; KeyError where it is not traced."""
+    for item in elements(system):
+        if item.element == element and item.kind == kind:
+            return item.number
+    raise KeyError(f"{kind} {element}")
+
+
+def trace_json(system: System) -> str:
+    """The map from numbers to names and model lines, and the digest of the model."""
+    rows = []
+    for item in elements(system):
+        row: dict[str, object] = {
+            "id": item.number,
+            "element": item.element,
+            "kind": item.kind,
+            "origin": str(item.origin),
+        }
+        if item.kind == "region":
+            row |= {"leaves": item.leaves, "transitions": item.transitions}
+        rows.append(row)
+    document = {"system": system.name, "digest": system.digest, "elements": rows}
+    return json.dumps(document, indent=1, ensure_ascii=True) + "\n"
