@@ -1,0 +1,1 @@
+"""Timing analysis of a `System`: response times, bus load, and the report."""

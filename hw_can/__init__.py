@@ -1,0 +1,1 @@
+"""CAN: the Ada layers below, and the Python bench in `hw_can.bench`."""

@@ -1,0 +1,178 @@
+"""The bench on the bus: a python-can peer that speaks the generated DBC.
+
+All values are raw integers of the model, or names of enumeration values; what the
+DBC's offsets do to the bits is the codec's business.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+
+import can
+import cantools
+from cantools.database import Database
+from cantools.database.errors import Error as CodecFault
+
+Value = int | str
+Values = dict[str, Value]
+
+
+class BenchError(Exception):
+    """The bench cannot go on: the bus is gone, or a message does not fit the DBC."""
+
+
+class Codec:
+    """Messages by name, from and to CAN frames."""
+
+    def __init__(self, database: Database) -> None:
+        """The messages of ``database``."""
+        self._database = database
+        self._names = {(m.frame_id, m.is_extended_frame): m.name for m in database.messages}
+
+    @staticmethod
+    def from_file(path: Path) -> Codec:
+        """The codec of a DBC file; BenchError when it cannot be read."""
+        try:
+            database = cantools.database.load_file(path, database_format="dbc")
+        except (OSError, ValueError, CodecFault) as fault:
+            raise BenchError(f"{path.name} cannot be read: {fault}") from None
+        assert isinstance(database, Database)
+        return Codec(database)
+
+    def fields(self, name: str) -> tuple[str, ...]:
+        """The fields of a message; BenchError when the DBC has none of that name."""
+        return tuple(s.name for s in self._message(name).signals)
+
+    def encode(self, name: str, values: Mapping[str, Value]) -> can.Message:
+        """The frame; BenchError when a field is missing, unknown or out of range."""
+        message = self._message(name)
+        unknown = sorted(set(values) - {s.name for s in message.signals})
+        if unknown:
+            raise BenchError(f"{name} has no field {unknown[0]}")
+        try:
+            data = message.encode(dict(values), strict=True)
+        except (CodecFault, KeyError, ValueError) as fault:
+            raise BenchError(f"{name} cannot be sent: {fault}") from None
+        return can.Message(
+            arbitration_id=message.frame_id,
+            is_extended_id=message.is_extended_frame,
+            data=data,
+        )
+
+    def decode(self, frame: can.Message) -> tuple[str, Values] | None:
+        """Name and values of a frame; None for an unknown identifier; BenchError for bad data."""
+        name = self._names.get((frame.arbitration_id, frame.is_extended_id))
+        if name is None or frame.is_remote_frame or frame.is_error_frame:
+            return None
+        message = self._message(name)
+        try:
+            decoded = message.decode(bytes(frame.data), decode_choices=True)
+        except (CodecFault, ValueError) as fault:
+            raise BenchError(f"{name} cannot be decoded: {fault}") from None
+        assert isinstance(decoded, dict)
+        return name, {field: _plain(value) for field, value in decoded.items()}
+
+    def _message(self, name: str) -> cantools.database.Message:
+        try:
+            return self._database.get_message_by_name(name)
+        except KeyError:
+            raise BenchError(f"the DBC has no message {name}") from None
+
+
+class Peer:
+    """One end of the bus, with counts of what went over it by message."""
+
+    def __init__(self, bus: can.BusABC, codec: Codec, link: socket.socket | None = None) -> None:
+        """Speak on ``bus``, which is closed together with the peer; ``link`` is its socket."""
+        self.codec = codec
+        self.sent: Counter[str] = Counter()
+        self.received: Counter[str] = Counter()
+        self.unknown = 0
+        """Frames whose identifier the DBC does not know."""
+        self._bus = bus
+        self._link = link
+        self._open = True
+        self._closed = False
+
+    @staticmethod
+    def connect(port: int, codec: Codec) -> Peer:
+        """A peer at the slcan server on this machine's TCP ``port``."""
+        try:
+            bus = can.Bus(
+                interface="slcan", channel=f"socket://127.0.0.1:{port}", sleep_after_open=0
+            )
+        except (can.CanError, OSError) as fault:
+            raise BenchError(f"no slcan server on port {port}: {fault}") from None
+        link = socket.socket(fileno=os.dup(bus.fileno()))
+        link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return Peer(bus, codec, link)
+
+    @property
+    def is_open(self) -> bool:
+        """Neither dropped nor closed."""
+        return self._open
+
+    def send(self, name: str, values: Mapping[str, Value]) -> None:
+        """Send one message now."""
+        frame = self.codec.encode(name, values)
+        try:
+            self._bus.send(frame)
+        except (can.CanError, OSError) as fault:
+            raise BenchError(f"the controller left the bus: {fault}") from None
+        self.sent[name] += 1
+
+    def receive_until(self, deadline: float, take: Callable[[str, Values], None]) -> None:
+        """Hand over what arrives until ``deadline``, a time of `time.monotonic`."""
+        while self._open:
+            frame = self._next(deadline)
+            if frame is None:
+                return
+            decoded = self.codec.decode(frame)
+            if decoded is None:
+                self.unknown += 1
+            else:
+                self.received[decoded[0]] += 1
+                take(*decoded)
+
+    def drop(self) -> None:
+        """Cut the connection without a word, as when a cable breaks."""
+        self._open = False
+        if self._link is not None:
+            with suppress(OSError):
+                self._link.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """Leave the bus in order, which takes a moment; a second call does nothing."""
+        self._open = False
+        if not self._closed:
+            self._closed = True
+            with suppress(can.CanError, OSError):
+                self._bus.shutdown()
+            if self._link is not None:
+                self._link.close()
+
+    def _next(self, deadline: float) -> can.Message | None:
+        """The next frame, waiting without load; None at the deadline."""
+        try:
+            while (rest := deadline - time.monotonic()) > 0:
+                if select.select([self._bus.fileno()], [], [], rest)[0]:
+                    frame = self._bus.recv(timeout=0)
+                    if frame is not None:
+                        return frame
+            return None
+        except (can.CanError, OSError) as fault:
+            raise BenchError(f"the controller left the bus: {fault}") from None
+        except (ValueError, IndexError) as fault:
+            raise BenchError(f"the controller sent a malformed slcan line: {fault}") from None
+
+
+def _plain(value: object) -> Value:
+    """A decoded value without cantools' types."""
+    return int(value) if isinstance(value, int | float) else str(value)

@@ -1,0 +1,249 @@
+"""Runs a scenario against a controller and says, step by step, how it went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+
+from .drives import Bench, Track, press
+from .peer import BenchError, Peer, Values
+from .plant import UM
+from .scenario import (
+    Expect,
+    ExpectStop,
+    KillBench,
+    Pull,
+    Release,
+    Scenario,
+    Send,
+    Step,
+    StopFeedback,
+    Wait,
+    WaitFor,
+)
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class StepResult:
+    """How one step went; times in s from the bench's start."""
+
+    text: str
+    line: int
+    passed: bool
+    outcome: str
+    began: float
+    ended: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sending:
+    """A message that a step sent."""
+
+    at: float
+    message: str
+    values: Mapping[str, int | str]
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioResult:
+    """What the bench saw, up to and with the first step that failed.
+
+    ``tracks`` by drive; ``zeros`` are the true positions in um where the axes left
+    their low switches; ``started`` is a time of `time.monotonic`.
+    """
+
+    title: str
+    started: float
+    steps: tuple[StepResult, ...]
+    not_run: int
+    tracks: Mapping[str, Track]
+    zeros: Mapping[str, float | None]
+    sendings: tuple[Sending, ...]
+    sent: Mapping[str, int]
+    received: Mapping[str, int]
+    unknown_frames: int
+    skipped_ticks: int
+
+    @property
+    def passed(self) -> bool:
+        """Every step was run and passed."""
+        return self.not_run == 0 and all(step.passed for step in self.steps)
+
+
+class _OutOfTimeError(Exception):
+    """The time allowed for the whole scenario is over."""
+
+
+def run_scenario(
+    scenario: Scenario,
+    peer: Peer,
+    *,
+    limit: float | None = None,
+    progress: Progress = lambda text: None,
+    ended: Callable[[], bool] = lambda: True,
+) -> ScenarioResult:
+    """Run ``scenario`` over ``peer``, for at most ``limit`` seconds, and close the peer.
+
+    ``progress`` is told each step before it is run. After the last one the drives
+    go on until ``ended`` says so: it is asked after every tick, and may end the
+    controller. Raises BenchError only when a message does not fit the DBC.
+    """
+    try:
+        for step in scenario.steps:
+            _check(step, peer)
+        bench = Bench(peer, scenario.drives)
+        runner = _Runner(bench, limit)
+        results: list[StepResult] = []
+        for step, line in zip(scenario.steps, scenario.lines, strict=True):
+            progress(str(step))
+            began = bench.now
+            try:
+                passed, outcome = runner.do(step)
+            except BenchError as fault:
+                passed, outcome = False, str(fault)
+            except _OutOfTimeError:
+                passed, outcome = False, f"the run's {limit:g} s were over"
+            results.append(StepResult(str(step), line, passed, outcome, began, bench.now))
+            if not passed:
+                break
+        with suppress(BenchError):
+            while not ended():
+                bench.tick()
+    finally:
+        peer.close()
+    return ScenarioResult(
+        title=scenario.title,
+        started=bench.start,
+        steps=tuple(results),
+        not_run=len(scenario.steps) - len(results),
+        tracks={name: s.track for name, s in bench.stations.items()},
+        zeros={name: None if s.zero is None else s.zero * UM for name, s in bench.stations.items()},
+        sendings=tuple(runner.sendings),
+        sent=dict(peer.sent),
+        received=dict(peer.received),
+        unknown_frames=peer.unknown,
+        skipped_ticks=bench.skipped,
+    )
+
+
+def _check(step: Step, peer: Peer) -> None:
+    """BenchError when a step's message does not fit the DBC."""
+    match step:
+        case Send():
+            peer.codec.encode(step.send, step.fields)
+        case WaitFor():
+            message, field = step.wait_for.split(".")
+            if field not in peer.codec.fields(message):
+                raise BenchError(f"{message} has no field {field}")
+
+
+class _Runner:
+    """Carries out the steps of one scenario on one bench."""
+
+    def __init__(self, bench: Bench, limit: float | None) -> None:
+        self.sendings: list[Sending] = []
+        self._bench = bench
+        self._limit = limit
+
+    def do(self, step: Step) -> tuple[bool, str]:
+        """Whether the step passed, and what came out."""
+        match step:
+            case Send():
+                return self._send(step)
+            case WaitFor():
+                return self._wait_for(step)
+            case Expect():
+                return self._until(lambda: self._in_place(step), step.within)
+            case ExpectStop():
+                return self._stop(step)
+            case Wait():
+                self._pass(step.wait)
+                return True, "done"
+            case Pull():
+                press(self._bench.stations[step.pull], step.switch)
+                return True, "done"
+            case Release():
+                press(self._bench.stations[step.release], "none")
+                return True, "done"
+            case StopFeedback():
+                for name, station in self._bench.stations.items():
+                    station.silent |= step.stop_feedback in ("all", name)
+                return True, "done"
+            case KillBench():
+                self._bench.peer.drop()
+                return True, "done"
+
+    def _send(self, step: Send) -> tuple[bool, str]:
+        if not self._bench.peer.is_open:
+            return False, "the bench has left the bus"
+        self.sendings.append(Sending(self._bench.now, step.send, dict(step.fields)))
+        self._bench.peer.send(step.send, step.fields)
+        self._bench.order(step.send, step.fields)
+        return True, "sent"
+
+    def _wait_for(self, step: WaitFor) -> tuple[bool, str]:
+        """Only messages that arrive from now on count."""
+        message, field = step.wait_for.split(".")
+        found: list[int | str] = []
+
+        def look(name: str, values: Values) -> None:
+            if name == message:
+                found.append(values[field])
+
+        began = self._bench.now
+        self._bench.on_message = look
+        try:
+            while step.value not in found:
+                if self._bench.now - began > step.within:
+                    last = f"last {found[-1]}" if found else f"no {message} arrived"
+                    return False, f"not within {step.within:g} s: {last}"
+                self._tick()
+        finally:
+            self._bench.on_message = lambda name, values: None
+        return True, f"after {self._bench.now - began:.3f} s of {step.within:g} s"
+
+    def _in_place(self, step: Expect) -> tuple[bool, str]:
+        passed, found = True, []
+        for name, wanted in step.expect.items():
+            station = self._bench.stations[name]
+            if station.zero is None:
+                return False, f"{name} never left its low switch: it has no zero"
+            error = station.drive.position - station.zero - wanted
+            passed &= abs(error) <= step.tolerance
+            found.append(f"{name} {error * UM:+.0f}")
+        return passed, f"{', '.join(found)} um off, {step.tolerance * UM:g} allowed"
+
+    def _stop(self, step: ExpectStop) -> tuple[bool, str]:
+        """Passes when the axis was slow in the last look, and tells since when."""
+        drive = self._bench.stations[step.expect_stop].drive
+        began, slow_since = self._bench.now, None
+        while self._bench.now - began < step.within:
+            self._tick()
+            if abs(drive.speed) >= step.below:
+                slow_since = None
+            elif slow_since is None:
+                slow_since = self._bench.now
+        if slow_since is None:
+            return False, f"still {drive.speed * 1e3:.1f} mm/s after {step.within:g} s"
+        return True, f"after {slow_since - began:.3f} s"
+
+    def _until(self, look: Callable[[], tuple[bool, str]], within: float) -> tuple[bool, str]:
+        began = self._bench.now
+        while True:
+            passed, outcome = look()
+            if passed or self._bench.now - began >= within:
+                return passed, outcome
+            self._tick()
+
+    def _pass(self, seconds: float) -> None:
+        began = self._bench.now
+        while self._bench.now - began < seconds:
+            self._tick()
+
+    def _tick(self) -> None:
+        if self._limit is not None and self._bench.now > self._limit:
+            raise _OutOfTimeError
+        self._bench.tick()

@@ -1,0 +1,411 @@
+--  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
+--  which stands for the rest of the bus.
+--
+--  Guarantees   only whole, well-formed lines go to the client; a client that
+--               stops reading delays the writer alone
+--  Tasking      a reader, which waits for clients and their lines, and a
+--               writer, which waits for the transmit queue
+--  Timing       that of the client and of TCP: nothing here is real-time
+--  Assumptions  ASM-005, the socket calls do what their spec says
+--
+--  Commands get no answer except the two queries, as the clients in use
+--  expect none. There is no bus error in slcan: the state is Error_Active
+--  while a client has the channel open, and Stopped otherwise.
+
+with Ada.Real_Time;
+with Ravenchart.Queues;
+with Ravenchart.Can.Slcan;
+with Ravenchart.Can.Slcan_Sockets;
+
+package body Ravenchart.Can.Controllers
+  with
+    SPARK_Mode,
+    Refined_State =>
+      (State => (Transmit.State, Receive.State, Link, Reader, Writer))
+is
+   use type Ada.Real_Time.Time;
+   use type Queueing.Put_Status;
+   use type Slcan.Outcome;
+   use type Slcan_Sockets.Socket;
+
+   type Line_Kind is (Frame_Line, Version_Answer, Serial_Answer);
+   --  What the writer can be asked to write.
+
+   type Outgoing is record
+      Kind : Line_Kind := Frame_Line;
+      F    : Frame := Null_Frame;
+   end record;
+   --  Answers go the way of the frames, so that one task alone writes.
+
+   package Transmit is new Queues
+     (Element_Type => Outgoing,
+      Null_Element => (others => <>),
+      Capacity     => Transmit_Depth,
+      Ceiling      => Transmit_Ceiling,
+      Policy       => Queueing.Reject_Newest);
+
+   package Receive is new Queues
+     (Element_Type => Frame,
+      Null_Element => Null_Frame,
+      Capacity     => Receive_Depth,
+      Ceiling      => Receive_Ceiling,
+      Policy       => Queueing.Reject_Newest);
+
+   type Channel_State is (Closed, Open);
+   --  Whether the client wants frames.
+
+   protected Link
+     with Priority => Transmit_Ceiling
+   is
+      procedure Attach (New_Client : Slcan_Sockets.Socket);
+      --  A client has come; its channel is closed at first.
+
+      procedure Set_Channel (To : Channel_State);
+      --  The client has opened or closed its channel.
+
+      procedure Detach;
+      --  The client has gone: no further line is begun.
+
+      entry Wait_Idle;
+      --  Suspend the reader until the writer has let go of the client.
+
+      procedure Begin_Line
+        (Kind : Line_Kind; To : out Slcan_Sockets.Socket);
+      --  The client that a line may go to, or No_Socket.
+
+      procedure End_Line (Kind : Line_Kind; Done : Boolean);
+      --  The line was written, or not.
+
+      procedure Count_Received;
+      --  A frame was accepted.
+
+      procedure Count_Rejected;
+      --  A line was not understood, or came while the channel was closed.
+
+      function State_Now return Controller_State;
+
+      function All_Counts return Counters;
+
+   private
+      Client  : Slcan_Sockets.Socket := Slcan_Sockets.No_Socket;
+      Channel : Channel_State := Closed;
+      Idle    : Boolean := True;
+      --  False while the writer uses the client's socket.
+      Counts  : Counters;
+   end Link;
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Reader
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Serves one client after another.
+
+   task Writer
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Writes what is in the transmit queue.
+
+   procedure Put_Answer (Kind : Line_Kind)
+   with Global => (In_Out => Transmit.State);
+   --  Queue an answer; when there is no room the client gets none.
+
+   procedure Obey (Result : Slcan.Outcome; F : Frame)
+   with Global => (In_Out => (Link, Transmit.State, Receive.State));
+   --  Do what a line of the client says.
+
+   procedure Serve (Client : Slcan_Sockets.Socket)
+   with
+     Global =>
+       (In_Out => (Link, Transmit.State, Receive.State,
+                   Slcan_Sockets.Network));
+   --  Take the client's lines until it goes.
+
+   procedure Format
+     (Item : Outgoing;
+      Line : out Slcan.Line_Bytes;
+      Last : out Slcan.Line_Length)
+   with Global => null;
+   --  The line that stands for Item.
+
+   procedure Pause (Milliseconds : Positive)
+   with Global => (Input => Ada.Real_Time.Clock_Time);
+   --  Let time pass before a call that failed is tried again.
+
+   protected body Link is
+
+      procedure Attach (New_Client : Slcan_Sockets.Socket) is
+      begin
+         Client  := New_Client;
+         Channel := Closed;
+      end Attach;
+
+      procedure Set_Channel (To : Channel_State) is
+      begin
+         Channel := To;
+      end Set_Channel;
+
+      procedure Detach is
+      begin
+         Client  := Slcan_Sockets.No_Socket;
+         Channel := Closed;
+      end Detach;
+
+      entry Wait_Idle when Idle is
+      begin
+         pragma Warnings
+           (GNATprove, Off, "statement has no effect",
+            Reason => "its effect is to wait");
+         null;
+         pragma Warnings (GNATprove, On, "statement has no effect");
+      end Wait_Idle;
+
+      procedure Begin_Line
+        (Kind : Line_Kind; To : out Slcan_Sockets.Socket) is
+      begin
+         To :=
+           (if Kind = Frame_Line and then Channel = Closed
+            then Slcan_Sockets.No_Socket
+            else Client);
+         Idle := To = Slcan_Sockets.No_Socket;
+      end Begin_Line;
+
+      procedure End_Line (Kind : Line_Kind; Done : Boolean) is
+      begin
+         Idle := True;
+         if Kind = Frame_Line then
+            if Done then
+               Counts.Sent := Next (Counts.Sent);
+            else
+               Counts.Lost_Out := Next (Counts.Lost_Out);
+            end if;
+         end if;
+      end End_Line;
+
+      procedure Count_Received is
+      begin
+         Counts.Received := Next (Counts.Received);
+      end Count_Received;
+
+      procedure Count_Rejected is
+      begin
+         Counts.Rejected_Lines := Next (Counts.Rejected_Lines);
+      end Count_Rejected;
+
+      function State_Now return Controller_State
+      is (if Channel = Open then Error_Active else Stopped);
+
+      function All_Counts return Counters
+      is (Counts);
+
+   end Link;
+
+   ----------------
+   -- Put_Answer --
+   ----------------
+
+   procedure Put_Answer (Kind : Line_Kind) is
+      Status : Queueing.Put_Status;
+   begin
+      pragma Warnings
+        (GNATprove, Off, """Status"" is set by*",
+         Reason => "the queue counts what it rejects");
+      Transmit.Put ((Kind, Null_Frame), Status);
+      pragma Warnings (GNATprove, On, """Status"" is set by*");
+   end Put_Answer;
+
+   ----------
+   -- Obey --
+   ----------
+
+   procedure Obey (Result : Slcan.Outcome; F : Frame) is
+      Now    : Controller_State;
+      Status : Queueing.Put_Status;
+   begin
+      case Result is
+         when Slcan.Frame_Line =>
+            Now := Link.State_Now;
+            if Now = Stopped then
+               Link.Count_Rejected;
+            elsif Accepts (F.Id, F.Format) then
+               Link.Count_Received;
+               pragma Warnings
+                 (GNATprove, Off, """Status"" is set by*",
+                  Reason => "the queue counts what it rejects");
+               Receive.Put (F, Status);
+               pragma Warnings (GNATprove, On, """Status"" is set by*");
+            end if;
+         when Slcan.Open_Channel =>
+            Link.Set_Channel (Open);
+         when Slcan.Close_Channel =>
+            Link.Set_Channel (Closed);
+         when Slcan.Version_Query =>
+            Put_Answer (Version_Answer);
+         when Slcan.Serial_Query =>
+            Put_Answer (Serial_Answer);
+         when Slcan.Rejected_Line =>
+            Link.Count_Rejected;
+         when Slcan.Incomplete | Slcan.Other_Command | Slcan.Empty_Line =>
+            null;
+      end case;
+   end Obey;
+
+   -----------
+   -- Serve --
+   -----------
+
+   procedure Serve (Client : Slcan_Sockets.Socket) is
+      Parser : Slcan.Parser;
+      Bytes  : Slcan_Sockets.Chunk;
+      Last   : Slcan_Sockets.Chunk_Length;
+      Result : Slcan.Outcome;
+      F      : Frame;
+   begin
+      loop
+         Slcan_Sockets.Receive (Client, Bytes, Last);
+         exit when Last = 0;
+         for I in 1 .. Last loop
+            Slcan.Feed (Parser, Bytes (I), Result, F);
+            Obey (Result, F);
+         end loop;
+      end loop;
+   end Serve;
+
+   ------------
+   -- Format --
+   ------------
+
+   procedure Format
+     (Item : Outgoing;
+      Line : out Slcan.Line_Bytes;
+      Last : out Slcan.Line_Length)
+   is
+      procedure Spell (Text : String)
+      with
+        Global => (Output => Last, In_Out => Line),
+        Pre    => Text'First = 1 and then Text'Length < Slcan.Line_Limit;
+      --  Make Text the line.
+
+      procedure Spell (Text : String) is
+      begin
+         for I in Text'Range loop
+            Line (I) := Character'Pos (Text (I));
+         end loop;
+         Last        := Text'Length + 1;
+         Line (Last) := Slcan.Carriage_Return;
+      end Spell;
+
+   begin
+      Slcan.Format_Line (Item.F, Line, Last);
+      case Item.Kind is
+         when Frame_Line =>
+            null;
+         when Version_Answer =>
+            Spell ("V1013");
+         when Serial_Answer =>
+            Spell ("NA123");
+      end case;
+   end Format;
+
+   -----------
+   -- Pause --
+   -----------
+
+   procedure Pause (Milliseconds : Positive) is
+      Now : constant Ada.Real_Time.Time := Ada.Real_Time.Clock;
+   begin
+      delay until Now + Ada.Real_Time.Milliseconds (Milliseconds);
+   end Pause;
+
+   ------------
+   -- Reader --
+   ------------
+
+   task body Reader is
+      Server : Slcan_Sockets.Socket;
+      Client : Slcan_Sockets.Socket;
+   begin
+      loop
+         Slcan_Sockets.Open_Server (Server);
+         exit when Server /= Slcan_Sockets.No_Socket;
+         Pause (Milliseconds => 1_000);
+      end loop;
+      loop
+         Slcan_Sockets.Accept_Client (Server, Client);
+         if Client = Slcan_Sockets.No_Socket then
+            Pause (Milliseconds => 100);
+         else
+            Link.Attach (Client);
+            Serve (Client);
+            --  The writer may be waiting for this client. End its wait, and
+            --  close only when it has let go: the system gives the number of
+            --  a closed socket to the next one.
+            Link.Detach;
+            Slcan_Sockets.Break_Off (Client);
+            Link.Wait_Idle;
+            Slcan_Sockets.Close (Client);
+         end if;
+      end loop;
+   end Reader;
+
+   ------------
+   -- Writer --
+   ------------
+
+   task body Writer is
+      Item   : Outgoing;
+      Line   : Slcan.Line_Bytes;
+      Last   : Slcan.Line_Length;
+      Client : Slcan_Sockets.Socket;
+      Done   : Boolean;
+   begin
+      loop
+         Transmit.Wait (Item);
+         Format (Item, Line, Last);
+         Link.Begin_Line (Item.Kind, Client);
+         Done := False;
+         if Client /= Slcan_Sockets.No_Socket then
+            Slcan_Sockets.Send (Client, Line, Last, Done);
+         end if;
+         Link.End_Line (Item.Kind, Done);
+      end loop;
+   end Writer;
+
+   procedure Send (F : Frame; Status : out Send_Status)
+   with Refined_Global => (In_Out => Transmit.State)
+   is
+      Result : Queueing.Put_Status;
+   begin
+      Transmit.Put ((Frame_Line, F), Result);
+      Status :=
+        (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
+   end Send;
+
+   procedure Wait_Frame (F : out Frame)
+   with Refined_Global => (In_Out => Receive.State)
+   is
+   begin
+      Receive.Wait (F);
+   end Wait_Frame;
+
+   procedure Read_State (Now : out Controller_State)
+   with Refined_Global => Link
+   is
+   begin
+      Now := Link.State_Now;
+   end Read_State;
+
+   procedure Read_Counters (C : out Counters)
+   with Refined_Global => (Transmit.State, Receive.State, Link)
+   is
+      Lost_Out : constant Event_Count := Transmit.Lost;
+      Lost_In  : constant Event_Count := Receive.Lost;
+   begin
+      C          := Link.All_Counts;
+      C.Lost_Out :=
+        (if Lost_Out > Event_Count'Last - C.Lost_Out then Event_Count'Last
+         else C.Lost_Out + Lost_Out);
+      C.Lost_In  := Lost_In;
+   end Read_Counters;
+
+end Ravenchart.Can.Controllers;

@@ -1,0 +1,57 @@
+--  A CAN controller. Its body is a driver, chosen by the project file.
+--
+--  Guarantees   frames leave in the order sent and arrive in the order
+--               received; what does not fit is counted
+--  Tasking      Send, Read_State and Read_Counters by any task up to
+--               Transmit_Ceiling; one caller of Wait_Frame, up to
+--               Receive_Ceiling
+--  Timing       constant; only Wait_Frame suspends
+--  Analysis     the driver's tasks at Driver_Priority, and shared objects
+--               at the two ceilings
+--  Assumptions  those of the driver chosen
+
+with System;
+with Ravenchart.Queueing;
+
+generic
+   Transmit_Ceiling : System.Any_Priority;
+   --  At least Driver_Priority and the priority of every sender.
+   Receive_Ceiling : System.Any_Priority;
+   --  At least Driver_Priority and the priority of the receiver.
+   Driver_Priority : System.Priority;
+   Transmit_Depth : Queueing.Capacity_Type;
+   Receive_Depth : Queueing.Capacity_Type;
+   Stack_Bytes : Positive;
+   --  Of each task of the driver.
+   with function Accepts
+     (Id : Identifier; Format : Frame_Format) return Boolean;
+   --  The acceptance filter: frames it refuses are not received.
+package Ravenchart.Can.Controllers
+  with
+    SPARK_Mode,
+    Elaborate_Body,
+    Abstract_State =>
+      (State with Synchronous, External => (Async_Readers, Async_Writers)),
+    Initializes    => State
+is
+   pragma Assert
+     (Driver_Priority <= Transmit_Ceiling
+      and then Driver_Priority <= Receive_Ceiling);
+
+   procedure Send (F : Frame; Status : out Send_Status)
+   with Global => (In_Out => State);
+   --  Queue F for transmission; a full queue rejects it.
+
+   procedure Wait_Frame (F : out Frame)
+   with Global => (In_Out => State);
+   --  Suspend the one caller until a frame is there, and hand it over.
+
+   procedure Read_State (Now : out Controller_State)
+   with Global => (Input => State);
+   --  How the controller stands on the bus.
+
+   procedure Read_Counters (C : out Counters)
+   with Global => (Input => State);
+   --  Copy all counters.
+
+end Ravenchart.Can.Controllers;

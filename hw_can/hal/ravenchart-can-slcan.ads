@@ -1,0 +1,91 @@
+--  The slcan line protocol for classic CAN: frames and commands as lines of
+--  ASCII that end in a carriage return.
+--
+--  Guarantees   total: any bytes in any order are taken; a bad or overlong
+--               line is rejected as a whole, and the next one is read from
+--               its start
+--  Tasking      none of its own: one task owns each Parser
+--  Timing       Feed is linear in the length of a line, Format_Line too
+
+with Interfaces;
+
+package Ravenchart.Can.Slcan
+  with SPARK_Mode, Pure
+is
+   use type Interfaces.Unsigned_8;
+
+   Carriage_Return : constant Interfaces.Unsigned_8 := 13;
+   --  Ends every line.
+
+   Line_Limit : constant := 27;
+   --  The longest line: T, 8 digits of identifier, 1 of length, 16 of data,
+   --  and the carriage return.
+
+   subtype Line_Length is Natural range 0 .. Line_Limit;
+   --  Bytes of a line.
+
+   type Line_Bytes is array (Positive range 1 .. Line_Limit)
+     of Interfaces.Unsigned_8;
+   --  A line, and unused bytes behind it.
+
+   type Outcome is
+     (Incomplete,
+      Frame_Line,
+      Open_Channel,
+      Close_Channel,
+      Version_Query,
+      Serial_Query,
+      Other_Command,
+      Empty_Line,
+      Rejected_Line);
+   --  What the last byte completed. Other_Command needs no answer here: bit
+   --  rates, filters, time stamps.
+
+   type Parser is private
+   with Default_Initial_Condition => Pending (Parser) = 0;
+   --  The part of a line that was read so far.
+
+   function Pending (P : Parser) return Line_Length
+   with Global => null;
+   --  How many bytes of an unfinished line P keeps.
+
+   procedure Feed
+     (P      : in out Parser;
+      Byte   : Interfaces.Unsigned_8;
+      Result : out Outcome;
+      F      : out Frame)
+   with
+     Global => null,
+     Post   =>
+       (Result = Incomplete) = (Byte /= Carriage_Return)
+       and then (if Byte = Carriage_Return then Pending (P) = 0)
+       and then (if Result /= Frame_Line then F = Null_Frame);
+   --  Read one byte. F is the frame of a Frame_Line.
+
+   procedure Format_Line
+     (F : Frame; Line : out Line_Bytes; Last : out Line_Length)
+   with
+     Global => null,
+     Post   =>
+       Last =
+         (if F.Format = Standard then 6 else 11)
+         + (if F.Kind = Data then 2 * F.Length else 0)
+       and then Line (Last) = Carriage_Return;
+   --  The line that stands for F, its carriage return included.
+
+private
+
+   subtype Content_Length is Line_Length range 0 .. Line_Limit - 1;
+   --  Bytes of a line before its carriage return.
+
+   type Parser is record
+      Line     : Line_Bytes := (others => 0);
+      Count    : Content_Length := 0;
+      Overlong : Boolean := False;
+   end record;
+   --  Overlong says that bytes of this line were thrown away.
+
+   function Pending (P : Parser) return Line_Length
+   is (P.Count);
+
+end Ravenchart.Can.Slcan;

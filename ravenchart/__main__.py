@@ -1,0 +1,158 @@
+"""The `ravenchart` command: check, generate, build, prove, analyse and run any model.
+
+Exit status: 0 done; 1 the model, its proof or its run has errors; 2 the call
+itself is wrong or a program it needs is missing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from analysis import report
+from analysis.table import show as show_table
+
+from . import proving, steps, toolchain
+from .run import RunRequest, run_model
+from .steps import Refused
+from .toolchain import ToolFailed, ToolMissing
+
+OK, WRONG, UNUSABLE = 0, 1, 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; the exit status."""
+    options = _parser().parse_args(arguments)
+    try:
+        status: int = options.command(options)
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return WRONG
+    except ToolFailed as failed:
+        print(str(failed).rstrip(), file=sys.stderr)
+        return WRONG
+    except (ToolMissing, OSError) as problem:
+        print(f"ravenchart: error: {problem}", file=sys.stderr)
+        return UNUSABLE
+    except KeyboardInterrupt:
+        print("ravenchart: interrupted", file=sys.stderr)
+        return 130
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="ravenchart",
+        description="From one model of a real-time controller to a proved SPARK Ada program, "
+        "its timing analysis and its CAN bench.",
+    )
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    def command(name: str, work: object, help_text: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=help_text, description=help_text)
+        sub.add_argument("model", type=Path, metavar="MODEL", help="the model's YAML file")
+        sub.set_defaults(command=work)
+        return sub
+
+    command("check", _check, "check the model: its rules and its deadlines")
+    command("generate", _generate, "write generated/ beside the model")
+    build = command("build", _build, "generate, and compile the controller")
+    prove = command("prove", _prove, "generate, and prove the controller with gnatprove")
+    for sub in (build, prove):
+        sub.add_argument("--driver", choices=("slcan", "loopback"), help="the CAN driver")
+    build.add_argument(
+        "--mode", choices=("checks", "release"), default="checks",
+        help="checks: every contract is executed; release: -O2, proof stands for checks",
+    )  # fmt: skip
+    prove.add_argument("--record", type=Path, help="write the proof record to this file")
+    analyse = command("analyse", _analyse, "response times against deadlines")
+    analyse.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
+    run = command("run", _run, "build and run the controller on this machine")
+    run.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
+    run.add_argument(
+        "--seconds", type=float, default=10.0, help="how long without a scenario (default 10)"
+    )
+    run.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
+    return parser
+
+
+def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
+    checked = steps.check(options.model, deadlines=deadlines)
+    if checked.warnings:
+        print(checked.warnings, file=sys.stderr)
+    return checked
+
+
+def _check(options: argparse.Namespace) -> int:
+    system = _checked(options).system
+    print(
+        f"{system.name}: {len(system.instances)} instances on {len(system.processors)} "
+        f"processors, {len(system.messages)} messages; every deadline is met"
+    )
+    return OK
+
+
+def _generate(options: argparse.Namespace) -> int:
+    _written(steps.write_program(_checked(options)))
+    return OK
+
+
+def _written(written: steps.Written) -> None:
+    print(f"{written.folder}: {written.files} files, {written.changed} changed")
+    for path in written.missing:
+        print(
+            f"note: {path} is not there yet; its spec is in {written.folder}, the body is yours",
+            file=sys.stderr,
+        )
+
+
+def _build(options: argparse.Namespace) -> int:
+    checked = _checked(options)
+    _written(steps.write_program(checked))
+    print(f"built {steps.build(checked, options.mode, options.driver)}")
+    return OK
+
+
+def _prove(options: argparse.Namespace) -> int:
+    checked = _checked(options)
+    _written(steps.write_program(checked))
+    driver = options.driver or steps.default_driver(checked)
+    results = steps.build_folder(checked, driver) / "checks" / "gnatprove"
+    variables = steps.scenario(checked, "checks", driver)
+    proof = proving.prove(steps.project_of(checked), variables, results)
+    print(f"{checked.system.name}: {proof.summary()}")
+    if options.record is not None:
+        options.record.write_text(proving.record_text(proof), encoding="utf-8")
+    return OK if proof.clean else WRONG
+
+
+def _analyse(options: argparse.Namespace) -> int:
+    checked = _checked(options, deadlines=False)
+    show_table(checked.analysis)
+    if options.html is not None:
+        options.html.write_text(report.render(checked.analysis), encoding="utf-8")
+        print(f"report: {options.html}")
+    return OK if checked.analysis.schedulable else WRONG
+
+
+def _run(options: argparse.Namespace) -> int:
+    checked = _checked(options)
+    _written(steps.write_program(checked))
+    executable = steps.build(checked)
+    print(f"built {executable}")
+    folder = options.report or executable.parent / "report"
+    request = RunRequest(
+        checked.analysis,
+        executable,
+        checked.folder / "generated",
+        options.scenario,
+        options.seconds,
+        folder,
+    )
+    return OK if run_model(request) else WRONG
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

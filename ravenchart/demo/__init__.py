@@ -1,0 +1,1 @@
+"""What a run of a controller on the bench is made of."""

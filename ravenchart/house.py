@@ -1,0 +1,114 @@
+"""What `make check` and `make prove` do over the whole checkout.
+
+check: generated/ is what the models give, and every Ada unit compiles without
+a warning, with contracts executed and without. prove: gnatprove on the runtime
+and the HAL with each driver and on the examples, and the records of it.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import proving, steps, toolchain
+from .steps import Refused
+from .toolchain import ROOT, ToolFailed, ToolMissing
+
+RECORDS = ROOT / "proofs" / "records"
+EXAMPLES = ("cartesian_robot", "three_components")
+DRIVERS = ("loopback", "slcan")
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One thing to prove: its record's name, its project, its scenario, its results."""
+
+    name: str
+    project: Path
+    scenario: dict[str, str]
+    results: Path
+
+
+def targets() -> tuple[Target, ...]:
+    """The runtime with each driver, then the examples."""
+    found = [
+        Target(
+            f"runtime-{driver}",
+            ROOT / "proofs" / "proofs.gpr",
+            {"MODE": "checks", "CAN_DRIVER": driver},
+            ROOT / "obj" / f"proofs-checks-{driver}" / "gnatprove",
+        )
+        for driver in DRIVERS
+    ]
+    for example in EXAMPLES:
+        checked = steps.check(ROOT / "examples" / example / "model.yaml")
+        steps.write_program(checked)
+        driver = steps.default_driver(checked)
+        found.append(
+            Target(
+                example,
+                steps.project_of(checked),
+                steps.scenario(checked, "checks", driver),
+                steps.build_folder(checked, driver) / "checks" / "gnatprove",
+            )
+        )
+    return tuple(found)
+
+
+def prove() -> bool:
+    """Prove everything and write the records; True when nothing is left."""
+    RECORDS.mkdir(parents=True, exist_ok=True)
+    clean = True
+    totals = [0, 0, 0, 0]
+    for target in targets():
+        print(f"proving {target.name} ...", flush=True)
+        proof = proving.prove(target.project, target.scenario, target.results)
+        print(f"{target.name}: {proof.summary()}", flush=True)
+        (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")
+        clean = clean and proof.clean
+        found = (proof.checks, proof.proved, proof.justified, proof.assumed)
+        totals = [a + b for a, b in zip(totals, found, strict=True)]
+    checks, proved, justified, assumed = totals
+    print(f"all: checks {checks}, proved {proved}, justified {justified}, assumed {assumed}")
+    return clean
+
+
+def check() -> bool:
+    """Generated files up to date, and every build free of warnings."""
+    fresh = True
+    for example in EXAMPLES:
+        checked = steps.check(ROOT / "examples" / example / "model.yaml")
+        if checked.warnings:
+            print(checked.warnings, file=sys.stderr)
+            fresh = False
+        written = steps.write_program(checked)
+        if written.changed:
+            print(f"{written.folder}: {written.changed} files were not what the model gives")
+            fresh = False
+        for mode in ("checks", "release"):
+            steps.build(checked, mode)
+            print(f"{example}: builds without a warning ({mode})", flush=True)
+    tests = ROOT / "tests" / "ada" / "tests.gpr"
+    for mode in ("checks", "release"):
+        options = ["-p", "-q", "-j0", "-P", tests.name]
+        toolchain.run("gprbuild", options, tests.parent, {"MODE": mode, "CAN_DRIVER": "loopback"})
+        print(f"runtime, HAL and tests: build without a warning ({mode})", flush=True)
+    return fresh
+
+
+def main() -> int:
+    """``check`` or ``prove``; the exit status."""
+    work = {"check": check, "prove": prove}[sys.argv[1]]
+    try:
+        return 0 if work() else 1
+    except (Refused, ToolFailed) as failed:
+        print(str(failed).rstrip(), file=sys.stderr)
+        return 1
+    except ToolMissing as missing:
+        print(f"ravenchart: error: {missing}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,148 @@
+"""What each command does, from model to files; `__main__` only parses and prints."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from analysis.response_times import Analysis, analyse
+from analysis.findings import findings
+from gen.diagnostics import Diagnostic, render
+from gen.emit.naming import ada_case
+from gen.generate import generate, user_units
+from gen.load import Loaded, load
+from gen.model import System
+from gen.terms import Ns
+
+from . import toolchain
+from .toolchain import ROOT
+
+MANIFEST = "generated.list"
+"""Names of the files of the last generation: only these are ever deleted."""
+
+
+class Refused(Exception):
+    """The model has errors; the text is the rendered diagnostics."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A valid, schedulable model, with the warnings that remain."""
+
+    path: Path
+    system: System
+    analysis: Analysis
+    warnings: str
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the model file: generated/ and user/ are beside it."""
+        return self.path.parent
+
+    @property
+    def stem(self) -> str:
+        """The system's name as its files carry it."""
+        return ada_case(self.system.name).lower()
+
+
+def check(path: Path, *, deadlines: bool = True) -> Checked:
+    """Load, check and analyse a model; Refused with every diagnostic when it is wrong."""
+    loaded = load(path)
+    system = loaded.system
+    if system is None:
+        raise Refused(_rendered(loaded, loaded.diagnostics))
+    analysis = analyse(system)
+    everything = (*loaded.diagnostics, *(findings(analysis) if deadlines else ()))
+    if any(d.is_error for d in everything):
+        raise Refused(_rendered(loaded, everything))
+    return Checked(path, system, analysis, _rendered(loaded, everything))
+
+
+def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
+    return "\n".join(render(d, loaded.sources) for d in diagnostics)
+
+
+def bounds(checked: Checked) -> Mapping[str, Ns]:
+    """The claimed response time of each task from its release, in ns."""
+    found: dict[str, Ns] = {}
+    for response in checked.analysis.responses:
+        assert response.bound is not None  # a model with a task without bound is refused
+        found[response.task.element] = Ns(response.bound - response.task.jitter)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What a generation did: files in all, files whose bytes changed, bodies still to write."""
+
+    folder: Path
+    files: int
+    changed: int
+    missing: tuple[Path, ...]
+
+
+def write_program(checked: Checked) -> Written:
+    """Write generated/ beside the model; user/ is never touched.
+
+    Files are replaced only when their bytes differ, so that builds stay
+    incremental; files of the last generation that are no longer made go.
+    """
+    folder = checked.folder / "generated"
+    folder.mkdir(parents=True, exist_ok=True)
+    files = generate(checked.system, bounds(checked))
+    manifest = folder / MANIFEST
+    old = manifest.read_text(encoding="utf-8").split() if manifest.is_file() else []
+    changed = 0
+    for name, text in {**files, MANIFEST: "".join(f"{n}\n" for n in sorted(files))}.items():
+        changed += _replace(folder / name, text)
+    for name in old:
+        if name not in files and Path(name).name == name:
+            (folder / name).unlink(missing_ok=True)
+    user = checked.folder / "user"
+    missing = tuple(user / n for n in user_units(checked.system) if not (user / n).is_file())
+    return Written(folder, len(files), changed, missing)
+
+
+def _replace(path: Path, text: str) -> bool:
+    """Put ``text`` at ``path`` in one step; False when it stands there already."""
+    data = text.encode("utf-8")
+    if path.is_file() and path.read_bytes() == data:
+        return False
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    beside.write_bytes(data)
+    beside.replace(path)
+    return True
+
+
+def project_of(checked: Checked) -> Path:
+    """The generated GNAT project."""
+    return checked.folder / "generated" / f"{checked.stem}.gpr"
+
+
+def scenario(checked: Checked, mode: str, driver: str) -> dict[str, str]:
+    """The scenario variables of a build: mode, CAN driver, and where objects go."""
+    folder = build_folder(checked, driver)
+    return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(folder)}
+
+
+def build_folder(checked: Checked, driver: str) -> Path:
+    """Objects and program, below build/ of the checkout, apart for each model and driver."""
+    place = hashlib.sha256(str(checked.folder.resolve()).encode()).hexdigest()[:8]
+    return ROOT / "build" / f"{checked.stem}-{place}-{driver}"
+
+
+def build(checked: Checked, mode: str = "checks", driver: str | None = None) -> Path:
+    """Compile the program; the path of the executable. ToolFailed with the compiler's words."""
+    chosen = driver or default_driver(checked)
+    project = project_of(checked)
+    variables = scenario(checked, mode, chosen)
+    toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project.name], project.parent, variables)
+    return build_folder(checked, chosen) / f"{checked.stem}_main"
+
+
+def default_driver(checked: Checked) -> str:
+    """slcan for a system with a bus: python-can talks to it; loopback otherwise."""
+    return "slcan" if checked.system.buses else "loopback"

@@ -1,0 +1,58 @@
+"""The outside programs: gprbuild and gnatprove, found, run, and their words passed on."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+"""The checkout: where ravenchart.gpr and the runtime are."""
+
+INSTALL_HINT = {
+    "gprbuild": "install the Debian packages gnat and gprbuild (`make setup` does)",
+    "gnatprove": "install gnatprove with Alire: `alr get gnatprove`, and put its bin on PATH",
+}
+
+
+class ToolMissing(Exception):
+    """An outside program is not installed; the text says how to get it."""
+
+    def __init__(self, tool: str) -> None:
+        super().__init__(f"{tool} is not on PATH; {INSTALL_HINT[tool]}")
+        self.tool = tool
+
+
+class ToolFailed(Exception):
+    """An outside program ended with an error; the text is what it printed."""
+
+
+def have(tool: str) -> bool:
+    """Is the program on PATH?"""
+    return shutil.which(tool) is not None
+
+
+def run(
+    tool: str, arguments: Sequence[str], where: Path, scenario: Mapping[str, str]
+) -> str:
+    """Run a tool with scenario variables set; its output, or ToolMissing or ToolFailed."""
+    if not have(tool):
+        raise ToolMissing(tool)
+    paths = [str(ROOT), *filter(None, [os.environ.get("GPR_PROJECT_PATH")])]
+    variables = [f"-X{name}={value}" for name, value in scenario.items()]
+    done = subprocess.run(
+        [tool, *arguments, *variables],
+        cwd=where,
+        env={**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        check=False,
+    )
+    if done.returncode != 0:
+        raise ToolFailed(done.stdout)
+    return done.stdout
