@@ -1,0 +1,27 @@
+--  A CAN controller, with whichever driver the project chose.
+
+with System;
+with Ravenchart.Can;
+with Ravenchart.Can.Controllers;
+
+package Instance_Bus
+  with SPARK_Mode
+is
+   function Accepts
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
+      return Boolean
+   is (Ravenchart.Can."=" (Format, Ravenchart.Can.Standard)
+       and then Id in 16#100# .. 16#10F#)
+   with Global => null;
+   --  The acceptance filter.
+
+   package Controller is new Ravenchart.Can.Controllers
+     (Transmit_Ceiling => System.Default_Priority + 6,
+      Receive_Ceiling  => System.Default_Priority + 6,
+      Driver_Priority  => System.Default_Priority + 6,
+      Transmit_Depth   => 8,
+      Receive_Depth    => 8,
+      Stack_Bytes      => 65_536,
+      Accepts          => Accepts);
+
+end Instance_Bus;

@@ -1,0 +1,65 @@
+--  The environment task of a host: writes the trace out until a signal ends
+--  the run, and the summary then.
+
+with System;
+with Ada.Real_Time;
+with Instance_Bus;
+with Instance_Store;
+with Instance_Tasks;
+with Ravenchart.Can;
+with Ravenchart.Health;
+with Ravenchart.Hosts;
+with Ravenchart.Queueing;
+with Ravenchart.Traces;
+
+procedure Instance_Program
+  with SPARK_Mode, Priority => System.Priority'First
+is
+   use type Ada.Real_Time.Time;
+   use type Ravenchart.Element_Id;
+   use type Ravenchart.Queueing.Take_Status;
+
+   Poll   : constant Ada.Real_Time.Time_Span :=
+     Ada.Real_Time.Milliseconds (20);
+   Next   : Ada.Real_Time.Time := Ada.Real_Time.Clock;
+   Ending : Boolean;
+   Item   : Ravenchart.Traces.Trace_Record;
+   Status : Ravenchart.Queueing.Take_Status;
+   Lost   : Ravenchart.Event_Count;
+   Counts : Ravenchart.Health.Fault_Counts;
+   Cyclic : Instance_Tasks.Cyclic.Statistics;
+   Served : Instance_Tasks.Served.Statistics;
+   Bus    : Ravenchart.Can.Counters;
+begin
+   Ravenchart.Hosts.Start;
+   loop
+      Ending := Ravenchart.Hosts.Stop_Requested;
+      loop
+         Instance_Store.Trace.Take (Item, Status);
+         exit when Status = Ravenchart.Queueing.Empty;
+         Ravenchart.Hosts.Put_Trace (Item);
+      end loop;
+      exit when Ending;
+      Next := Next + Poll;
+      delay until Next;
+   end loop;
+   Instance_Tasks.Cyclic.Observe (Cyclic);
+   Ravenchart.Hosts.Put_Processor
+     (1, Cyclic.Releases, Cyclic.Misses, Cyclic.Worst_Response);
+   for Job in Instance_Tasks.Job loop
+      Ravenchart.Hosts.Put_Activity
+        (Instance_Tasks.Job'Pos (Job) + 10, Cyclic.Worst_Execution (Job));
+   end loop;
+   Instance_Tasks.Served.Observe (Served);
+   Ravenchart.Hosts.Put_Processor
+     (2, Served.Releases, Served.Misses, Served.Worst_Response);
+   Instance_Store.Counters.Read (Counts);
+   for Kind in Ravenchart.Health.Fault_Kind loop
+      Ravenchart.Hosts.Put_Fault_Count (Kind, Counts (Kind));
+   end loop;
+   Lost := Instance_Store.Trace.Lost;
+   Ravenchart.Hosts.Put_Lost ("trace", Lost);
+   Instance_Bus.Controller.Read_Counters (Bus);
+   Ravenchart.Hosts.Put_Lost ("can", Bus.Lost_In);
+   Ravenchart.Hosts.Finish (Success => True);
+end Instance_Program;

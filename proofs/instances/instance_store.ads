@@ -1,0 +1,77 @@
+--  Provers see only instances: one representative instance of each generic
+--  that has no task.
+
+with System;
+with Ravenchart.Blackboards;
+with Ravenchart.Bounded_Fifos;
+with Ravenchart.Event_Lists;
+with Ravenchart.Health_Counters;
+with Ravenchart.Monitors;
+with Ravenchart.Port_Regions;
+with Ravenchart.Queueing;
+with Ravenchart.Queues;
+with Ravenchart.Trace_Buffers;
+
+package Instance_Store
+  with SPARK_Mode
+is
+   Ceiling : constant System.Priority := System.Default_Priority + 5;
+   --  Of every object here.
+
+   type Reading is record
+      Level : Ravenchart.Number := 0;
+      Valid : Boolean := False;
+   end record;
+   --  Stands for a type of a model.
+
+   No_Reading : constant Reading := (others => <>);
+
+   type Signal is (Start, Stop, Reset);
+   --  Stands for the events of a region.
+
+   type Job is (Sense, Control, Report);
+   --  Stands for the activities of a processor.
+
+   package Fifos is new Ravenchart.Bounded_Fifos
+     (Element_Type => Reading,
+      Null_Element => No_Reading);
+
+   package Rejecting_Queue is new Ravenchart.Queues
+     (Element_Type => Reading,
+      Null_Element => No_Reading,
+      Capacity     => 4,
+      Ceiling      => Ceiling,
+      Policy       => Ravenchart.Queueing.Reject_Newest);
+
+   package Dropping_Queue is new Ravenchart.Queues
+     (Element_Type => Signal,
+      Null_Element => Signal'First,
+      Capacity     => 4,
+      Ceiling      => Ceiling,
+      Policy       => Ravenchart.Queueing.Drop_Oldest);
+
+   package Board is new Ravenchart.Blackboards
+     (Element_Type => Reading,
+      Initial      => No_Reading,
+      Ceiling      => Ceiling);
+
+   package Ports is new Ravenchart.Port_Regions
+     (Value_Type => Reading,
+      Default    => No_Reading);
+
+   package Events is new Ravenchart.Event_Lists
+     (Event    => Signal,
+      Capacity => 3);
+
+   package Counters is new Ravenchart.Health_Counters
+     (Ceiling => Ceiling);
+
+   package Trace is new Ravenchart.Trace_Buffers
+     (Capacity => 64,
+      Ceiling  => Ceiling);
+
+   package Observed is new Ravenchart.Monitors
+     (Activity_Id => Job,
+      Ceiling     => Ceiling);
+
+end Instance_Store;

@@ -1,0 +1,162 @@
+with Ravenchart.Can;
+with Ravenchart.Health;
+with Ravenchart.Queueing;
+with Ravenchart.Timers;
+with Ravenchart.Traces;
+
+package body Instance_Tasks
+  with
+    SPARK_Mode,
+    Refined_State =>
+      (Periodic_State => (Port, Timers, Raised),
+       Sporadic_State => Last_Frame)
+is
+   use type Ravenchart.Queueing.Put_Status;
+   use type Ravenchart.Queueing.Take_Status;
+   use type Ravenchart.Can.Send_Status;
+   use type Instance_Store.Ports.Change;
+
+   Port       : Instance_Store.Ports.Port;
+   Timers     : Ravenchart.Timers.Timer_Array (1 .. 2);
+   Raised     : Instance_Store.Events.List;
+   Last_Frame : Ravenchart.Can.Frame;
+
+   procedure Sense_Input
+   with
+     Global =>
+       (In_Out => (Port, Raised,
+                   Instance_Store.Rejecting_Queue.State,
+                   Instance_Store.Board.State,
+                   Instance_Store.Counters.State));
+   --  The port handler.
+
+   procedure Control_Output
+   with
+     Global =>
+       (Input  => Instance_Store.Board.State,
+        In_Out => (Timers, Raised,
+                   Instance_Store.Dropping_Queue.State,
+                   Instance_Store.Counters.State,
+                   Instance_Bus.Controller.State));
+   --  The region.
+
+   -----------------
+   -- Sense_Input --
+   -----------------
+
+   procedure Sense_Input is
+      Item   : Instance_Store.Reading;
+      Status : Ravenchart.Queueing.Take_Status;
+      Change : Instance_Store.Ports.Change;
+   begin
+      Instance_Store.Rejecting_Queue.Take (Item, Status);
+      Instance_Store.Ports.Handle
+        (Port, Status = Ravenchart.Queueing.Taken, Item, 5, Change);
+      case Change is
+         when Instance_Store.Ports.Arrival =>
+            Instance_Store.Board.Write (Port.Value);
+            Instance_Store.Events.Append (Raised, Instance_Store.Start);
+         when Instance_Store.Ports.Became_Stale =>
+            Instance_Store.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+         when Instance_Store.Ports.Nothing =>
+            null;
+      end case;
+   end Sense_Input;
+
+   --------------------
+   -- Control_Output --
+   --------------------
+
+   procedure Control_Output is
+      Due     : Natural;
+      Reading : Instance_Store.Reading;
+      Put     : Ravenchart.Queueing.Put_Status;
+      Send    : Ravenchart.Can.Send_Status;
+   begin
+      Ravenchart.Timers.Tick (Timers);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      if Due = 0 then
+         Ravenchart.Timers.Arm (Timers (1), 10);
+         Ravenchart.Timers.Disarm (Timers (2));
+      end if;
+      for I in 1 .. Instance_Store.Events.Count (Raised) loop
+         Instance_Store.Dropping_Queue.Put
+           (Instance_Store.Events.Element (Raised, I), Put);
+         if Put /= Ravenchart.Queueing.Queued then
+            Instance_Store.Counters.Record_Fault
+              (Ravenchart.Health.Queue_Overflow);
+         end if;
+      end loop;
+      Instance_Store.Events.Clear (Raised);
+      Instance_Store.Board.Read (Reading);
+      Instance_Bus.Controller.Send
+        (Ravenchart.Can.Data_Frame
+           (Id      => 16#105#,
+            Format  => Ravenchart.Can.Standard,
+            Length  => 1,
+            Payload => (if Reading.Valid then 1 else 0)),
+         Send);
+      if Send = Ravenchart.Can.Rejected_Full then
+         Instance_Store.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+      end if;
+   end Control_Output;
+
+   -------------
+   -- Run_Job --
+   -------------
+
+   procedure Run_Job (Activity : Job) is
+   begin
+      case Activity is
+         when Sense =>
+            Sense_Input;
+         when Control =>
+            Control_Output;
+         when Report =>
+            Instance_Store.Trace.Note
+              (Ravenchart.Traces.Activity, 7, Job'Pos (Activity));
+      end case;
+   end Run_Job;
+
+   -----------------
+   -- Await_Frame --
+   -----------------
+
+   procedure Await_Frame is
+   begin
+      Instance_Bus.Controller.Wait_Frame (Last_Frame);
+   end Await_Frame;
+
+   -----------------
+   -- Run_Service --
+   -----------------
+
+   procedure Run_Service (Activity : Service) is
+      Put : Ravenchart.Queueing.Put_Status;
+   begin
+      case Activity is
+         when Receive =>
+            Instance_Store.Rejecting_Queue.Put
+              ((Level => Ravenchart.Number (Last_Frame.Length),
+                Valid => True),
+               Put);
+            if Put = Ravenchart.Queueing.Rejected_Full then
+               Instance_Store.Counters.Record_Fault
+                 (Ravenchart.Health.Queue_Overflow);
+            end if;
+      end case;
+   end Run_Service;
+
+   ---------------
+   -- Note_Miss --
+   ---------------
+
+   procedure Note_Miss is
+   begin
+      Instance_Store.Counters.Record_Fault
+        (Ravenchart.Health.Deadline_Miss);
+   end Note_Miss;
+
+end Instance_Tasks;

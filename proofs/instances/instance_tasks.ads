@@ -1,0 +1,89 @@
+--  One periodic and one sporadic processor: together with Instance_Store and
+--  Instance_Bus a small controller, as a model would generate it.
+
+with System;
+with Ada.Real_Time;
+with Instance_Bus;
+with Instance_Store;
+with Ravenchart.Epochs;
+with Ravenchart.Periodic_Processors;
+with Ravenchart.Schedules;
+with Ravenchart.Sporadic_Processors;
+
+package Instance_Tasks
+  with
+    SPARK_Mode,
+    Abstract_State => (Periodic_State, Sporadic_State)
+is
+   type Job is (Sense, Control, Report);
+   --  The activities of the periodic processor.
+
+   type Job_Table is array (Job) of Ravenchart.Schedules.Slot;
+   --  When each one runs.
+
+   Jobs : constant Job_Table :=
+     (Sense   => (Divisor => 1, Phase => 0),
+      Control => (Divisor => 2, Phase => 0),
+      Report  => (Divisor => 4, Phase => 3));
+   --  Three periods: 10, 20 and 40 ms.
+
+   procedure Run_Job (Activity : Job)
+   with
+     Global =>
+       (Input  => (Ravenchart.Epochs.Start,
+                   Ada.Real_Time.Clock_Time),
+        In_Out => (Periodic_State,
+                   Instance_Store.Rejecting_Queue.State,
+                   Instance_Store.Dropping_Queue.State,
+                   Instance_Store.Board.State,
+                   Instance_Store.Trace.State,
+                   Instance_Store.Counters.State,
+                   Instance_Bus.Controller.State));
+   --  Run one activity of the periodic processor.
+
+   type Service is (Receive);
+   --  The activity of the sporadic processor.
+
+   procedure Await_Frame
+   with
+     Global =>
+       (Output => Sporadic_State,
+        In_Out => Instance_Bus.Controller.State);
+   --  Suspend until a frame has come.
+
+   procedure Run_Service (Activity : Service)
+   with
+     Global =>
+       (Input  => Sporadic_State,
+        In_Out => (Instance_Store.Rejecting_Queue.State,
+                   Instance_Store.Counters.State));
+   --  Run the activity of the sporadic processor.
+
+   procedure Note_Miss
+   with Global => (In_Out => Instance_Store.Counters.State);
+   --  A deadline was missed.
+
+   package Cyclic is new Ravenchart.Periodic_Processors
+     (Activity_Id      => Job,
+      Table_Type       => Job_Table,
+      Table            => Jobs,
+      Cycle            => 4,
+      Period           => 10_000_000,
+      Offset           => 1_000_000,
+      Deadline         => 10_000_000,
+      Task_Priority    => System.Default_Priority + 4,
+      Stack_Bytes      => 65_536,
+      Execute          => Run_Job,
+      On_Deadline_Miss => Note_Miss);
+
+   package Served is new Ravenchart.Sporadic_Processors
+     (Activity_Id        => Service,
+      Minimum_Separation => 2_000_000,
+      Deadline           => 2_000_000,
+      Task_Priority      => System.Default_Priority + 5,
+      Stack_Bytes        => 65_536,
+      Wait               => Await_Frame,
+      Execute            => Run_Service,
+      On_Deadline_Miss   => Note_Miss);
+
+end Instance_Tasks;

@@ -1,0 +1,25 @@
+package body Ravenchart.Event_Lists
+  with SPARK_Mode
+is
+   ------------
+   -- Append --
+   ------------
+
+   procedure Append (L : in out List; Item : Event) is
+   begin
+      if L.Used < Capacity then
+         L.Used            := L.Used + 1;
+         L.Events (L.Used) := Item;
+      end if;
+   end Append;
+
+   -----------
+   -- Clear --
+   -----------
+
+   procedure Clear (L : out List) is
+   begin
+      L := (Events => (others => Event'First), Used => 0);
+   end Clear;
+
+end Ravenchart.Event_Lists;

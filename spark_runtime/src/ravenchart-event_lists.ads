@@ -1,0 +1,65 @@
+--  The events raised in one step of a region, in the order they were raised.
+--
+--  Guarantees   strict order, no heap, total operations
+--  Tasking      none of its own: the region's activity owns its lists
+--  Timing       constant
+
+generic
+   type Event is (<>);
+   Capacity : Positive;
+   --  The most events one step can raise; the generator computes it.
+package Ravenchart.Event_Lists
+  with SPARK_Mode, Pure
+is
+   type List is private
+   with Default_Initial_Condition => Count (List) = 0;
+   --  Up to Capacity events.
+
+   subtype Length is Natural range 0 .. Capacity;
+   --  How many events a list can hold.
+
+   function Count (L : List) return Length
+   with Global => null;
+   --  How many events L holds.
+
+   function Element (L : List; Index : Positive) return Event
+   with
+     Global => null,
+     Pre    => Index <= Count (L);
+   --  The event that was raised as number Index.
+
+   procedure Append (L : in out List; Item : Event)
+   with
+     Global => null,
+     Post   =>
+       (if Count (L'Old) = Capacity
+        then L = L'Old
+        else Count (L) = Count (L'Old) + 1
+             and then Element (L, Count (L)) = Item
+             and then (for all I in 1 .. Count (L'Old) =>
+                         Element (L, I) = Element (L'Old, I)));
+   --  Add Item as the last event; a full list ignores it.
+
+   procedure Clear (L : out List)
+   with
+     Global => null,
+     Post   => Count (L) = 0;
+   --  Forget all events.
+
+private
+
+   type Event_Array is array (Positive range 1 .. Capacity) of Event;
+
+   type List is record
+      Events : Event_Array := (others => Event'First);
+      Used   : Length := 0;
+   end record;
+   --  The events are the first Used ones.
+
+   function Count (L : List) return Length
+   is (L.Used);
+
+   function Element (L : List; Index : Positive) return Event
+   is (L.Events (Index));
+
+end Ravenchart.Event_Lists;

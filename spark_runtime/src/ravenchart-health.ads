@@ -1,0 +1,23 @@
+--  What can go wrong at run time, as typed faults that a chart can react to.
+--
+--  Guarantees   no state
+--  Tasking      none
+--  Timing       none
+
+package Ravenchart.Health
+  with SPARK_Mode, Pure
+is
+
+   type Fault_Kind is
+     (Deadline_Miss,
+      Overrun,
+      Queue_Overflow,
+      Stale_Input,
+      Can_Error_Passive,
+      Can_Bus_Off);
+   --  The faults the runtime and the HAL can notice.
+
+   type Fault_Counts is array (Fault_Kind) of Event_Count;
+   --  How often each fault was recorded.
+
+end Ravenchart.Health;

@@ -1,0 +1,66 @@
+--  The process around a controller on a Unix host: signals, scheduling
+--  policy, and the run's report.
+--
+--  Guarantees   a full disk or a closed file never disturbs the controller:
+--               the report is then cut short
+--  Tasking      the environment task only, at the lowest priority; gnatprove
+--               refuses a second task, since the state is not synchronous
+--  Timing       not bounded: it may wait for the disk
+--
+--  The report goes to the file that the environment variable RAVENCHART_TRACE
+--  names, and nowhere when it is not set. Lines: T time kind element value;
+--  P processor releases misses worst_response; A activity worst_execution;
+--  H kind count; L what count; END last. Times are nanoseconds.
+
+with Ravenchart.Health;
+with Ravenchart.Traces;
+
+package Ravenchart.Hosts
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (Process with External => (Async_Readers, Async_Writers,
+                                 Effective_Writes)),
+    Initializes    => Process
+is
+   procedure Start
+   with Global => (In_Out => Process);
+   --  Catch SIGTERM and SIGINT, open the report, and warn on standard error
+   --  when the process has no real-time priorities.
+
+   function Stop_Requested return Boolean
+   with Volatile_Function, Global => Process;
+   --  Has a signal asked the controller to end?
+
+   procedure Put_Trace (Item : Traces.Trace_Record)
+   with Global => (In_Out => Process);
+   --  Write a T line.
+
+   procedure Put_Processor
+     (Id             : Element_Id;
+      Releases       : Event_Count;
+      Misses         : Event_Count;
+      Worst_Response : Nanoseconds)
+   with Global => (In_Out => Process);
+   --  Write a P line.
+
+   procedure Put_Activity (Id : Element_Id; Worst_Execution : Nanoseconds)
+   with Global => (In_Out => Process);
+   --  Write an A line.
+
+   procedure Put_Fault_Count (Kind : Health.Fault_Kind; Count : Event_Count)
+   with Global => (In_Out => Process);
+   --  Write an H line.
+
+   procedure Put_Lost (What : String; Count : Event_Count)
+   with
+     Global => (In_Out => Process),
+     Pre    => What'Length in 1 .. 80;
+   --  Write an L line; What is one word.
+
+   procedure Finish (Success : Boolean)
+   with Global => (In_Out => Process);
+   --  Write the END line and end the process: status 0 on Success, else 1.
+   --  Tasks never end by themselves.
+
+end Ravenchart.Hosts;

@@ -1,0 +1,41 @@
+--  One release of a processor: run its activities, first to last, measure
+--  each one, and judge the deadline. Periodic and sporadic processors share
+--  it.
+--
+--  Guarantees   activities run in the order of Activity_Id; a completion
+--               later than Deadline after Due is counted and reported once
+--  Tasking      Run by the one task of the processor, Observe by any task up
+--               to Ceiling
+--  Timing       the activities, and two clock readings for each
+
+with System;
+with Ada.Real_Time;
+with Ravenchart.Monitors;
+with Ravenchart.Schedules;
+
+generic
+   type Activity_Id is (<>);
+   type Table_Type is array (Activity_Id) of Schedules.Slot;
+   Table : Table_Type;
+   --  When each activity runs; they run in the order of Activity_Id.
+   Deadline : Positive_Nanoseconds;
+   Ceiling : System.Any_Priority;
+   with procedure Execute (Activity : Activity_Id);
+   --  Run it once. Always returns, never suspends.
+   with procedure On_Deadline_Miss;
+   --  Called once for each release that completes after its deadline.
+package Ravenchart.Measured_Releases
+  with SPARK_Mode
+is
+   package Monitor is new Monitors
+     (Activity_Id => Activity_Id,
+      Ceiling     => Ceiling);
+
+   procedure Run (Release : Natural; Due : Ada.Real_Time.Time);
+   --  Run the release that was due at Due and record it.
+
+   procedure Observe (S : out Monitor.Statistics)
+   with Global => (Input => Monitor.State);
+   --  What was observed so far.
+
+end Ravenchart.Measured_Releases;

@@ -1,0 +1,41 @@
+--  What was observed of one processor: releases, misses and worst times.
+--
+--  Guarantees   worst values only grow; one Read sees one instant
+--  Tasking      any task up to Ceiling
+--  Timing       linear in the number of activities, never blocks
+--  Analysis     one shared object, ceiling Ceiling
+
+with System;
+
+generic
+   type Activity_Id is (<>);
+   Ceiling : System.Any_Priority;
+   --  At least the priority of every caller.
+package Ravenchart.Monitors
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (State with Synchronous, External => (Async_Readers, Async_Writers)),
+    Initializes    => State
+is
+   type Execution_Times is array (Activity_Id) of Nanoseconds;
+   --  Processor time of each activity; 0 for one that did not run.
+
+   type Statistics is record
+      Releases        : Event_Count := 0;
+      Misses          : Event_Count := 0;
+      Worst_Response  : Nanoseconds := 0;
+      Worst_Execution : Execution_Times := (others => 0);
+   end record;
+   --  Misses counts the releases that completed after their deadline.
+
+   procedure Record_Release
+     (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times)
+   with Global => (In_Out => State);
+   --  One more release has completed.
+
+   procedure Read (S : out Statistics)
+   with Global => (Input => State);
+   --  Copy what was observed so far.
+
+end Ravenchart.Monitors;

@@ -1,0 +1,64 @@
+--  Periodic command processor: one task that runs its activity table once in
+--  every Period.
+--
+--  Guarantees   release K is due at Epochs.Start + Offset + K * Period: no
+--               drift; a late release is run late, never dropped or merged
+--  Tasking      Observe by any task up to Task_Priority
+--  Timing       each release, the activities whose slot names it
+--  Analysis     one task: T = Period, D = Deadline, O = Offset,
+--               P = Task_Priority, C = the largest sum of budgets over the
+--               releases of one Cycle
+--  Assumptions  ASM-003, the clock stays within the range of Time
+
+with System;
+with Ravenchart.Measured_Releases;
+with Ravenchart.Schedules;
+
+generic
+   type Activity_Id is (<>);
+   type Table_Type is array (Activity_Id) of Schedules.Slot;
+   Table : Table_Type;
+   --  When each activity runs; they run in the order of Activity_Id.
+   Cycle : Positive;
+   --  Releases after which the table repeats: a multiple of each divisor.
+   Period : Positive_Nanoseconds;
+   Offset : Nanoseconds;
+   Deadline : Positive_Nanoseconds;
+   Task_Priority : System.Priority;
+   Stack_Bytes : Positive;
+   with procedure Execute (Activity : Activity_Id);
+   --  Run one activity once. Always returns, never suspends.
+   with procedure On_Deadline_Miss;
+   --  Called once for each release that completes after its deadline.
+package Ravenchart.Periodic_Processors
+  with SPARK_Mode, Elaborate_Body
+is
+   pragma Assert (for all Slot of Table => Schedules.Fits (Slot, Cycle));
+
+   package Releases is new Measured_Releases
+     (Activity_Id      => Activity_Id,
+      Table_Type       => Table_Type,
+      Table            => Table,
+      Deadline         => Deadline,
+      Ceiling          => Task_Priority,
+      Execute          => Execute,
+      On_Deadline_Miss => On_Deadline_Miss);
+
+   subtype Statistics is Releases.Monitor.Statistics;
+   --  Releases, Misses, Worst_Response and Worst_Execution.
+
+   procedure Observe (S : out Statistics) renames Releases.Observe;
+   --  What was observed so far.
+
+private
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Processor
+   with Priority => Task_Priority, Storage_Size => Stack_Bytes;
+   --  Never ends. Its Global follows, instance by instance, from the two
+   --  actual procedures.
+
+end Ravenchart.Periodic_Processors;

@@ -1,0 +1,117 @@
+with Ravenchart.Bounded_Fifos;
+
+package body Ravenchart.Queues
+  with SPARK_Mode, Refined_State => (State => Queue)
+is
+   use type Queueing.Overflow_Policy;
+
+   package Fifos is new Bounded_Fifos
+     (Element_Type => Element_Type,
+      Null_Element => Null_Element);
+
+   protected Queue
+     with Priority => Ceiling
+   is
+      procedure Put (Item : Element_Type; Status : out Queueing.Put_Status);
+
+      procedure Take
+        (Item : out Element_Type; Status : out Queueing.Take_Status);
+
+      entry Wait (Item : out Element_Type);
+
+      function Lost return Event_Count;
+
+   private
+      Store    : Fifos.Fifo (Capacity);
+      Occupied : Boolean := False;
+      --  Kept equal to "Store is not empty", for a barrier must be simple.
+      Given_Up : Event_Count := 0;
+   end Queue;
+
+   protected body Queue is
+
+      procedure Put (Item : Element_Type; Status : out Queueing.Put_Status) is
+         Oldest : Element_Type;
+      begin
+         pragma Warnings
+           (GNATprove, Off, "statement has no effect",
+            Reason => "each instance has one policy");
+         if Fifos.Length (Store) < Capacity then
+            Fifos.Put (Store, Item);
+            Occupied := True;
+            Status   := Queueing.Queued;
+         elsif Policy = Queueing.Drop_Oldest then
+            pragma Warnings
+              (GNATprove, Off, """Oldest"" is set by*",
+               Reason => "what is dropped is not used");
+            Fifos.Get (Store, Oldest);
+            pragma Warnings (GNATprove, On, """Oldest"" is set by*");
+            Fifos.Put (Store, Item);
+            Occupied := True;
+            Given_Up := Next (Given_Up);
+            Status   := Queueing.Dropped_Oldest;
+         else
+            Given_Up := Next (Given_Up);
+            Status   := Queueing.Rejected_Full;
+         end if;
+         pragma Warnings (GNATprove, On, "statement has no effect");
+      end Put;
+
+      procedure Take
+        (Item : out Element_Type; Status : out Queueing.Take_Status) is
+      begin
+         if Fifos.Length (Store) > 0 then
+            Fifos.Get (Store, Item);
+            Occupied := Fifos.Length (Store) > 0;
+            Status   := Queueing.Taken;
+         else
+            Item   := Null_Element;
+            Status := Queueing.Empty;
+         end if;
+      end Take;
+
+      entry Wait (Item : out Element_Type) when Occupied is
+      begin
+         if Fifos.Length (Store) > 0 then
+            Fifos.Get (Store, Item);
+         else
+            --  Never so, but no invariant can tell the prover.
+            Item := Null_Element;
+         end if;
+         Occupied := Fifos.Length (Store) > 0;
+      end Wait;
+
+      function Lost return Event_Count
+      is (Given_Up);
+
+   end Queue;
+
+   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   with Refined_Global => (In_Out => Queue)
+   is
+   begin
+      Queue.Put (Item, Status);
+   end Put;
+
+   procedure Take (Item : out Element_Type; Status : out Queueing.Take_Status)
+   with Refined_Global => (In_Out => Queue)
+   is
+   begin
+      Queue.Take (Item, Status);
+   end Take;
+
+   procedure Wait (Item : out Element_Type)
+   with Refined_Global => (In_Out => Queue)
+   is
+   begin
+      Queue.Wait (Item);
+   end Wait;
+
+   function Lost return Event_Count
+   with Refined_Global => Queue
+   is
+   begin
+      return Queue.Lost;
+   end Lost;
+
+end Ravenchart.Queues;

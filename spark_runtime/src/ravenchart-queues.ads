@@ -1,0 +1,44 @@
+--  Bounded queue between tasks: a mailbox of a queued port, an event queue of
+--  a region, the way into and out of a driver.
+--
+--  Guarantees   strict order; what does not fit is given up by Policy and
+--               counted; every operation is total
+--  Tasking      any number of callers up to Ceiling; one caller of Wait
+--  Timing       constant; only Wait suspends
+--  Analysis     one shared object, ceiling Ceiling
+
+with System;
+with Ravenchart.Queueing;
+
+generic
+   type Element_Type is private;
+   Null_Element : Element_Type;
+   --  What Take hands over when there is nothing to take.
+   Capacity : Queueing.Capacity_Type;
+   Ceiling : System.Any_Priority;
+   --  At least the priority of every caller.
+   Policy : Queueing.Overflow_Policy;
+package Ravenchart.Queues
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (State with Synchronous, External => (Async_Readers, Async_Writers)),
+    Initializes    => State
+is
+   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   with Global => (In_Out => State);
+   --  Queue Item; a full queue gives up an element and counts it.
+
+   procedure Take (Item : out Element_Type; Status : out Queueing.Take_Status)
+   with Global => (In_Out => State);
+   --  Hand over the oldest element, or Null_Element when Empty.
+
+   procedure Wait (Item : out Element_Type)
+   with Global => (In_Out => State);
+   --  Suspend the one caller until there is an element, and hand it over.
+
+   function Lost return Event_Count
+   with Volatile_Function, Global => State;
+   --  How many elements were rejected or dropped.
+
+end Ravenchart.Queues;

@@ -1,0 +1,64 @@
+--  Sporadic command processor: one task that runs its activities once for
+--  each release it is given.
+--
+--  Guarantees   two releases are never due closer than Minimum_Separation; a
+--               release that comes earlier is due when the separation is over
+--  Tasking      Observe by any task up to Task_Priority
+--  Timing       each release, all activities
+--  Analysis     one task: T = Minimum_Separation, D = Deadline,
+--               P = Task_Priority, C = sum of the budgets. A response counts
+--               from the return of Wait or from the end of the separation
+--  Assumptions  ASM-003, the clock stays within the range of Time
+
+with System;
+with Ravenchart.Measured_Releases;
+with Ravenchart.Schedules;
+
+generic
+   type Activity_Id is (<>);
+   Minimum_Separation : Positive_Nanoseconds;
+   Deadline : Positive_Nanoseconds;
+   Task_Priority : System.Priority;
+   Stack_Bytes : Positive;
+   with procedure Wait;
+   --  Suspends until the next release.
+   with procedure Execute (Activity : Activity_Id);
+   --  Run one activity once. Always returns, never suspends.
+   with procedure On_Deadline_Miss;
+   --  Called once for each release that completes after its deadline.
+package Ravenchart.Sporadic_Processors
+  with SPARK_Mode, Elaborate_Body
+is
+   type Table_Type is array (Activity_Id) of Schedules.Slot;
+   --  Has the form that a release needs.
+
+   Table : constant Table_Type := (others => (Divisor => 1, Phase => 0));
+   --  Every activity runs in every release.
+
+   package Releases is new Measured_Releases
+     (Activity_Id      => Activity_Id,
+      Table_Type       => Table_Type,
+      Table            => Table,
+      Deadline         => Deadline,
+      Ceiling          => Task_Priority,
+      Execute          => Execute,
+      On_Deadline_Miss => On_Deadline_Miss);
+
+   subtype Statistics is Releases.Monitor.Statistics;
+   --  Releases, Misses, Worst_Response and Worst_Execution.
+
+   procedure Observe (S : out Statistics) renames Releases.Observe;
+   --  What was observed so far.
+
+private
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Processor
+   with Priority => Task_Priority, Storage_Size => Stack_Bytes;
+   --  Never ends. Its Global follows, instance by instance, from the three
+   --  actual procedures.
+
+end Ravenchart.Sporadic_Processors;

@@ -1,0 +1,85 @@
+--  The time-outs of one region, counted in executions of its activity.
+--
+--  Guarantees   the earliest expiry is taken first, ties in model order; all
+--               stated by the contracts
+--  Tasking      none of its own: the region's activity owns its timers
+--  Timing       linear in the number of timers
+
+package Ravenchart.Timers
+  with SPARK_Mode, Pure
+is
+
+   type Remaining_Count is range -(2**31) .. 2**31 - 1;
+   --  Executions until expiry; below zero, executions since.
+
+   type Timer is record
+      Armed     : Boolean := False;
+      Remaining : Remaining_Count := 0;
+   end record;
+   --  One time-out of a state.
+
+   type Timer_Array is array (Positive range <>) of Timer;
+   --  All time-outs of a region, in model order.
+
+   function Is_Due (T : Timer) return Boolean
+   is (T.Armed and then T.Remaining <= 0)
+   with Global => null;
+   --  Has T expired and not yet been taken?
+
+   function Ticked (T : Timer) return Timer
+   is (if T.Armed and then T.Remaining > Remaining_Count'First
+       then (Armed => True, Remaining => T.Remaining - 1)
+       else T)
+   with Global => null;
+   --  T one execution later.
+
+   function Precedes
+     (Timers : Timer_Array; Left, Right : Positive) return Boolean
+   is (Timers (Left).Remaining < Timers (Right).Remaining
+       or else (Timers (Left).Remaining = Timers (Right).Remaining
+                and then Left <= Right))
+   with
+     Global => null,
+     Pre    => Left in Timers'Range and then Right in Timers'Range;
+   --  Did Left expire before Right, or with it and stands no later?
+
+   procedure Arm (T : out Timer; Executions : Execution_Count)
+   with
+     Global => null,
+     Post   =>
+       T = (Armed     => True,
+            Remaining => Remaining_Count (Executions));
+   --  Let T expire after so many ticks.
+
+   procedure Disarm (T : out Timer)
+   with
+     Global => null,
+     Post   => T = (Armed => False, Remaining => 0);
+   --  Cancel T.
+
+   procedure Tick (Timers : in out Timer_Array)
+   with
+     Global => null,
+     Post   =>
+       (for all I in Timers'Range => Timers (I) = Ticked (Timers'Old (I)));
+   --  One more execution has begun.
+
+   procedure Take_Due (Timers : in out Timer_Array; Due : out Natural)
+   with
+     Global         => null,
+     Contract_Cases =>
+       ((for some T of Timers => Is_Due (T)) =>
+          Due in Timers'Range
+          and then Is_Due (Timers'Old (Due))
+          and then (for all I in Timers'Range =>
+                      (if Is_Due (Timers'Old (I))
+                       then Precedes (Timers'Old, Due, I)))
+          and then not Timers (Due).Armed
+          and then (for all I in Timers'Range =>
+                      (if I /= Due then Timers (I) = Timers'Old (I))),
+        others                               =>
+          Due = 0 and then Timers = Timers'Old);
+   --  Disarm the timer that expired earliest and say which; 0 when none is
+   --  due.
+
+end Ravenchart.Timers;

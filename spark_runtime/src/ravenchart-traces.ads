@@ -1,0 +1,26 @@
+--  One line of the execution trace.
+--
+--  Guarantees   no state
+--  Tasking      none
+--  Timing       none
+
+package Ravenchart.Traces
+  with SPARK_Mode, Pure
+is
+
+   type Trace_Kind is
+     (Sent, Arrived, Handled, Raised, Activity, Transition, State, Fault);
+   --  What happened to the element.
+
+   type Trace_Record is record
+      At_Time : Nanoseconds := 0;
+      Kind    : Trace_Kind := State;
+      Element : Element_Id := 0;
+      Value   : Integer := 0;
+   end record;
+   --  At_Time counts from Epochs.Start; Value is a detail of this Kind.
+
+   Null_Record : constant Trace_Record := (others => <>);
+   --  Stands where there is no record.
+
+end Ravenchart.Traces;

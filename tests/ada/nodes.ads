@@ -1,0 +1,23 @@
+--  The CAN controller under test, with the driver of this build.
+
+with System;
+with Ravenchart.Can;
+with Ravenchart.Can.Controllers;
+
+package Nodes is
+
+   function Accepts
+     (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
+      return Boolean;
+   --  All but the extended identifiers below 16#100#.
+
+   package Node is new Ravenchart.Can.Controllers
+     (Transmit_Ceiling => System.Default_Priority + 8,
+      Receive_Ceiling  => System.Default_Priority + 8,
+      Driver_Priority  => System.Default_Priority + 6,
+      Transmit_Depth   => 1_000,
+      Receive_Depth    => 100,
+      Stack_Bytes      => 65_536,
+      Accepts          => Accepts);
+
+end Nodes;

@@ -1,0 +1,68 @@
+--  The shared objects under test: the profile wants them at library level.
+
+with System;
+with Ravenchart.Blackboards;
+with Ravenchart.Bounded_Fifos;
+with Ravenchart.Event_Lists;
+with Ravenchart.Health_Counters;
+with Ravenchart.Monitors;
+with Ravenchart.Port_Regions;
+with Ravenchart.Queueing;
+with Ravenchart.Queues;
+with Ravenchart.Trace_Buffers;
+
+package Objects is
+
+   Ceiling : constant System.Priority := System.Default_Priority + 5;
+
+   type Job is (First_Job, Second_Job);
+
+   type Signal is (Start, Stop, Reset);
+
+   package Fifos is new Ravenchart.Bounded_Fifos
+     (Element_Type => Integer,
+      Null_Element => 0);
+
+   package Rejecting is new Ravenchart.Queues
+     (Element_Type => Integer,
+      Null_Element => -1,
+      Capacity     => 3,
+      Ceiling      => Ceiling,
+      Policy       => Ravenchart.Queueing.Reject_Newest);
+
+   package Dropping is new Ravenchart.Queues
+     (Element_Type => Integer,
+      Null_Element => -1,
+      Capacity     => 3,
+      Ceiling      => Ceiling,
+      Policy       => Ravenchart.Queueing.Drop_Oldest);
+
+   package Board is new Ravenchart.Blackboards
+     (Element_Type => Integer,
+      Initial      => 42,
+      Ceiling      => Ceiling);
+
+   package Ports is new Ravenchart.Port_Regions
+     (Value_Type => Integer,
+      Default    => 7);
+
+   package Events is new Ravenchart.Event_Lists
+     (Event    => Signal,
+      Capacity => 3);
+
+   package Counters is new Ravenchart.Health_Counters
+     (Ceiling => Ceiling);
+
+   package Trace is new Ravenchart.Trace_Buffers
+     (Capacity => 4,
+      Ceiling  => Ceiling);
+
+   package Large_Trace is new Ravenchart.Trace_Buffers
+     (Capacity => 65_536,
+      Ceiling  => Ceiling);
+
+   package Monitor is new Ravenchart.Monitors
+     (Activity_Id => Job,
+      Ceiling     => Ceiling);
+
+end Objects;

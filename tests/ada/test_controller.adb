@@ -1,0 +1,65 @@
+--  A controller on the loopback bus.
+
+with Ada.Real_Time;
+with Facts;
+with Nodes;
+with Ravenchart.Can;
+
+procedure Test_Controller is
+   use Ravenchart.Can;
+   use type Ada.Real_Time.Time;
+   use type Ravenchart.Event_Count;
+
+   Base : constant Frame_Format := Ravenchart.Can.Standard;
+   --  The literal alone would be hidden by package Standard.
+
+   procedure Settle;
+   --  Let the bus carry what was sent.
+
+   procedure Settle is
+   begin
+      delay until Ada.Real_Time.Clock + Ada.Real_Time.Milliseconds (200);
+   end Settle;
+
+   Status : Send_Status;
+   State  : Controller_State;
+   Count  : Counters;
+   F      : Frame;
+   Right  : Boolean := True;
+begin
+   Settle;
+   Nodes.Node.Read_State (State);
+   Facts.Check ("the controller is active", State = Error_Active);
+   for I in 1 .. 50 loop
+      Nodes.Node.Send
+        (Data_Frame (Identifier (I), Base, 2, 16#0101#), Status);
+      Right := Right and then Status = Queued;
+   end loop;
+   Facts.Check ("frames are queued", Right);
+   for I in 1 .. 50 loop
+      Nodes.Node.Wait_Frame (F);
+      Right := Right
+        and then F = Data_Frame (Identifier (I), Base, 2, 16#0101#);
+   end loop;
+   Facts.Check ("frames come back whole and in order", Right);
+   Nodes.Node.Send (Remote_Frame (5, Extended, 0), Status);
+   Right := Status = Queued;
+   Nodes.Node.Send (Remote_Frame (16#100#, Extended, 0), Status);
+   Right := Right and then Status = Queued;
+   Nodes.Node.Wait_Frame (F);
+   Facts.Check
+     ("the filter refuses what it does not accept",
+      Right and then F.Id = 16#100#);
+   for I in 1 .. 120 loop
+      Nodes.Node.Send (Data_Frame (1, Base, 0, 0), Status);
+   end loop;
+   Settle;
+   Nodes.Node.Read_Counters (Count);
+   Facts.Check
+     ("everything is counted",
+      Count.Sent = 172
+      and then Count.Received = 171
+      and then Count.Lost_In = 20
+      and then Count.Lost_Out = 0);
+   Facts.Finish;
+end Test_Controller;

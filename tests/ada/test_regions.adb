@@ -1,0 +1,215 @@
+--  The pure parts of regions: ports, timers, schedule slots, event lists, and
+--  the conversions of durations.
+
+with Ada.Real_Time;
+with Facts;
+with Objects;
+with Ravenchart.Epochs;
+with Ravenchart.Schedules;
+with Ravenchart.Timers;
+
+procedure Test_Regions is
+   use type Ada.Real_Time.Time_Span;
+   use type Objects.Ports.Change;
+   use type Objects.Signal;
+   use type Ravenchart.Execution_Count;
+   use type Ravenchart.Freshness;
+   use type Ravenchart.Nanoseconds;
+   use type Ravenchart.Timers.Remaining_Count;
+
+   procedure Check_Ports;
+
+   procedure Check_Timers;
+
+   procedure Check_Slots;
+
+   procedure Check_Events;
+
+   procedure Check_Durations;
+
+   -----------------
+   -- Check_Ports --
+   -----------------
+
+   procedure Check_Ports is
+      Port    : Objects.Ports.Port;
+      Outcome : Objects.Ports.Change;
+      Right   : Boolean := True;
+   begin
+      for I in 1 .. 5 loop
+         Objects.Ports.Handle (Port, False, 0, 2, Outcome);
+         Right := Right
+           and then Outcome = Objects.Ports.Nothing
+           and then Port.State = Ravenchart.Never_Received
+           and then Port.Value = 7;
+      end loop;
+      Facts.Check ("a port without arrival is never stale", Right);
+      Objects.Ports.Handle (Port, True, 11, 2, Outcome);
+      Facts.Check
+        ("an arrival makes a port fresh",
+         Outcome = Objects.Ports.Arrival
+         and then Port.State = Ravenchart.Fresh
+         and then Port.Value = 11
+         and then Port.Age = 0);
+      Objects.Ports.Handle (Port, False, 0, 2, Outcome);
+      Objects.Ports.Handle (Port, False, 0, 2, Outcome);
+      Facts.Check
+        ("a port is fresh up to its limit",
+         Outcome = Objects.Ports.Nothing
+         and then Port.State = Ravenchart.Fresh
+         and then Port.Age = 2);
+      Objects.Ports.Handle (Port, False, 0, 2, Outcome);
+      Facts.Check
+        ("a port is stale beyond its limit and keeps its value",
+         Outcome = Objects.Ports.Became_Stale
+         and then Port.State = Ravenchart.Stale
+         and then Port.Value = 11);
+      Objects.Ports.Handle (Port, False, 0, 2, Outcome);
+      Facts.Check
+        ("a port becomes stale once", Outcome = Objects.Ports.Nothing);
+      Port := (1, Ravenchart.Fresh, Ravenchart.Execution_Count'Last);
+      Objects.Ports.Handle
+        (Port, False, 0, Objects.Ports.Never_Stale, Outcome);
+      Facts.Check
+        ("the last limit means never stale",
+         Outcome = Objects.Ports.Nothing
+         and then Port.State = Ravenchart.Fresh);
+   end Check_Ports;
+
+   ------------------
+   -- Check_Timers --
+   ------------------
+
+   procedure Check_Timers is
+      Timers : Ravenchart.Timers.Timer_Array (1 .. 4);
+      None   : Ravenchart.Timers.Timer_Array (1 .. 0);
+      Due    : Natural;
+   begin
+      Ravenchart.Timers.Take_Due (None, Due);
+      Facts.Check ("no timers, none due", Due = 0);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("a timer is not armed at first", Due = 0);
+      Ravenchart.Timers.Arm (Timers (1), 3);
+      Ravenchart.Timers.Arm (Timers (2), 2);
+      Ravenchart.Timers.Arm (Timers (3), 1);
+      Ravenchart.Timers.Arm (Timers (4), 2);
+      Ravenchart.Timers.Tick (Timers);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("a timer of 1 is due in the next execution", Due = 3);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("a timer is taken once", Due = 0);
+      Ravenchart.Timers.Tick (Timers);
+      Ravenchart.Timers.Tick (Timers);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("the earliest expiry comes first", Due = 2);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("model order breaks a tie", Due = 4);
+      Ravenchart.Timers.Disarm (Timers (1));
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("a disarmed timer is not due", Due = 0);
+      Timers (1) := (True, Ravenchart.Timers.Remaining_Count'First);
+      Ravenchart.Timers.Tick (Timers);
+      Facts.Check
+        ("a timer stops counting at the end of its range",
+         Timers (1).Remaining = Ravenchart.Timers.Remaining_Count'First);
+      Ravenchart.Timers.Arm (Timers (1), 0);
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check ("a timer of 0 is due at once", Due = 1);
+   end Check_Timers;
+
+   -----------------
+   -- Check_Slots --
+   -----------------
+
+   procedure Check_Slots is
+      Third : constant Ravenchart.Schedules.Slot := (3, 1);
+      Count : Natural := 0;
+   begin
+      for Release in 0 .. 8 loop
+         if Ravenchart.Schedules.Runs_In (Third, Release) then
+            Count := Count + 1;
+         end if;
+      end loop;
+      Facts.Check ("a slot runs once in Divisor releases", Count = 3);
+      Facts.Check
+        ("a slot runs in its phase",
+         Ravenchart.Schedules.Runs_In (Third, 4)
+         and then not Ravenchart.Schedules.Runs_In (Third, 3));
+      Facts.Check
+        ("a slot fits a multiple of its divisor",
+         Ravenchart.Schedules.Fits (Third, 6)
+         and then not Ravenchart.Schedules.Fits (Third, 4)
+         and then not Ravenchart.Schedules.Fits ((3, 3), 6));
+   end Check_Slots;
+
+   ------------------
+   -- Check_Events --
+   ------------------
+
+   procedure Check_Events is
+      List : Objects.Events.List;
+   begin
+      Facts.Check ("a new list is empty", Objects.Events.Count (List) = 0);
+      Objects.Events.Append (List, Objects.Reset);
+      Objects.Events.Append (List, Objects.Start);
+      Objects.Events.Append (List, Objects.Stop);
+      Objects.Events.Append (List, Objects.Reset);
+      Facts.Check
+        ("a full list ignores an event and keeps its order",
+         Objects.Events.Count (List) = 3
+         and then Objects.Events.Element (List, 1) = Objects.Reset
+         and then Objects.Events.Element (List, 2) = Objects.Start
+         and then Objects.Events.Element (List, 3) = Objects.Stop);
+      Objects.Events.Clear (List);
+      Facts.Check
+        ("a cleared list is empty", Objects.Events.Count (List) = 0);
+   end Check_Events;
+
+   ---------------------
+   -- Check_Durations --
+   ---------------------
+
+   procedure Check_Durations is
+      type Sample_Array is array (Positive range <>)
+        of Ravenchart.Nanoseconds;
+      Samples : constant Sample_Array :=
+        (0, 1, 999, 1_000, 999_999_999, 1_000_000_000, 2_147_483_648,
+         60_000_000_000, 3_600_000_000_001, 2**61 + 12_345_678_901);
+      Same    : Boolean := True;
+   begin
+      for Length of Samples loop
+         Same := Same
+           and then Ravenchart.Epochs.To_Nanoseconds
+             (Ravenchart.Epochs.To_Span (Length)) = Length;
+      end loop;
+      Facts.Check ("durations survive the way to spans and back", Same);
+      Facts.Check
+        ("3 s are a span of 3 s",
+         Ravenchart.Epochs.To_Span (3_000_000_000)
+         = Ada.Real_Time.Seconds (3));
+      Facts.Check
+        ("a negative span is 0 ns",
+         Ravenchart.Epochs.To_Nanoseconds (Ada.Real_Time.Nanoseconds (-1))
+         = 0);
+      Facts.Check
+        ("a span that is too long saturates",
+         Ravenchart.Epochs.To_Nanoseconds (Ada.Real_Time.Time_Span_Last)
+         = Ravenchart.Nanoseconds'Last);
+      Facts.Check
+        ("the longest duration survives",
+         Ravenchart.Epochs.To_Nanoseconds
+           (Ravenchart.Epochs.To_Span (Ravenchart.Nanoseconds'Last))
+         = Ravenchart.Nanoseconds'Last
+         and then Ravenchart.Epochs.To_Nanoseconds
+           (Ravenchart.Epochs.To_Span (Ravenchart.Nanoseconds'Last - 1))
+         = Ravenchart.Nanoseconds'Last - 1);
+   end Check_Durations;
+
+begin
+   Check_Ports;
+   Check_Timers;
+   Check_Slots;
+   Check_Events;
+   Check_Durations;
+   Facts.Finish;
+end Test_Regions;

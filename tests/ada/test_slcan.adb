@@ -1,0 +1,219 @@
+--  The slcan parser: valid lines, garbage, and a million random bytes.
+
+with Facts;
+with Interfaces;
+with Ravenchart.Can;
+with Ravenchart.Can.Slcan;
+
+procedure Test_Slcan is
+   use Ravenchart.Can;
+   use type Interfaces.Unsigned_8;
+   use type Interfaces.Unsigned_64;
+   use type Slcan.Outcome;
+
+   Base : constant Frame_Format := Ravenchart.Can.Standard;
+   --  The literal alone would be hidden by package Standard.
+
+   Parser : Slcan.Parser;
+
+   procedure Feed
+     (Text : String; Result : out Slcan.Outcome; F : out Frame);
+   --  Feed a line and its carriage return.
+
+   function Says (Text : String; Expected : Slcan.Outcome) return Boolean;
+   --  Is this what the line is taken for?
+
+   procedure Check_Frames;
+
+   procedure Check_Commands;
+
+   procedure Check_Garbage;
+
+   procedure Check_Random_Bytes;
+
+   ----------
+   -- Feed --
+   ----------
+
+   procedure Feed
+     (Text : String; Result : out Slcan.Outcome; F : out Frame) is
+   begin
+      for C of Text loop
+         Slcan.Feed (Parser, Character'Pos (C), Result, F);
+         if Result /= Slcan.Incomplete then
+            return;
+         end if;
+      end loop;
+      Slcan.Feed (Parser, Slcan.Carriage_Return, Result, F);
+   end Feed;
+
+   ----------
+   -- Says --
+   ----------
+
+   function Says (Text : String; Expected : Slcan.Outcome) return Boolean is
+      Result : Slcan.Outcome;
+      F      : Frame;
+   begin
+      Feed (Text, Result, F);
+      return Result = Expected;
+   end Says;
+
+   ------------------
+   -- Check_Frames --
+   ------------------
+
+   procedure Check_Frames is
+      Result : Slcan.Outcome;
+      F      : Frame;
+   begin
+      Feed ("t1232AbcD", Result, F);
+      Facts.Check
+        ("a t line is a standard data frame, digits of either case",
+         Result = Slcan.Frame_Line
+         and then F = Data_Frame (16#123#, Base, 2, 16#CDAB#));
+      Feed ("T0000000181122334455667788", Result, F);
+      Facts.Check
+        ("a T line is an extended data frame",
+         Result = Slcan.Frame_Line
+         and then F =
+           Data_Frame (1, Extended, 8, 16#8877_6655_4433_2211#));
+      Feed ("r7FF4", Result, F);
+      Facts.Check
+        ("an r line is a standard remote frame",
+         Result = Slcan.Frame_Line
+         and then F = Remote_Frame (16#7FF#, Base, 4));
+      Feed ("R1FFFFFFF0", Result, F);
+      Facts.Check
+        ("an R line is an extended remote frame",
+         Result = Slcan.Frame_Line
+         and then F = Remote_Frame (2**29 - 1, Extended, 0));
+   end Check_Frames;
+
+   --------------------
+   -- Check_Commands --
+   --------------------
+
+   procedure Check_Commands is
+   begin
+      Facts.Check
+        ("the opening of python-can is understood",
+         Says ("C", Slcan.Close_Channel)
+         and then Says ("S6", Slcan.Other_Command)
+         and then Says ("", Slcan.Empty_Line)
+         and then Says ("O", Slcan.Open_Channel)
+         and then Says ("O", Slcan.Open_Channel));
+      Facts.Check
+        ("the queries are understood",
+         Says ("V", Slcan.Version_Query)
+         and then Says ("N", Slcan.Serial_Query));
+      Facts.Check
+        ("settings are taken and need no answer",
+         Says ("S0", Slcan.Other_Command)
+         and then Says ("S8", Slcan.Other_Command)
+         and then Says ("s031C", Slcan.Other_Command)
+         and then Says ("M00000000", Slcan.Other_Command)
+         and then Says ("mFFFFFFFF", Slcan.Other_Command)
+         and then Says ("Z1", Slcan.Other_Command)
+         and then Says ("F", Slcan.Other_Command));
+   end Check_Commands;
+
+   -------------------
+   -- Check_Garbage --
+   -------------------
+
+   procedure Check_Garbage is
+      type Text_Access is access constant String;
+
+      function "+" (Text : String) return Text_Access
+      is (new String'(Text));
+
+      Bad   : constant array (Positive range <>) of Text_Access :=
+        (+"t", +"t12", +"t123", +"t1239", +"t12321", +"t1232112233",
+         +"t8000", +"tXYZ0", +"t1231G0", +"T123", +"T2000000000",
+         +"T00000001", +"r12", +"r12341", +"R0000000", +"d1230", +"O1",
+         +"C0", +"VV", +"S", +"SX", +"?", +"hello", +"t12300112233");
+      Right : Boolean := True;
+   begin
+      for Text of Bad loop
+         if not Says (Text.all, Slcan.Rejected_Line) then
+            Facts.Check ("bad line " & Text.all, False);
+            Right := False;
+         end if;
+         Right := Right and then Says ("r0010", Slcan.Frame_Line);
+      end loop;
+      Facts.Check ("bad lines are rejected, the next one is read", Right);
+      Right := Says ((1 .. 26 => 'x'), Slcan.Rejected_Line)
+        and then Says ((1 .. 27 => 'x'), Slcan.Rejected_Line)
+        and then Says ((1 .. 5_000 => 't'), Slcan.Rejected_Line)
+        and then Says
+          ("T00000001811223344556677889", Slcan.Rejected_Line)
+        and then Says ("r0010", Slcan.Frame_Line);
+      Facts.Check ("overlong lines are rejected as a whole", Right);
+      Facts.Check
+        ("a parser that has read a line waits for the next",
+         Slcan.Pending (Parser) = 0);
+   end Check_Garbage;
+
+   ------------------------
+   -- Check_Random_Bytes --
+   ------------------------
+
+   procedure Check_Random_Bytes is
+      Alphabet : constant String := "tTrR0123456789ABCDEFabcdefOCSVN";
+      Seed     : Interfaces.Unsigned_64 := 7;
+      Byte     : Interfaces.Unsigned_8;
+      Result   : Slcan.Outcome;
+      F        : Frame;
+      Lines    : Natural := 0;
+      Frames   : Natural := 0;
+      Rejected : Natural := 0;
+      Returns  : Natural := 0;
+      Right    : Boolean := True;
+   begin
+      for I in 1 .. 1_000_000 loop
+         Seed :=
+           Seed * 6_364_136_223_846_793_005 + 1_442_695_040_888_963_407;
+         Byte := Interfaces.Unsigned_8
+           (Interfaces.Shift_Right (Seed, 40) and 16#FF#);
+         if I > 500_000 then
+            --  Bytes that lines are made of.
+            Byte :=
+              (if Byte < 20 then Slcan.Carriage_Return
+               else Character'Pos
+                 (Alphabet (Natural (Byte) mod Alphabet'Length + 1)));
+         end if;
+         Slcan.Feed (Parser, Byte, Result, F);
+         if Byte = Slcan.Carriage_Return then
+            Returns := Returns + 1;
+         end if;
+         if Result /= Slcan.Incomplete then
+            Lines := Lines + 1;
+         end if;
+         if Result = Slcan.Frame_Line then
+            Frames := Frames + 1;
+            Right  := Right and then Fits (F.Id, F.Format);
+         elsif Result = Slcan.Rejected_Line then
+            Rejected := Rejected + 1;
+         end if;
+      end loop;
+      Facts.Check
+        ("a million random bytes end a line at each carriage return",
+         Lines = Returns);
+      Facts.Check
+        ("random bytes give some frames, all well formed",
+         Right and then Frames > 0);
+      Facts.Check ("random bytes are mostly rejected", Rejected > Frames);
+      Slcan.Feed (Parser, Slcan.Carriage_Return, Result, F);
+      Facts.Check
+        ("a frame is read after random bytes",
+         Says ("t0010", Slcan.Frame_Line));
+   end Check_Random_Bytes;
+
+begin
+   Check_Frames;
+   Check_Commands;
+   Check_Garbage;
+   Check_Random_Bytes;
+   Facts.Finish;
+end Test_Slcan;

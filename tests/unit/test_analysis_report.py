@@ -1,0 +1,209 @@
+"""What people read: findings, the terminal table, the HTML report."""
+
+from __future__ import annotations
+
+import io
+import re
+from html.parser import HTMLParser
+
+import pytest
+from rich.console import Console
+
+from analysis.findings import findings
+from analysis.observed import Observation, read_map, read_trace
+from analysis.report import FrameRow, RunReport, StepRow, compare, render
+from analysis.response_times import analyse
+from analysis.table import show
+from analysis.units import duration, microseconds
+from gen.diagnostics import render as render_diagnostic
+from gen.model import System
+from tests.support.plant_model import plant
+from tests.support.robot_files import trace_map
+from tests.support.systems import bus, message, shared, system, task
+
+
+def late() -> System:
+    tasks = [
+        task("can_rx", 3, 700_000, 2_000_000, line=12),
+        task("trajectory", 2, 1_000_000, 5_000_000, line=20),
+        task("control", 1, 4_300_000, 10_000_000, 9_000_000, line=41),
+        task("logger", 0, 9_000_000, 10_000_000, line=50),
+    ]
+    return system(tasks, [shared("goal", 2, 5_000, "trajectory", "control")])
+
+
+def test_a_missed_deadline_reads_like_a_compilers_error() -> None:
+    first, second = findings(analyse(late()))
+    assert render_diagnostic(second, {}) == (
+        "model.yaml:41:3: error: control needs over 9 ms: it may take 9800 us [RV-0901]\n"
+        "model.yaml:41:3: note: it runs for up to 4300 us itself\n"
+        "model.yaml:12:3: note: it is preempted by can_rx, period 2 ms: 5 x 700 us = 3500 us\n"
+        "model.yaml:20:3: note: it is preempted by trajectory, period 5 ms: 2 x 1 ms = 2 ms\n"
+        "model.yaml:41:3: hint: lengthen its period, or move an activity to a slower processor"
+    )
+    assert first.message == (
+        "logger has no response-time bound: it and what preempts it need 188.0 % of the core"
+    )
+
+
+def test_the_blocker_is_named_with_its_object() -> None:
+    tasks = [task("fast", 2, 900, 1000, 1000, line=3), task("slow", 1, 100, 10_000, line=5)]
+    (only,) = findings(analyse(system(tasks, [shared("store", 2, 200, "fast", "slow")])))
+    assert "slow may hold it up for 200 ns inside store" in [text for _, text in only.notes]
+
+
+def test_an_overloaded_bus_is_a_finding() -> None:
+    (only,) = findings(analyse(system([], (), [bus()], [message("a", period=200_000)])))
+    assert (only.code, only.message) == ("RV-0903", "bus may be loaded to 135.0 %")
+
+
+def test_a_schedulable_system_has_no_findings() -> None:
+    assert findings(analyse(plant())) == ()
+
+
+def printed(one: System, *, terminal: bool = False) -> str:
+    out = io.StringIO()
+    console = Console(file=out, width=80, highlight=False, force_terminal=terminal)
+    show(analyse(one), console)
+    return out.getvalue()
+
+
+def test_the_table_says_the_verdict_first_and_marks_failures_in_words() -> None:
+    lines = printed(late()).splitlines()
+    assert lines[0] == "Sample: 2 of 4 deadlines may be missed: logger and 1 more"
+    body = [line for line in lines if re.match(r"(logger|control|trajectory|can_rx) ", line)]
+    assert [line.split()[0] for line in body] == ["logger", "control", "can_rx", "trajectory"]
+    assert [line.split()[-1] for line in body] == ["NONE", "MISS", "ok", "ok"]
+
+
+@pytest.mark.parametrize("one", [late(), plant()])
+def test_the_table_fits_80_columns_and_has_no_colour_outside_a_terminal(one: System) -> None:
+    text = printed(one)
+    assert max(map(len, text.splitlines())) <= 80
+    assert "\x1b" not in text
+    assert "\x1b" in printed(one, terminal=True)
+
+
+def test_long_names_are_folded_and_not_cut() -> None:
+    one = system([task("robot_bus.driver_rx." + "x" * 60, 1, 1_000, 1_000_000_000)])
+    assert printed(one).replace("\n", "").count("x") >= 60
+
+
+class Page(HTMLParser):
+    """Collects tags and text, and complains of tags that do not pair up."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_the_report_is_one_well_formed_file_without_outside_references() -> None:
+    text = render(analyse(plant()))
+    page = Page(text)
+    assert page.open == []
+    assert not [tag for tag, _ in page.tags if tag in ("script", "link", "img", "iframe")]
+    assert not re.findall(r"(?:src|href)=|url\(http", text)
+    for phrase in (
+        "every deadline is met",
+        "Lehoczky",
+        "Reference Manual, D.3",
+        "sensor.filtered",
+        "raw_level",
+        "55 + 10 s bits",
+        "5" * 64,
+    ):
+        assert phrase in page.text
+
+
+def test_the_bars_parts_add_up_to_the_response() -> None:
+    text = render(analyse(plant()))
+    bars = re.findall(r'aria-label="response against deadline">(.*?)<span class="deadline"', text)
+    widths = [sum(map(float, re.findall(r"width:([\d.]+)%", bar))) for bar in bars]
+    shares = [100 * (r.bound or 0) / r.task.deadline for r in analyse(plant()).worst_first()]
+    assert widths == pytest.approx(shares, abs=0.01)
+
+
+def test_names_are_escaped() -> None:
+    one = system([task("<b>&amp;", 1, 1_000, 2_000)])
+    assert "&lt;b&gt;&amp;amp;" in render(analyse(one))
+
+
+def test_the_same_analysis_gives_the_same_bytes() -> None:
+    assert render(analyse(late())) == render(analyse(late()))
+
+
+def observation() -> Observation:
+    lines = ["T 5 STATE 10 0", "T 900 STATE 10 1", "P 1 100 0 300000", "L trace 0", "END"]
+    return read_trace(lines, read_map(trace_map(["x"])))
+
+
+def run_report(*, comparable: bool = True) -> RunReport:
+    return RunReport(
+        title="A short run",
+        passed=True,
+        verdict="every step passed",
+        notes=("a <note>",),
+        steps=(StepRow("wait 1 s", "done", True, 0.0), StepRow("pull x", "broken", False, 1.0)),
+        frames=(FrameRow("robot_status", "from controller", 12),),
+        comparable=comparable,
+        observation=observation(),
+        pictures=(("A picture", "<svg></svg>"),),
+    )
+
+
+def test_a_run_adds_its_steps_states_frames_and_observations() -> None:
+    page = Page(render(analyse(plant()), run_report()))
+    for phrase in (
+        "Run: PASS",
+        "A short run",
+        "a <note>",
+        "Idle, Seeking",
+        "robot_status",
+        "A picture",
+        "FAILED",
+        "Observed beside bound",
+    ):
+        assert phrase in page.text
+    assert "Not comparable" not in page.text
+    assert "Not comparable" in render(analyse(plant()), run_report(comparable=False))
+
+
+def test_observed_times_stand_beside_the_bound_of_the_same_task() -> None:
+    (row,) = compare(analyse(plant()), observation())
+    assert (row.task, row.observed, row.exceeded) == ("control", 300_000, False)
+    assert row.bound == analyse(plant()).response("control").bound
+
+
+def test_times_read_as_people_write_them() -> None:
+    assert [duration(n) for n in (0, 5, 1_500, 250_000, 10_000_000, 2 * 10**9)] == [
+        "0 us",
+        "5 ns",
+        "1500 ns",
+        "250 us",
+        "10 ms",
+        "2 s",
+    ]
+    assert [microseconds(n) for n in (0, 1, 1_000, 12_345, -2_500)] == [
+        "0",
+        "0.1",
+        "1",
+        "12.4",
+        "-2.5",
+    ]

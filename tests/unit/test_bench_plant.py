@@ -1,0 +1,132 @@
+"""The simulated drive: bounds, energy, timing, switches, determinism."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hw_can.bench.plant import STEP, Axis, Condition, Drive, Limit, Mode, Push
+
+AXIS = Axis(stroke=0.4, start=0.05, low_switch=0.008, high_switch=0.39, count_at_start=-1234)
+
+
+def run(drive: Drive, seconds: float, speed: float | None = None) -> list[float]:
+    """Speeds over that time; with ``speed`` a set point arrives every 10 ms."""
+    speeds = []
+    for index in range(round(seconds / STEP)):
+        if speed is not None and index % 20 == 0:
+            drive.command(Mode.ENABLED, speed)
+        drive.step()
+        speeds.append(drive.speed)
+    return speeds
+
+
+def test_a_small_step_of_speed_is_reached_with_the_loops_time_constant() -> None:
+    speeds = run(Drive(AXIS), 0.2, 0.02)
+    reached = next(i for i, s in enumerate(speeds) if s >= 0.63 * 0.02) * STEP
+    assert 0.010 <= reached <= 0.016
+    assert speeds[-1] == pytest.approx(0.02, abs=0.0002)
+    assert max(speeds) < 1.15 * 0.02
+
+
+def test_a_large_step_is_bounded_by_the_motors_force() -> None:
+    speeds = run(Drive(AXIS), 0.1, 0.4)
+    gains = [(b - a) / STEP for a, b in itertools.pairwise(speeds)]
+    assert 2.4 < max(gains) <= 3.0
+
+
+def test_a_set_speed_of_zero_holds_the_axis() -> None:
+    drive = Drive(AXIS)
+    run(drive, 0.3, 0.1)
+    run(drive, 0.3, 0.0)
+    held = drive.position
+    assert abs(drive.speed) < 0.0005
+    run(drive, 0.5, 0.0)
+    assert drive.position == pytest.approx(held, abs=0.0001)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(Mode), st.floats(-2, 2)), min_size=1, max_size=40))
+def test_the_axis_never_leaves_its_stops_and_gains_no_energy_from_nothing(
+    commands: list[tuple[Mode, float]],
+) -> None:
+    drive = Drive(AXIS)
+    for mode, speed in commands:
+        drive.command(mode, speed)
+        for _ in range(40):
+            before, from_speed = drive.kinetic_energy, abs(drive.speed)
+            drive.step()
+            assert 0.0 <= drive.position <= AXIS.stroke
+            push = abs(drive.force) * max(from_speed, abs(drive.speed)) * STEP
+            assert drive.kinetic_energy <= before + push + 1e-12
+
+
+def test_a_disabled_axis_loses_all_its_speed_and_stays() -> None:
+    drive = Drive(AXIS)
+    run(drive, 0.3, 0.25)
+    drive.command(Mode.DISABLED, 0.25)
+    speeds = run(drive, 0.1)
+    assert all(b <= a for a, b in itertools.pairwise(speeds))
+    assert speeds[-1] == 0.0
+
+
+def test_the_encoder_counts_from_power_on() -> None:
+    drive = Drive(AXIS)
+    assert drive.count == -1234
+    run(drive, 0.5, 0.1)
+    assert drive.count == -1234 + round((drive.position - AXIS.start) * 1e6)
+
+
+def test_the_switches_follow_the_position_and_the_hand() -> None:
+    def limit(position: float, push: Push = Push.NONE) -> Limit:
+        drive = Drive(AXIS)
+        drive.position, drive.push = position, push
+        return drive.limit
+
+    assert [limit(p) for p in (0.0079, 0.008, 0.39, 0.3901)] == [
+        Limit.LOW_END,
+        Limit.CLEAR,
+        Limit.CLEAR,
+        Limit.HIGH_END,
+    ]
+    assert limit(0.2, Push.LOW) is Limit.LOW_END
+    assert limit(0.2, Push.HIGH) is Limit.HIGH_END
+
+
+def test_driving_into_the_stop_leaves_the_axis_there() -> None:
+    drive = Drive(AXIS)
+    run(drive, 1.5, -0.2)
+    assert drive.position == 0.0
+    assert drive.limit is Limit.LOW_END
+
+
+def test_a_drive_that_hears_nothing_stops_and_faults_until_it_hears_again() -> None:
+    drive = Drive(AXIS)
+    run(drive, 0.3, 0.2)
+    run(drive, 0.085)
+    assert drive.condition is Condition.READY
+    run(drive, 0.16)
+    assert (drive.condition, drive.speed) == (Condition.FAULTED, 0.0)
+    drive.command(Mode.ENABLED, 0.1)
+    assert drive.condition is Condition.READY
+
+
+def test_a_drive_that_was_never_enabled_does_not_fault() -> None:
+    drive = Drive(AXIS)
+    run(drive, 0.5)
+    assert (drive.condition, drive.position) == (Condition.READY, AXIS.start)
+
+
+def test_the_same_commands_give_the_same_motion() -> None:
+    assert run(Drive(AXIS), 0.4, 0.17) == run(Drive(AXIS), 0.4, 0.17)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "start"), [(0.3, 0.2, 0.1), (0.01, 0.5, 0.1), (0.01, 0.3, 0.9)]
+)
+def test_an_impossible_axis_is_refused(low: float, high: float, start: float) -> None:
+    with pytest.raises(ValueError, match="stroke"):
+        Axis(stroke=0.4, start=start, low_switch=low, high_switch=high)
