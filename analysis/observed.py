@@ -3,8 +3,8 @@
 The file holds one record a line, times in nanoseconds from the controller's start:
 ``T time kind element value``, then the counts ``P processor releases misses
 worst_response``, ``A row worst_execution``, ``H fault count``, ``L what count``,
-and ``END``. Without ``END`` the run was cut off. The map tells what each element
-number stands for.
+``W host_latency``, and ``END``. Without ``END`` the run was cut off. The map tells
+what each element number stands for.
 """
 
 from __future__ import annotations
@@ -20,6 +20,10 @@ KINDS = frozenset(
     {"sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault"}
 )
 """What a T line may tell, in lower case."""
+
+
+_GOOD = ("sent", "received")
+"""Last words of the L lines that count no losses."""
 
 
 class TraceError(Exception):
@@ -102,13 +106,21 @@ class Observation:
     processors: dict[str, Releases] = field(default_factory=dict)
     executions: dict[str, Ns] = field(default_factory=dict)
     faults: dict[str, int] = field(default_factory=dict)
-    losses: dict[str, int] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+    """The L lines: frames that went well, and everything that was lost."""
+    host_latency: Ns | None = None
+    """Longest time for which the host withheld the core, where a probe measured it."""
     complete: bool = False
 
     @property
     def misses(self) -> int:
         """Deadlines missed on all processors."""
         return sum(p.misses for p in self.processors.values())
+
+    @property
+    def losses(self) -> dict[str, int]:
+        """The counts of what was lost: all but frames sent and received."""
+        return {what: n for what, n in self.counts.items() if what.rpartition(".")[2] not in _GOOD}
 
     @property
     def trace_lost(self) -> int:
@@ -188,7 +200,9 @@ def _take(words: list[str], seen: Observation) -> None:
         case ["H", kind, count]:
             seen.faults[kind] = _count(count)
         case ["L", what, count]:
-            seen.losses[what] = _count(count)
+            seen.counts[what] = _count(count)
+        case ["W", latency]:
+            seen.host_latency = Ns(_count(latency))
         case ["END"]:
             seen.complete = True
         case _:

@@ -43,13 +43,32 @@ class FrameRow:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Longest response seen of one task, beside its bound (None: none known)."""
+    """Longest response seen of one task, beside its bound (None: none known).
+
+    ``withheld`` is the longest time for which the host kept the core to itself, as
+    far as the controller measured it: the analysis does not know of that.
+    """
 
     task: str
     releases: int
     misses: int
     observed: int
     bound: int | None
+    withheld: int = 0
+
+    @property
+    def explained(self) -> bool:
+        """What was seen is above the bound by no more than the host withheld."""
+        return self.exceeded and self.observed <= (self.bound or 0) + self.withheld
+
+    @property
+    def word(self) -> str:
+        """How the task fared: in order, by the host's fault, or not."""
+        if not self.misses and not self.exceeded:
+            return "ok"
+        if self.explained:
+            return "host"
+        return "MISS" if self.misses else "ABOVE"
 
     @property
     def exceeded(self) -> bool:
@@ -81,11 +100,43 @@ class RunReport:
     pictures: tuple[tuple[str, str], ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """Longest execution seen of one row, beside the worst case that the model claims."""
+
+    row: str
+    observed: int
+    claimed: int
+
+    @property
+    def exceeded(self) -> bool:
+        """What was seen is longer than the claim."""
+        return self.observed > self.claimed
+
+
+def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
+    """The rows that ran, closest to their claim first."""
+    slots = [slot for processor in analysis.system.processors for slot in processor.slots]
+    rows = [
+        Execution(slot.element, seen.executions[slot.element], slot.timing.wcet)
+        for slot in slots
+        if slot.element in seen.executions
+    ]
+    return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))
+
+
 def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     """Each processor's longest response beside its bound, closest to the bound first."""
     bounds = {r.task.element.lower(): r.bound for r in analysis.responses}
     rows = [
-        Comparison(name, p.releases, p.misses, p.worst_response, bounds.get(name.lower()))
+        Comparison(
+            name,
+            p.releases,
+            p.misses,
+            p.worst_response,
+            bounds.get(name.lower()),
+            seen.host_latency or 0,
+        )
         for name, p in seen.processors.items()
     ]
     return tuple(sorted(rows, key=lambda row: -row.ratio))
@@ -145,6 +196,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "run": run,
         "pictures": [(c, Markup(svg)) for c, svg in run.pictures] if run else [],
         "compared": compare(analysis, run.observation) if run and run.observation else (),
+        "executions": executions(analysis, run.observation) if run and run.observation else (),
         "visits": _visits(run),
     }
 

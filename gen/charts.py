@@ -134,6 +134,7 @@ def _state(
             if initial is not None and initial.lower() not in inside:
                 message = f"`{initial}` is not inside {name}, whose initial state it shall be"
                 findings.error("RV-0501", form.at("initial"), message)
+                initial = None
         elif not form.lost("initial"):
             message = f"{name} has substates and needs the key `initial`"
             hint = f"`initial: {next(iter(form.states))}`?"

@@ -11,7 +11,7 @@ from .members import Members, Namespace, members_of, outputs_of, vocabulary_of
 from .model import Activity, Component, Direction, Region, StateRef, Timing
 from .names import Findings, Scope, meant
 from .quantities import shown
-from .schema import ActivityForm, ComponentForm, PortRegionForm, RegionForm
+from .schema import ActivityForm, ComponentForm, PortRegionForm, ProbeForm, RegionForm
 from .terms import Flow, Ns, Origin, Type
 from .vocabulary import Vocabulary
 
@@ -32,10 +32,13 @@ class Parts:
 
 
 def timing_of(
-    name: str, form: PortRegionForm | RegionForm | ActivityForm, findings: Findings
+    name: str,
+    form: PortRegionForm | RegionForm | ActivityForm | ProbeForm,
+    findings: Findings,
 ) -> Timing:
     """Period, WCET and deadline, checked against each other."""
-    deadline = form.period if form.deadline is None else form.deadline
+    given = None if isinstance(form, ProbeForm) else form.deadline
+    deadline = form.period if given is None else given
     if deadline > form.period:
         message = (
             f"the deadline of {name}, {shown(deadline)}, is longer than its period, "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from .components import Parts
+from .components import Parts, timing_of
 from .derive import table_deadline, table_period
 from .model import (
     Bus,
@@ -48,10 +48,13 @@ class Site:
     findings: Findings
 
 
-def node_of(name: str, form: NodeForm) -> Node:
-    """A node."""
+def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
+    """A node, with the timing of its probe."""
     times = Ns(form.context_switch), Ns(form.critical_section)
-    return Node(name, form.origin, *times, form.trace)
+    probe = None
+    if form.probe is not None:
+        probe = timing_of("the probe", form.probe, findings)
+    return Node(name, form.origin, *times, form.trace, probe)
 
 
 def bus_of(name: str, form: BusForm) -> Bus:

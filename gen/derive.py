@@ -21,6 +21,9 @@ from .model import (
 )
 from .terms import Ns
 
+PROBE = "probe"
+"""A node's host probe, as a task."""
+
 MAIN = "main"
 """The environment task: priority 0, below all tasks, and not among them."""
 
@@ -116,6 +119,15 @@ def tasks_of(system: System) -> tuple[Task, ...]:
             period = message.period
             tasks.append(
                 Task(element, message.origin, node, period, Ns(0), period, budget, top + 1)
+            )
+    for host in system.nodes:
+        if host.probe is not None:
+            budget = Ns(host.probe.wcet + 2 * host.context_switch)
+            period, deadline = host.probe.period, host.probe.deadline
+            element = f"{host.name}.{PROBE}"
+            level = top + (2 if system.messages else 1)
+            tasks.append(
+                Task(element, host.origin, host.name, period, Ns(0), deadline, budget, level)
             )
     return tuple(tasks)
 
@@ -254,6 +266,10 @@ def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...
     objects.append(sharing.made("health", everyone))
     if any(node.trace_depth for node in system.nodes):
         objects.append(sharing.made("trace", everyone))
+    for node in system.nodes:
+        if node.probe is not None:
+            element = f"{node.name}.{PROBE}"
+            objects.append(sharing.made(f"{element}.board", [element, MAIN]))
     return tuple(objects)
 
 

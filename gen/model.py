@@ -302,6 +302,8 @@ class Node:
     """Longest time inside any protected operation of the runtime on this node."""
     trace_depth: int
     """Records that the trace holds between two looks at it; 0: no trace."""
+    probe: Timing | None = None
+    """The host probe: a task above all others that measures how late it wakes."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,6 +37,7 @@ TITLES: Mapping[str, str] = {
     "RaiseForm": "Action: raise",
     "IfForm": "Action: if",
     "NodeForm": "Node",
+    "ProbeForm": "Probe",
     "BusForm": "Bus",
     "InstanceForm": "Instance",
     "ConnectionForm": "Connection",
@@ -66,7 +67,8 @@ Operators, loosest first: `if a then b else c`; `or`; `and`; `not`; `= /= < <= >
 `clamp(x, low, high)`, `fresh(port)`, `stale(port)`, `never_received(port)`, and
 `in(Region.State)`. A name is a data item, a parameter or an input port of the component, or a
 field of one (`order.target`). An enumeration literal takes its type from what it is compared with
-or given to. `/` rounds towards zero.
+or given to; where that has the literal, it goes before a name of another type. `/` rounds towards
+zero.
 
 Bounds are computed from the ranges of the types. `if`, `and` and `or` let what stands behind a
 comparison use it: in `if x < 1000 then x + 1 else 0`, `x + 1` is at most 1000. What is set or sent

@@ -221,7 +221,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         "component",
         lambda key, form: parts_of(key, form, types, literals, name, findings),
     )
-    nodes = sections.named("nodes", "node", node_of)
+    nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
     buses = sections.named("buses", "bus", bus_of)
     instances = sections.scope("instances", "instance")
     site = Site(nodes, buses, parts, instances, findings)

@@ -93,7 +93,7 @@ def steps_send_once(component: Component, resolved: Resolved) -> Iterator[Diagno
     """No step, and no execution of an activity, can send twice on one port."""
     reported: set[tuple[Origin, Origin]] = set()
     ways: list[tuple[str, Sends]] = []
-    for region in component.regions:
+    for region in _sound_regions(component, resolved):
         ways.append((f"entering {region.name}", _sends(_entries(region, None, region.initial))))
         for transition in region.transitions:
             what = f"the transition {transition.name} of {region.name}"

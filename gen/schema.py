@@ -275,6 +275,13 @@ class ComponentForm(Element):
 # --- Deployment ------------------------------------------------------------------
 
 
+class ProbeForm(Element):
+    """The host probe of a node: it wakes once per period and notes how late it is."""
+
+    period: PositiveSpan = key("Time from one wake-up to the next.")
+    wcet: PositiveSpan = key("Worst-case execution time of one wake-up; at most the period.")
+
+
 class NodeForm(Element):
     """A processor core and its platform figures, all of them worst cases."""
 
@@ -282,6 +289,9 @@ class NodeForm(Element):
     critical_section: Span = key("Longest time inside any protected operation.")
     trace: int = PydanticField(
         default=0, ge=0, le=1_048_576, description="Records the trace holds, 0 to 1048576; 0: none."
+    )
+    probe: ProbeForm | None = optional(
+        "A task above all others that measures how long a host withholds the processor."
     )
 
 

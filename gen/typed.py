@@ -95,6 +95,8 @@ class Checker:
             self.findings.lose()
             return None
         kind, name, type_ = found
+        if term.kind == "name" and type_ is not expected and _is_literal_of(term.word, expected):
+            return self.literal(term, expected)
         if term.kind == "name":
             return self.reading(Name(kind, name, None, type_), type_)
         if not isinstance(type_, RecordType):
@@ -346,6 +348,11 @@ class Checker:
         unit = other.unit if checked.bare else checked.unit
         operation = Operation("if", terms, None, unit, *bounds)
         return Checked(operation, None, bounds, unit, checked.bare and other.bare)
+
+
+def _is_literal_of(word: str, type_: EnumerationType | None) -> bool:
+    """Whether a word is a literal of the type that its place asks for."""
+    return type_ is not None and word.lower() in (one.lower() for one in type_.literals)
 
 
 # --- Entry points ----------------------------------------------------------------

@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from analysis.observed import Observation, TraceError, TraceMap, read_map, read_trace
-from analysis.report import RunReport, compare, render
+from analysis.report import RunReport, compare, executions, render
 from analysis.response_times import Analysis
 from hw_can.bench.peer import BenchError, Codec, Peer
 from hw_can.bench.runner import ScenarioResult, run_scenario
@@ -208,6 +208,7 @@ def _run(
                 ended = process.stop(grace)
     seen = None if problems else _read(trace, trace_map, problems)
     compared = compare(analysis, seen) if analysis and seen else ()
+    executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
     return RunResult(
         title=title,
@@ -218,7 +219,7 @@ def _run(
         steps=judge.step_rows(played, checks) if played else (),
         compared=compared,
         failures=(*problems, *judge.failures(ended, played, seen, checks, compared)),
-        notes=tuple(result.notes(ended, played, seen)),
+        notes=tuple(result.notes(ended, played, seen, executed, compared)),
         clock_offset=result.clock_offset(played, seen, analysis.system) if analysis else None,
     )
 

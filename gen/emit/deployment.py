@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..model import Bus, Message, Processor, Slot, System, Work
+from ..model import Bus, Message, Node, Processor, Slot, System, Work
 from ..trace import elements
 from .ada import (
     SPARK,
@@ -45,12 +45,16 @@ from .trace_calls import element_constant, note, traced
 DRIVER_STACK = 65_536
 """Bytes of stack for each task of a CAN driver on a host."""
 
+PROBE_STACK = 16_384
+"""Bytes of stack for the host probe."""
+
 
 def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
     """Everything that is not about one component or instance."""
     units = [_health(system, header), _elements(system, header)]
     if traced(system):
         units.append(_trace(system, header))
+    units += [_probe(system, n, header) for n in system.nodes if n.probe is not None]
     for bus in system.buses:
         units += _bus(system, bus, header)
     for processor in system.processors:
@@ -83,6 +87,18 @@ def _trace(system: System, header: str) -> Unit:
         ("Ravenchart.Trace_Buffers", "System"),
         Instance(name, "Ravenchart.Trace_Buffers", args),
     )
+
+
+def _probe(system: System, node: Node, header: str) -> Unit:
+    assert node.probe is not None
+    level = next(t.priority for t in system.tasks if t.element == f"{node.name}.probe")
+    args = arguments(
+        Period=number(node.probe.period),
+        Probe_Priority=priority(level),
+        Stack_Bytes=number(PROBE_STACK),
+    )
+    name, generic = f"{_root(system)}.Host_Probe", "Ravenchart.Host_Probes"
+    return Unit(header, (generic, "System"), Instance(name, generic, args))
 
 
 def _elements(system: System, header: str) -> Unit:
@@ -424,17 +440,23 @@ def _reports(system: System, header: str) -> list[Unit]:
         counters = f"{ada_case(bus.name)}_Counters"
         declarations.append(Object(counters, "Ravenchart.Can.Counters"))
         steps.append(Do(f"{ada_case(bus.name)}.Controller.Read_Counters", arguments(Ref(counters))))
-        for field in ("Sent", "Received", "Lost_Out", "Lost_In", "Rejected_Lines"):
+        for field in ("Lost_Out", "Lost_In", "Rejected_Lines"):
             label = f'"{bus.name}.{field.lower()}"'
             steps.append(
                 Do("Ravenchart.Hosts.Put_Lost", arguments(Ref(label), Ref(f"{counters}.{field}")))
             )
+    if any(n.probe for n in system.nodes):
+        declarations.append(Object("Late", "Ravenchart.Nanoseconds"))
+        steps.append(Do("Host_Probe.Read", arguments(Ref("Late"))))
+        steps.append(Do("Ravenchart.Hosts.Put_Host_Latency", arguments(Ref("Late"))))
     bodies.append(Subprogram("Put_All", declarations=tuple(declarations), body=tuple(steps)))
     context = {"Ravenchart.Hosts", "Ravenchart.Health", f"{root}.Health_Counts", f"{root}.Elements"}
     context |= {processor_package(system, p) for p in system.processors}
     context |= {f"{root}.{ada_case(b.name)}" for b in system.buses}
     if system.buses:
         context.add("Ravenchart.Can")
+    if any(n.probe for n in system.nodes):
+        context.add(f"{root}.Host_Probe")
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Queueing", "Ravenchart.Traces"}
     return [

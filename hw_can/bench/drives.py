@@ -125,9 +125,9 @@ class Bench:
         for _ in range(steps - self._steps):
             for station in self.stations.values():
                 drive = station.drive
-                pressed = drive.position < drive.axis.low_switch
+                pressed = drive.on_low_switch
                 drive.step()
-                if pressed and drive.position >= drive.axis.low_switch:
+                if pressed and not drive.on_low_switch:
                     station.zero = drive.position
         self._steps = max(self._steps, steps)
 

@@ -59,6 +59,8 @@ class Axis:
     """The low switch is pressed below this position."""
     high_switch: float
     """The high switch is pressed above this position."""
+    switch_travel: float = 0.001
+    """A pressed switch lets go this far, in m, from where it was pressed."""
     count_at_start: int = 0
     """What the encoder reads at power-on, in um: it knows no origin."""
     mass: float = 8.0
@@ -99,6 +101,8 @@ class Drive:
         self.set_speed = 0.0
         self.condition = Condition.READY
         self.push = Push.NONE
+        self._low = axis.start < axis.low_switch
+        self._high = axis.start > axis.high_switch
         self._integral = 0.0
         self._silence = 0.0
         self._heard = False
@@ -121,11 +125,16 @@ class Drive:
     @property
     def limit(self) -> Limit:
         """What the switches say, pressed by the axis or by hand."""
-        if self.push is Push.LOW or self.position < self.axis.low_switch:
+        if self.push is Push.LOW or self._low:
             return Limit.LOW_END
-        if self.push is Push.HIGH or self.position > self.axis.high_switch:
+        if self.push is Push.HIGH or self._high:
             return Limit.HIGH_END
         return Limit.CLEAR
+
+    @property
+    def on_low_switch(self) -> bool:
+        """Whether the axis itself presses its low switch."""
+        return self._low
 
     @property
     def count(self) -> int:
@@ -182,3 +191,6 @@ class Drive:
             self.position, self.speed = 0.0, max(0.0, self.speed)
         elif self.position >= self.axis.stroke:
             self.position, self.speed = self.axis.stroke, min(0.0, self.speed)
+        axis = self.axis
+        self._low = self.position < axis.low_switch + (axis.switch_travel if self._low else 0.0)
+        self._high = self.position > axis.high_switch - (axis.switch_travel if self._high else 0.0)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from analysis.observed import Observation
-from analysis.report import Comparison, FrameRow, StepRow
+from analysis.report import Comparison, Execution, FrameRow, StepRow
+from analysis.units import microseconds
 from gen.model import System
 from hw_can.bench.runner import ScenarioResult
 from hw_can.bench.scenario import Scenario
@@ -46,8 +47,24 @@ class RunResult:
         return "verdict: PASS" if self.passed else f"verdict: FAIL: {self.failures[0]}"
 
 
-def notes(ended: Ended, result: ScenarioResult | None, seen: Observation | None) -> Iterator[str]:
+def notes(
+    ended: Ended,
+    result: ScenarioResult | None,
+    seen: Observation | None,
+    executed: Sequence[Execution],
+    compared: Sequence[Comparison],
+) -> Iterator[str]:
     """What a reader should know, although it is no failure."""
+    for row in executed:
+        if row.exceeded:
+            longest, claimed = microseconds(row.observed), microseconds(row.claimed)
+            yield f"{row.row} ran for {longest} us, above the {claimed} us that the model claims"
+    for task in compared:
+        if task.word == "host" and ended.real_time:
+            yield (
+                f"{task.task} took {microseconds(task.observed)} us, above its bound: the host "
+                f"withheld the core for up to {microseconds(task.withheld)} us"
+            )
     yield from (f"the controller says: {line}" for line in ended.warnings)
     if result is not None and result.skipped_ticks:
         yield f"the host held the bench up: {result.skipped_ticks} feedback cycles were skipped"

@@ -52,7 +52,7 @@ def print_comparison(console: Console, compared: Sequence[Comparison], *, compar
     """Observed beside bound."""
     table = _table("processor", "releases>", "misses>", "observed us>", "bound us>", "ratio>", "")
     for row in compared:
-        above = row.exceeded and comparable
+        bad = row.word in ("MISS", "ABOVE") and (comparable or row.misses > 0)
         table.add_row(
             row.task,
             str(row.releases),
@@ -60,8 +60,8 @@ def print_comparison(console: Console, compared: Sequence[Comparison], *, compar
             microseconds(row.observed),
             "-" if row.bound is None else microseconds(row.bound),
             f"{100 * row.ratio:.0f} %" if row.bound else "-",
-            "MISS" if row.misses else "ABOVE" if above else "ok" if comparable else "",
-            style="bold red" if above or row.misses else "",
+            row.word if comparable or bad else "",
+            style="bold red" if bad else "",
         )
     _section(console, "longest responses", table)
     if not comparable:
@@ -81,9 +81,10 @@ def print_verdict(console: Console, failures: Sequence[str]) -> None:
     if not failures:
         console.print(Text("\nverdict: PASS", style="bold green"))
         return
-    console.print(Text(f"\nverdict: FAIL: {failures[0]}", style="bold red"))
+    console.print()
+    console.print(Text(f"verdict: FAIL: {failures[0]}", style="bold red"), soft_wrap=True)
     for reason in failures[1:]:
-        console.print(Text(f"         also: {reason}", style="red"))
+        console.print(Text(f"         also: {reason}", style="red"), soft_wrap=True)
 
 
 def _table(*columns: str) -> Table:

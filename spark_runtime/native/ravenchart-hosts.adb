@@ -282,6 +282,15 @@ is
       Put_Line ("L " & What & ' ' & Image (Long_Long_Integer (Count)));
    end Put_Lost;
 
+   ----------------------
+   -- Put_Host_Latency --
+   ----------------------
+
+   procedure Put_Host_Latency (Longest : Nanoseconds) is
+   begin
+      Put_Line ("W " & Image (Long_Long_Integer (Longest)));
+   end Put_Host_Latency;
+
    ------------
    -- Finish --
    ------------

@@ -10,7 +10,7 @@
 --  The report goes to the file that the environment variable RAVENCHART_TRACE
 --  names, and nowhere when it is not set. Lines: T time kind element value;
 --  P processor releases misses worst_response; A activity worst_execution;
---  H kind count; L what count; END last. Times are nanoseconds.
+--  H kind count; L what count; W host_latency; END last. Times are nanoseconds.
 
 with Ravenchart.Health;
 with Ravenchart.Traces;
@@ -57,6 +57,10 @@ is
      Global => (In_Out => Process),
      Pre    => What'Length in 1 .. 80;
    --  Write an L line; What is one word.
+
+   procedure Put_Host_Latency (Longest : Nanoseconds)
+   with Global => (In_Out => Process);
+   --  Write a W line: the longest time the host withheld the processor.
 
    procedure Finish (Success : Boolean)
    with Global => (In_Out => Process);

@@ -27,6 +27,8 @@ A 2 99000
 H DEADLINE_MISS 2
 L trace 0
 L field.received 3
+L field.lost_in 2
+W 120000
 END
 """
 
@@ -41,8 +43,8 @@ def test_a_complete_trace_tells_everything() -> None:
     assert (seen.processors["control"].releases, seen.misses) == (500, 2)
     assert seen.processors["control"].worst_response == 812_345
     assert seen.executions == {"joint_x.position_control": 99_000}
-    assert (seen.faults, seen.losses) == ({"DEADLINE_MISS": 2}, {"trace": 0, "field.received": 3})
-    assert (seen.trace_lost, seen.end) == (0, 9_500)
+    assert (seen.faults, seen.losses) == ({"DEADLINE_MISS": 2}, {"trace": 0, "field.lost_in": 2})
+    assert (seen.trace_lost, seen.end, seen.host_latency) == (0, 9_500, 120_000)
 
 
 def test_states_are_read_as_visits_and_repetitions_are_one() -> None:

@@ -11,12 +11,13 @@ from rich.console import Console
 
 from analysis.findings import findings
 from analysis.observed import Observation, read_map, read_trace
-from analysis.report import FrameRow, RunReport, StepRow, compare, render
+from analysis.report import FrameRow, RunReport, StepRow, compare, executions, render
 from analysis.response_times import analyse
 from analysis.table import show
 from analysis.units import duration, microseconds
 from gen.diagnostics import render as render_diagnostic
 from gen.model import System
+from gen.terms import Ns
 from tests.support.plant_model import plant
 from tests.support.robot_files import trace_map
 from tests.support.systems import bus, message, shared, system, task
@@ -189,6 +190,17 @@ def test_observed_times_stand_beside_the_bound_of_the_same_task() -> None:
     (row,) = compare(analyse(plant()), observation())
     assert (row.task, row.observed, row.exceeded) == ("control", 300_000, False)
     assert row.bound == analyse(plant()).response("control").bound
+
+
+def test_executions_stand_beside_the_models_claims() -> None:
+    seen = observation()
+    times = {"sensor.filter": 900_000, "pump.drive": 1_000_001, "elsewhere.x": 1}
+    seen.executions.update({row: Ns(time) for row, time in times.items()})
+    rows = executions(analyse(plant()), seen)
+    assert [(r.row, r.claimed, r.exceeded) for r in rows] == [
+        ("pump.drive", 1_000_000, True),
+        ("sensor.filter", 1_000_000, False),
+    ]
 
 
 def test_times_read_as_people_write_them() -> None:

@@ -80,20 +80,37 @@ def test_the_encoder_counts_from_power_on() -> None:
     assert drive.count == -1234 + round((drive.position - AXIS.start) * 1e6)
 
 
-def test_the_switches_follow_the_position_and_the_hand() -> None:
-    def limit(position: float, push: Push = Push.NONE) -> Limit:
-        drive = Drive(AXIS)
-        drive.position, drive.push = position, push
-        return drive.limit
+def test_the_low_switch_lets_go_a_little_above_where_it_was_pressed() -> None:
+    drive = Drive(AXIS)
+    pressed_at = released_at = 0.0
+    for speed in (-0.04, 0.01):
+        for index in range(round(1.4 / STEP)):
+            before = drive.limit
+            if index % 20 == 0:
+                stay = speed < 0 and before is Limit.LOW_END
+                drive.command(Mode.ENABLED, 0.0 if stay else speed)
+            drive.step()
+            if (before, drive.limit) == (Limit.CLEAR, Limit.LOW_END):
+                pressed_at = drive.position
+            elif (before, drive.limit) == (Limit.LOW_END, Limit.CLEAR):
+                released_at = drive.position
+    assert pressed_at == pytest.approx(0.008, abs=0.0001)
+    assert released_at == pytest.approx(0.009, abs=0.0001)
 
-    assert [limit(p) for p in (0.0079, 0.008, 0.39, 0.3901)] == [
-        Limit.LOW_END,
-        Limit.CLEAR,
-        Limit.CLEAR,
-        Limit.HIGH_END,
-    ]
-    assert limit(0.2, Push.LOW) is Limit.LOW_END
-    assert limit(0.2, Push.HIGH) is Limit.HIGH_END
+
+def test_the_high_switch_is_pressed_beyond_its_place() -> None:
+    drive = Drive(Axis(stroke=0.4, start=0.37, low_switch=0.008, high_switch=0.39))
+    assert drive.limit is Limit.CLEAR
+    run(drive, 1.0, 0.1)
+    assert (drive.position, drive.limit) == (0.4, Limit.HIGH_END)
+
+
+def test_a_switch_can_be_pressed_by_hand() -> None:
+    drive = Drive(AXIS)
+    drive.push = Push.LOW
+    assert (drive.limit, drive.on_low_switch) == (Limit.LOW_END, False)
+    drive.push = Push.HIGH
+    assert drive.limit is Limit.HIGH_END
 
 
 def test_driving_into_the_stop_leaves_the_axis_there() -> None:

@@ -111,7 +111,7 @@ def test_the_tracks_show_the_motion_and_the_clocks_agree(tmp_path: Path) -> None
     assert max(track.speed) > 50_000
     zero = result.scenario_result.zeros["x"]
     assert zero is not None
-    assert 8_000 <= zero < 9_000
+    assert 9_000 <= zero < 9_500
     assert track.target[-1] == pytest.approx(zero + 70_000)
     assert result.observation is not None
     assert result.clock_offset is not None
@@ -279,6 +279,32 @@ def test_an_observation_above_the_bound_fails_with_real_time_priorities_only() -
         "control was observed to take 600 us, above its bound of 500 us"
     ]
     assert reasons(real_time=False) == []
+
+
+@pytest.mark.parametrize(
+    ("withheld", "misses", "expected"),
+    [
+        (99_999, 0, ["control was observed to take 600 us, above its bound of 500 us"]),
+        (100_000, 0, []),
+        (100_000, 1, []),
+        (
+            99_999,
+            1,
+            [
+                "control missed 1 of 100 deadlines",
+                "control was observed to take 600 us, above its bound of 500 us",
+            ],
+        ),
+    ],
+)
+def test_what_the_host_is_known_to_have_withheld_is_not_held_against_the_controller(
+    withheld: int, misses: int, expected: list[str]
+) -> None:
+    lines = [f"P 1 100 {misses} 600000", f"W {withheld}", "END"]
+    seen = read_trace(lines, read_map(trace_map(["x"])))
+    rows = (Comparison("control", 100, misses, 600_000, 500_000, withheld),)
+    assert list(judge.failures(Ended(0, False, True, ()), None, seen, (), rows)) == expected
+    assert (rows[0].word == "host") == (not expected)
 
 
 @pytest.mark.parametrize(

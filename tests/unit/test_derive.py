@@ -160,3 +160,13 @@ def test_moving_a_row_moves_priorities_and_users_along() -> None:
     assert system is not None
     assert system.processor_of("two.work").name == "processor_2"
     assert set(system.object("two.Handling").users) == {"processor_2"}
+
+
+def test_probe_stands_above_all_other_tasks() -> None:
+    probed = system_of(
+        ("critical_section: 2 us", "critical_section: 2 us, probe: {period: 1 ms, wcet: 5 us}")
+    )
+    probe = next(task for task in probed.tasks if task.element == "board.probe")
+    others = [task.priority for task in probed.tasks if task is not probe]
+    assert (probe.period, probe.deadline, probe.budget) == (1_000_000, 1_000_000, 15_000)
+    assert probe.priority > max(others)

@@ -192,6 +192,15 @@ def test_literal_takes_the_type_of_the_other_operand() -> None:
         assert "Sign" not in repr(operation)
 
 
+def test_literal_goes_before_a_name_of_another_type() -> None:
+    words = vocabulary()
+    words.readable.declare("red", None, (Reading.DATA, "red", LENGTH))
+    findings = Findings()
+    found = read("colour = Red", PLACE, words, findings)
+    assert found is not None
+    assert tree(found.expression) == ("=", "colour", "Red")
+
+
 def test_literal_is_given_back_as_declared() -> None:
     assert tree(checked("colour = RED").expression) == ("=", "colour", "Red")
 

@@ -211,6 +211,14 @@ def test_event_raised_at_shutdown_needs_no_other_source() -> None:
     )
 
 
+@pytest.mark.parametrize("inner", ["Filling", "filling", "FILLING"])
+def test_state_that_is_its_own_initial_state_is_an_error_not_an_exception(inner: str) -> None:
+    inside = f"            initial: {inner}\n            states: {{{inner}: {{}}}}\n"
+    assert codes((STATES, STATES + inside))[0] == "RV-0303"
+    own = f"            initial: {inner}\n            states: {{Slow: {{}}}}\n"
+    assert codes((STATES, STATES + own)) == ["RV-0501"]
+
+
 # --- Deployment ------------------------------------------------------------------
 
 
@@ -283,3 +291,8 @@ def test_reception_without_messages_is_refused() -> None:
 
 def test_period_of_a_processor_may_be_given_when_it_is_the_shortest() -> None:
     assert codes(("stack: 16 KiB,", "stack: 16 KiB, period: 10 ms,")) == []
+
+
+def test_probe_that_takes_longer_than_its_period_is_refused() -> None:
+    probe = "critical_section: 2 us, probe: {period: 1 ms, wcet: 2 ms}"
+    assert codes(("critical_section: 2 us", probe)) == ["RV-0703"]

@@ -151,14 +151,16 @@ is
          Channel := Closed;
       end Detach;
 
+      pragma Warnings
+        (GNATprove, Off, "statement has no effect",
+         Reason => "to wait is the effect of this entry");
+
       entry Wait_Idle when Idle is
       begin
-         pragma Warnings
-           (GNATprove, Off, "statement has no effect",
-            Reason => "its effect is to wait");
          null;
-         pragma Warnings (GNATprove, On, "statement has no effect");
       end Wait_Idle;
+
+      pragma Warnings (GNATprove, On, "statement has no effect");
 
       procedure Begin_Line
         (Kind : Line_Kind; To : out Slcan_Sockets.Socket) is

@@ -1,0 +1,31 @@
+--  How long the host withholds the processor: one task above all others that
+--  wakes once per Period and notes how late it is.
+--
+--  On a workstation or a virtual machine the kernel and the hypervisor take
+--  time that no model knows of. Nothing of the controller can delay this
+--  task, so its lateness is the host's. It is what cyclictest measures.
+--
+--  Guarantees   Read gives the largest lateness since the start
+--  Analysis     one task record: T = Period, P = Probe_Priority
+--  Assumptions  ASM-003, the clock never comes within one Period of Time_Last
+
+with System;
+
+generic
+   Period : Positive_Nanoseconds;
+   Probe_Priority : System.Priority;
+   --  Above every other task of the program.
+   Stack_Bytes : Positive;
+package Ravenchart.Host_Probes
+  with
+    SPARK_Mode,
+    Elaborate_Body,
+    Abstract_State =>
+      (State with Synchronous, External => (Async_Readers, Async_Writers)),
+    Initializes    => State
+is
+   procedure Read (Longest : out Nanoseconds)
+   with Global => (Input => State);
+   --  The largest lateness seen.
+
+end Ravenchart.Host_Probes;

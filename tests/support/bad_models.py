@@ -1,0 +1,35 @@
+"""The bad models and what loading them prints.
+
+After a deliberate change of a message, `python -m tests.support.bad_models`
+writes every expect.txt anew; read the difference before you keep it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from gen.diagnostics import render
+from gen.load import Loaded, load
+
+BAD_MODELS = Path(__file__).parent.parent / "bad_models"
+CASES = sorted(path.name for path in BAD_MODELS.iterdir() if path.is_dir())
+
+
+def loaded(name: str) -> Loaded:
+    """The case, its files named as seen from its own directory."""
+
+    def read(path: Path, limit: int) -> bytes:
+        return (BAD_MODELS / name / path).read_bytes()[:limit]
+
+    return load(Path("model.yaml"), read)
+
+
+def messages(name: str) -> str:
+    """What loading the case prints."""
+    result = loaded(name)
+    return "\n".join(render(item, result.sources) for item in result.diagnostics) + "\n"
+
+
+if __name__ == "__main__":
+    for case in CASES:
+        (BAD_MODELS / case / "expect.txt").write_text(messages(case), encoding="utf-8")

@@ -1,0 +1,41 @@
+"""Programs built once for all system tests."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from ravenchart import steps
+from ravenchart.toolchain import ROOT
+
+
+def _built(name: str) -> tuple[steps.Checked, Path]:
+    checked = steps.check(ROOT / "examples" / name / "model.yaml")
+    steps.write_program(checked)
+    return checked, steps.build(checked)
+
+
+@pytest.fixture(scope="session")
+def robot() -> tuple[steps.Checked, Path]:
+    """The Cartesian robot, checked and built."""
+    return _built("cartesian_robot")
+
+
+@pytest.fixture(scope="session")
+def stations() -> tuple[steps.Checked, Path]:
+    """The three components, checked and built."""
+    return _built("three_components")
+
+
+@pytest.fixture
+def copy_of(tmp_path: Path):  # type: ignore[no-untyped-def]
+    """A function that copies an example to a folder of its own."""
+
+    def copied(name: str) -> Path:
+        target = tmp_path / name
+        shutil.copytree(ROOT / "examples" / name, target)
+        return target
+
+    return copied

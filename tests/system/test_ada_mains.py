@@ -1,0 +1,41 @@
+"""The Ada tests: the same output with all contracts executed and with all checks off."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+
+from ravenchart import toolchain
+from ravenchart.toolchain import ROOT
+
+MAINS = (
+    "test_store",
+    "test_regions",
+    "test_records",
+    "test_frames",
+    "test_slcan",
+    "test_processors",
+    "test_host",
+    "test_controller",
+)
+
+
+@pytest.fixture(scope="module", params=["checks", "release"])
+def mode(request: pytest.FixtureRequest) -> str:
+    """Both builds of the tests."""
+    chosen: str = request.param
+    options = ["-p", "-q", "-j0", "-P", "tests.gpr"]
+    where = ROOT / "tests" / "ada"
+    toolchain.run("gprbuild", options, where, {"MODE": chosen, "CAN_DRIVER": "loopback"})
+    return chosen
+
+
+@pytest.mark.parametrize("main", MAINS)
+def test_every_fact_holds(mode: str, main: str) -> None:
+    program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / main
+    done = subprocess.run([program], capture_output=True, text=True, timeout=120, check=False)
+    facts = [line for line in done.stdout.splitlines() if line.startswith(("ok ", "not ok "))]
+    assert facts, done.stdout + done.stderr
+    assert [f for f in facts if f.startswith("not ok")] == []
+    assert done.returncode == 0

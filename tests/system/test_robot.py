@@ -1,0 +1,101 @@
+"""The Cartesian robot against the bench, as `make demo` runs it, and when things go wrong."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from ravenchart import steps
+from ravenchart.demo.process import ControllerProcess
+from ravenchart.run import run_controller
+
+HERE = Path("examples/cartesian_robot")
+
+
+def _run(robot: tuple[steps.Checked, Path], scenario: str, folder: Path):  # type: ignore[no-untyped-def]
+    checked, executable = robot
+    generated = checked.folder / "generated"
+    return run_controller(
+        executable,
+        generated / "trace.json",
+        generated / "robot_bus.dbc",
+        checked.folder / scenario,
+        None,
+        folder,
+        lambda _text: None,
+        analysis=checked.analysis,
+    )
+
+
+def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
+    robot: tuple[steps.Checked, Path], tmp_path: Path
+) -> None:
+    outcome = _run(robot, "scenario.yaml", tmp_path)
+    assert outcome.failures == ()
+    seen = outcome.observation
+    assert seen is not None
+    visited = seen.states_visited()
+    assert {"Idle", "Seeking", "Backing_Off", "Cruising", "Braking"} <= set(visited["joint_z.Motion"])
+    assert visited["joint_x.Motion"][-1] == "Limit"
+    assert seen.faults["Queue_Overflow"] == 0
+
+
+def test_a_bench_that_disappears_leads_to_the_safe_state_and_a_clean_exit(
+    robot: tuple[steps.Checked, Path], tmp_path: Path
+) -> None:
+    outcome = _run(robot, "lost_bench.yaml", tmp_path)
+    assert outcome.failures == ()
+    seen = outcome.observation
+    assert seen is not None
+    assert seen.faults["Stale_Input"] >= 3
+    assert seen.states_visited()["coordinator.Mission"][-1] == "Shut_Down"
+
+
+def test_sigterm_without_any_bench_ends_it_cleanly_within_its_grace(
+    robot: tuple[steps.Checked, Path], tmp_path: Path
+) -> None:
+    process = ControllerProcess(robot[1], tmp_path / "trace", 0)
+    time.sleep(0.6)
+    began = time.monotonic()
+    ended = process.stop(0.5)
+    assert (ended.exit_code, ended.killed) == (0, False)
+    assert time.monotonic() - began < 2.0
+    assert (tmp_path / "trace").read_text().endswith("END\n")
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="needs root to become an ordinary user")
+def test_an_ordinary_user_is_told_that_there_are_no_real_time_priorities(
+    robot: tuple[steps.Checked, Path], tmp_path: Path
+) -> None:
+    program = tmp_path / "controller"
+    shutil.copy(robot[1], program)
+    for folder in (tmp_path, *tmp_path.parents[:-1]):
+        if folder.stat().st_uid == os.getuid() and "pytest" in folder.name:
+            folder.chmod(0o755)
+    place = Path("/tmp") / f"ravenchart-{os.getpid()}"
+    place.mkdir()
+    try:
+        shutil.copy(program, place)
+        place.chmod(0o777)
+        process = subprocess.Popen(
+            [place / "controller"],
+            env={"RAVENCHART_TRACE": str(place / "trace")},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            user=65534,
+        )
+        time.sleep(0.8)
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=5)
+        assert process.returncode == 0
+        assert "real-time priorities are not available" in said
+        assert (place / "trace").read_text().endswith("END\n")
+    finally:
+        shutil.rmtree(place)

@@ -1,0 +1,66 @@
+"""The generator: the same bytes for the same model, and the committed ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from gen.generate import generate
+from ravenchart import house, steps
+from ravenchart.toolchain import ROOT
+
+EXAMPLES = house.EXAMPLES
+
+
+def _files(name: str) -> dict[str, str]:
+    checked = steps.check(ROOT / "examples" / name / "model.yaml")
+    return generate(checked.system, steps.bounds(checked))
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_generated_files_are_those_in_the_repository(name: str) -> None:
+    folder = ROOT / "examples" / name / "generated"
+    there = {p.name: p.read_text() for p in folder.iterdir() if p.name != steps.MANIFEST}
+    assert _files(name) == there
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_lines_fit_79_columns_and_name_no_path_or_date(name: str) -> None:
+    for file, text in _files(name).items():
+        if file.endswith((".ads", ".adb")):
+            assert max(map(len, text.splitlines())) <= 79, file
+        assert str(ROOT) not in text
+
+
+def test_regenerating_replaces_nothing_and_leaves_user_code_alone(tmp_path: Path) -> None:
+    import shutil
+
+    folder = tmp_path / "robot"
+    shutil.copytree(ROOT / "examples" / "cartesian_robot", folder)
+    own = folder / "user" / "notes.txt"
+    own.write_text("mine")
+    checked = steps.check(folder / "model.yaml")
+    first = steps.write_program(checked)
+    stamps = {p: p.stat().st_mtime_ns for p in folder.rglob("*") if p.is_file()}
+    second = steps.write_program(checked)
+    assert (first.missing, second.changed) == ((), 0)
+    assert stamps == {p: p.stat().st_mtime_ns for p in folder.rglob("*") if p.is_file()}
+    assert own.read_text() == "mine"
+
+
+def test_a_file_that_is_no_longer_generated_goes_and_a_strange_one_stays(tmp_path: Path) -> None:
+    import shutil
+
+    folder = tmp_path / "three"
+    shutil.copytree(ROOT / "examples" / "three_components", folder)
+    checked = steps.check(folder / "model.yaml")
+    steps.write_program(checked)
+    generated = folder / "generated"
+    (generated / "old_unit.ads").write_text("package Old_Unit is end Old_Unit;")
+    (generated / "keep.txt").write_text("keep")
+    manifest = generated / steps.MANIFEST
+    manifest.write_text(manifest.read_text() + "old_unit.ads\n../user/evil.adb\n")
+    steps.write_program(checked)
+    assert not (generated / "old_unit.ads").exists()
+    assert (generated / "keep.txt").read_text() == "keep"
