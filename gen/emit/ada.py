@@ -136,6 +136,13 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
+class Return:
+    """``return value;``"""
+
+    value: Expr
+
+
+@dataclass(frozen=True, slots=True)
 class Pragma:
     """A pragma, among statements or declarations."""
 
@@ -150,7 +157,7 @@ class Comment:
     text: str
 
 
-Stmt = Assign | Do | If | Case | Loop | Say | Pragma | Comment
+Stmt = Assign | Do | If | Case | Loop | Say | Return | Pragma | Comment
 
 # --- Declarations ------------------------------------------------------------
 

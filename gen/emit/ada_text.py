@@ -39,6 +39,7 @@ from .ada import (
     RecordType,
     Ref,
     Rename,
+    Return,
     Say,
     Stmt,
     Subprogram,
@@ -49,6 +50,8 @@ from .ada import (
 
 WIDTH = 79
 STEP = 3
+ONE_LINE = 60
+"""Longer parameter lists go one to a line."""
 
 Doc = wl.AbstractDoc
 SOFT = wl.BreakDoc(" ")
@@ -214,6 +217,8 @@ def statement(stmt: Stmt) -> Doc:
             return _upright(_cat(start, _block(body), SOFT, "end loop;"))
         case Say(text):
             return _text(f"{text};")
+        case Return(value):
+            return _group(_cat("return", _nest(_cat(SOFT, expression(value)), 2), ";"))
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
@@ -237,13 +242,11 @@ def _aspects(aspects: Sequence[Aspect]) -> Doc:
 
 
 def _params(params: Sequence[Param]) -> Doc:
-    width = max((len(p.name) for p in params), default=0)
-    docs = [
-        _text(f"{p.name:<{width}} : {'' if p.mode == 'in' else p.mode + ' '}{p.type}")
-        if len(params) > 1
-        else _text(f"{p.name} : {'' if p.mode == 'in' else p.mode + ' '}{p.type}")
-        for p in params
-    ]
+    texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
+    plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
+    #  names are padded only where each stands on a line of its own
+    width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
+    docs = [_text(f"{p.name:<{width}} : {t}") for p, t in zip(params, texts, strict=True)]
     return _nest(_cat(SOFT, "(", _nest(_join(docs, ";"), 1), ")"), 2)
 
 
@@ -332,16 +335,21 @@ _TIGHT = (Object, PlainType, Rename, UseType, Pragma)
 
 
 def _items(items: Sequence[Decl]) -> list[Doc]:
-    """Declarations with blank lines between all but one-line neighbours of a kind."""
+    """Declarations, set apart by blank lines.
+
+    A comment belongs to the subprogram before it, or else to what follows;
+    one-line neighbours of a kind stand together.
+    """
     docs: list[Doc] = []
-    for index, item in enumerate(items):
-        previous = items[index - 1] if index else None
-        tight = isinstance(previous, Comment) or (
-            isinstance(item, _TIGHT) and type(item) is type(previous)
-        )
-        docs.append(
-            _declaration(item) if tight or not index else _cat("", SOFT, _declaration(item))
-        )
+    before: Decl | None = None
+    trailing = False
+    for item in items:
+        is_trailing = isinstance(item, Comment) and isinstance(before, Subprogram)
+        led = isinstance(before, Comment) and not trailing
+        alike = isinstance(item, _TIGHT) and type(item) is type(before)
+        tight = before is None or is_trailing or led or alike
+        docs.append(_declaration(item) if tight else _cat("", SOFT, _declaration(item)))
+        before, trailing = item, is_trailing
     return docs
 
 

@@ -27,8 +27,7 @@ from .ada import (
     Param,
     Pragma,
     Ref,
-    Say,
-    Stmt,
+    Return,
     Subprogram,
     Unit,
     UseType,
@@ -51,19 +50,20 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
         layouts.setdefault(message.type.name.lower(), message)
     if not layouts:
         return ()
-    spec: list[Decl] = [UseType(WORD)]
+    spec: list[Decl] = [UseType(WORD), UseType("Ravenchart.Number")]
     body: list[Decl] = []
-    shifted = (s.offset for m in layouts.values() for s in m.signals)
-    if any(shifted):
-        body.append(UseType("Ravenchart.Number"))
     for message in layouts.values():
         codec = _Codec(system, message)
         spec += codec.spec()
         body += codec.body()
     name = f"{ada_case(system.name)}.Codecs"
     return (
-        Unit(header, ("Interfaces",), Package(name, tuple(spec), (SPARK, Aspect("Pure")))),
-        Unit(header, (), Package(name, tuple(body), (SPARK,), is_body=True)),
+        Unit(
+            header,
+            ("Interfaces",),
+            Package(name, tuple(spec), (SPARK, Aspect("Pure"))),
+        ),
+        Unit(header, ("Ravenchart.Can",), Package(name, tuple(body), (SPARK,), is_body=True)),
     )
 
 
@@ -79,14 +79,20 @@ class _Codec:
     def _item(self, signal: Signal, item: str) -> str:
         return item if signal.field is None else f"{item}.{ada_case(signal.field)}"
 
-    def _encoded(self, signal: Signal, item: str) -> Expr:
-        """The raw value of one field of ``item``."""
+    def _position(self, signal: Signal, item: str) -> Expr:
+        """The raw value of one field of ``item``, as an integer."""
         value = self._item(signal, item)
         if isinstance(signal.type, EnumerationType):
-            position = f"{type_name(self.system, signal.type)}'Pos"
-            return call(WORD, call(position, Ref(value)))
-        shifted = Chain("-", (Ref(value), number(signal.offset))) if signal.offset else Ref(value)
-        return call(WORD, shifted)
+            return call(f"{type_name(self.system, signal.type)}'Pos", Ref(value))
+        counted = call("Ravenchart.Number", Ref(value))
+        if not signal.offset:
+            return counted
+        return Chain("-", (counted, number(signal.offset)))
+
+    def _raw_of(self, signal: Signal, item: str) -> Expr:
+        """The bits of one field of ``item``."""
+        last = number(self._largest(signal))
+        return call("Ravenchart.Can.To_Raw", self._position(signal, item), last)
 
     def _decoded(self, signal: Signal) -> Expr:
         raw = Ref(self._local(signal))
@@ -122,28 +128,15 @@ class _Codec:
             items.append(
                 Comment(f"[{self.type.name}.{s.field or 'value'}] bits {s.start} .. {last}")
             )
-        packed = chain(
-            "and then",
-            [
-                equal(
-                    call(self._raw_name(s), Ref(f"Pack_{self.name}'Result")),
-                    self._encoded(s, "Item"),
-                )
-                for s in self.signals
-            ],
-        )
+        packed = both(*self._carries(f"Pack_{self.name}'Result", "Item"))
         valid = both(
             *(
                 Chain("<=", (call(self._raw_name(s), Ref("Word")), number(self._largest(s))))
                 for s in self.signals
             )
         )
-        taken = both(
-            *(
-                equal(call(self._raw_name(s), Ref("Word")), self._encoded(s, "Item"))
-                for s in self.signals
-            )
-        )
+        taken = both(*self._carries("Word", "Item"))
+
         items += [
             Subprogram(
                 f"Pack_{self.name}",
@@ -171,37 +164,60 @@ class _Codec:
         ]
         return items
 
-    def body(self) -> list[Decl]:
-        return [self._pack(), self._unpack(), self._lemma()]
-
-    def _pack(self) -> Subprogram:
-        declarations: list[Decl] = []
-        terms: list[Expr] = []
-        claims: list[Stmt] = []
+    def _carries(self, word: str, item: str) -> list[Expr]:
+        """For each field: its raw value in ``word`` is in range and is the field's of ``item``."""
+        facts: list[Expr] = []
         for s in self.signals:
-            local = self._local(s)
-            declarations.append(Object(local, WORD, self._encoded(s, "Item"), constant=True))
-            mask = (1 << s.width) - 1
-            claims.append(Pragma("Assert", (Chain("<=", (Ref(local), Ref(f"16#{mask:X}#"))),)))
-            shifted = Ref(f"Interfaces.Shift_Left ({local}, {s.start})") if s.start else Ref(local)
-            terms.append(shifted)
-        declarations.append(Object("Word", WORD))
-        word = chain("or", terms)
-        after = [
-            Pragma("Assert", (equal(call(self._raw_name(s), Ref("Word")), Ref(self._local(s))),))
+            raw = call(self._raw_name(s), Ref(word))
+            facts.append(Chain("<=", (raw, number(self._largest(s)))))
+            facts.append(equal(call("Ravenchart.Number", raw), self._position(s, item)))
+        return facts
+
+    def body(self) -> list[Decl]:
+        return [self._join(), self._pack(), self._unpack(), self._lemma()]
+
+    def _join(self) -> Subprogram:
+        """The word of all raw values: bits alone, which is what provers of bit vectors like."""
+        name = f"Word_Of_{self.name}"
+        params = tuple(Param(self._local(s), "in", WORD) for s in self.signals)
+        fits = both(
+            *(
+                Chain("<=", (Ref(self._local(s)), Ref(f"16#{(1 << s.width) - 1:X}#")))
+                for s in self.signals
+            )
+        )
+        kept = both(
+            *(
+                equal(call(self._raw_name(s), Ref(f"{name}'Result")), Ref(self._local(s)))
+                for s in self.signals
+            )
+        )
+        parts: list[Expr] = [
+            call("Interfaces.Shift_Left", Ref(self._local(s)), number(s.start))
+            if s.start
+            else Ref(self._local(s))
             for s in self.signals
         ]
+        return Subprogram(
+            name,
+            params,
+            WORD,
+            aspects=(Aspect("Pre", fits), Aspect("Post", kept)),
+            expression=chain("or", parts),
+        )
+
+    def _pack(self) -> Subprogram:
+        declarations = tuple(
+            Object(self._local(s), WORD, self._raw_of(s, "Item"), constant=True)
+            for s in self.signals
+        )
+        word = call(f"Word_Of_{self.name}", *(Ref(self._local(s)) for s in self.signals))
         return Subprogram(
             f"Pack_{self.name}",
             (Param("Item", "in", self.ada_type),),
             WORD,
-            declarations=tuple(declarations),
-            body=(
-                *claims,
-                Assign("Word", word),
-                *after,
-                Say("return Word"),
-            ),
+            declarations=declarations,
+            body=(Return(word),),
         )
 
     def _unpack(self) -> Subprogram:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..model import Activity, Component, Direction, Region, System
-from ..terms import Raise, Send, Set, Type
+from ..terms import Type
 from .ada import (
     FALSE,
     SPARK,
@@ -25,7 +25,7 @@ from .ada import (
     number,
 )
 from .naming import ada_case, component_package, default_value, states_package, type_name
-from .terms import Scope, emit_flow, flow_names, flow_operators
+from .terms import Scope, always, emit_flow, flow_names, flow_operators
 
 RAISED_PER_STEP = 16
 """Events that one region execution can raise; the rules keep each step below it."""
@@ -166,11 +166,11 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
 
 
 def _write_mode(activity: Activity, data: str) -> str:
-    """``out`` for a flow that never reads the item and always sets it whole."""
-    if activity.flow is None or data in flow_names(activity.flow):
-        return "in out"
-    whole = any(isinstance(a, Set) and a.data == data and not a.field for a in activity.flow)
-    return "out" if whole else "in out"
+    """``in out`` for what is read as well, or not always set; ``out`` otherwise."""
+    if activity.flow is None:
+        return "in out" if data in activity.reads else "out"
+    sure = data in always(activity.flow) and data not in flow_names(activity.flow)
+    return "out" if sure else "in out"
 
 
 def _specs(
@@ -201,9 +201,7 @@ def _flow_body(system: System, component: Component, activity: Activity) -> Subp
         sent=lambda port: (ada_case(port), send_flag(port)),
         raised=lambda event: Assign(raise_flag(event), Ref("True")),
     )
-    #  what the flow always does at its top level needs no value before
-    sure = {a.port for a in activity.flow if isinstance(a, Send)}
-    sure |= {a.event for a in activity.flow if isinstance(a, Raise)}
+    sure = always(activity.flow)  # needs no value before
     start: list[Stmt] = []
     for port in component.outputs():
         if port.name in activity.sends and port.name not in sure:

@@ -121,7 +121,8 @@ class Moves:
             path.insert(0, state)
         at = self.region.state(target)
         while at.initial is not None:
-            path.append(at.initial)
+            inner = self.region.ancestors(at.initial)
+            path += reversed(inner[: inner.index(at.name)])
             at = self.region.state(at.initial)
         return tuple(self._call("Enter", state) for state in path)
 

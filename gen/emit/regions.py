@@ -64,6 +64,7 @@ from .terms import (
     names_in,
     operators_in,
     raise_in_list,
+    states_in,
 )
 
 START = "Initial_Entry"
@@ -71,12 +72,12 @@ START = "Initial_Entry"
 
 def guard_names(region: Region) -> set[str]:
     """What the guards and conditions of a region read, by name as declared."""
-    found: set[str] = set()
-    for transition in region.transitions:
-        trigger = transition.trigger
-        found |= names_in(transition.guard) if transition.guard is not None else set()
-        found |= names_in(trigger.condition) if isinstance(trigger, When) else set()
-    return found
+    return {name for guard in _guards(region) for name in names_in(guard)}
+
+
+def _guards(region: Region) -> list[m.Expression]:
+    guards = [t.guard for t in region.transitions if t.guard is not None]
+    return guards + [t.trigger.condition for t in region.transitions if isinstance(t.trigger, When)]
 
 
 def behaviour_names(region: Region) -> set[str]:
@@ -228,12 +229,11 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
 
 
 def _guard_operators(region: Region) -> set[str]:
-    found: set[str] = set()
-    for transition in region.transitions:
-        found |= operators_in(transition.guard) if transition.guard is not None else set()
-        if isinstance(transition.trigger, When):
-            found |= operators_in(transition.trigger.condition)
-    return found
+    return {name for guard in _guards(region) for name in operators_in(guard)}
+
+
+def _asked_states(region: Region) -> set[tuple[str, str]]:
+    return {pair for guard in _guards(region) for pair in states_in(guard)}
 
 
 def _behaviour_operators(region: Region) -> set[str]:
@@ -243,12 +243,12 @@ def _behaviour_operators(region: Region) -> set[str]:
 def _use_types(shape: RegionShape) -> list[Decl]:
     """The types whose operators the declared chart uses."""
     region = shape.region
-    other_states = [
-        f"{states_package(r)}.Leaf"
-        for r in shape.component.regions
-        if r.name in guard_names(region) and r.name != region.name
-    ]
-    return [UseType(n) for n in (*sorted(_guard_operators(region)), *other_states)]
+    compared = {
+        f"{states_package(shape.component.region(name))}.Leaf"
+        for name, state in _asked_states(region)
+        if name != region.name and shape.component.region(name).state(state).is_leaf
+    }
+    return [UseType(n) for n in (*sorted(_guard_operators(region)), *sorted(compared))]
 
 
 def _records(shape: RegionShape) -> list[Decl]:
@@ -354,22 +354,21 @@ def _declared(shape: RegionShape) -> list[Decl]:
         ),
     )
     return [
-        Comment("The declared chart: source, trigger and guard of each transition."),
         Subprogram(
             "Enabled", (chosen, *params), "Boolean", expression=CaseExpr(Ref("T"), tuple(enabled))
         ),
-        Comment("Its source, which is the leaf or contains it."),
+        Comment("The declared chart: source, trigger and guard of each transition."),
         Subprogram(
             "In_Source", (chosen, params[0]), "Boolean", expression=CaseExpr(Ref("T"), sources)
         ),
-        Comment("The leaf it leads to from ``Leaf``; a composite target by its default."),
+        Comment("Is its source the leaf, or around it?"),
         Subprogram(
             "Target",
             (Param("T", "in", "Firing"), *shape.target_params()),
             shape.leaf,
             expression=CaseExpr(Ref("T"), ((START, initial), *targets)),
         ),
-        Comment("The first that is enabled, or None when none is."),
+        Comment("The leaf it leads to; that of a composite is its default."),
         Subprogram(
             "Is_Selection",
             (Param("Chosen", "in", "Selection"), *params),
@@ -377,6 +376,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
             aspects=(Aspect("Ghost"),),
             expression=is_selection,
         ),
+        Comment("The first transition that is enabled, or None when none is."),
     ]
 
 

@@ -80,6 +80,17 @@ def names_in(expression: m.Expression) -> set[str]:
             return {name for operand in operands for name in names_in(operand)}
 
 
+def states_in(expression: m.Expression) -> set[tuple[str, str]]:
+    """The (region, state) pairs that an expression asks for."""
+    match expression:
+        case m.InState(region, state):
+            return {(region, state)}
+        case m.Operation(_, operands):
+            return {pair for operand in operands for pair in states_in(operand)}
+        case _:
+            return set()
+
+
 def operators_in(expression: m.Expression) -> set[str]:
     """The runtime's types whose operators an expression uses."""
     match expression:
@@ -123,6 +134,22 @@ def expressions_in(flow: m.Flow) -> Iterator[m.Expression]:
                 yield action.condition
                 yield from expressions_in(action.then)
                 yield from expressions_in(action.otherwise)
+
+
+def always(flow: m.Flow) -> set[str]:
+    """The ports, events and whole data items that a flow sends, raises or sets on every path."""
+    sure: set[str] = set()
+    for action in flow:
+        match action:
+            case m.Set(_, data, None):
+                sure.add(data)
+            case m.Send(_, port):
+                sure.add(port)
+            case m.Raise(_, event):
+                sure.add(event)
+            case m.If(_, _, then, otherwise):
+                sure |= always(then) & always(otherwise)
+    return sure
 
 
 def flow_operators(flow: m.Flow) -> set[str]:

@@ -30,6 +30,7 @@ is
    Cyclic : Instance_Tasks.Cyclic.Statistics;
    Served : Instance_Tasks.Served.Statistics;
    Bus    : Ravenchart.Can.Counters;
+   Late   : Ravenchart.Nanoseconds;
 begin
    Ravenchart.Hosts.Start;
    loop
@@ -61,5 +62,7 @@ begin
    Ravenchart.Hosts.Put_Lost ("trace", Lost);
    Instance_Bus.Controller.Read_Counters (Bus);
    Ravenchart.Hosts.Put_Lost ("can", Bus.Lost_In);
+   Instance_Tasks.Probe.Read (Late);
+   Ravenchart.Hosts.Put_Host_Latency (Late);
    Ravenchart.Hosts.Finish (Success => True);
 end Instance_Program;

@@ -6,6 +6,7 @@ with Ada.Real_Time;
 with Instance_Bus;
 with Instance_Store;
 with Ravenchart.Epochs;
+with Ravenchart.Host_Probes;
 with Ravenchart.Periodic_Processors;
 with Ravenchart.Schedules;
 with Ravenchart.Sporadic_Processors;
@@ -85,5 +86,10 @@ is
       Wait               => Await_Frame,
       Execute            => Run_Service,
       On_Deadline_Miss   => Note_Miss);
+
+   package Probe is new Ravenchart.Host_Probes
+     (Period         => 1_000_000,
+      Probe_Priority => System.Default_Priority + 10,
+      Stack_Bytes    => 65_536);
 
 end Instance_Tasks;

@@ -10,7 +10,8 @@
 --  The report goes to the file that the environment variable RAVENCHART_TRACE
 --  names, and nowhere when it is not set. Lines: T time kind element value;
 --  P processor releases misses worst_response; A activity worst_execution;
---  H kind count; L what count; W host_latency; END last. Times are nanoseconds.
+--  H kind count; L what count; W host_latency; END last. Times are in
+--  nanoseconds.
 
 with Ravenchart.Health;
 with Ravenchart.Traces;

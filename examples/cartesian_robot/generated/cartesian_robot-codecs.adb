@@ -2,38 +2,54 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Can;
+
 package body Cartesian_Robot.Codecs
 with SPARK_Mode
 is
-   use type Ravenchart.Number;
+   function Word_Of_Robot_Order
+     (Kind_Raw : Interfaces.Unsigned_64;
+      X_Raw    : Interfaces.Unsigned_64;
+      Y_Raw    : Interfaces.Unsigned_64;
+      Z_Raw    : Interfaces.Unsigned_64)
+     return Interfaces.Unsigned_64 is
+     (Kind_Raw
+      or Interfaces.Shift_Left (X_Raw, 2)
+      or Interfaces.Shift_Left (Y_Raw, 21)
+      or Interfaces.Shift_Left (Z_Raw, 40))
+   with
+     Pre =>
+       Kind_Raw <= 16#3#
+       and then X_Raw <= 16#7FFFF#
+       and then Y_Raw <= 16#7FFFF#
+       and then Z_Raw <= 16#7FFFF#,
+     Post =>
+       Robot_Order_Kind_Raw (Word_Of_Robot_Order'Result) = Kind_Raw
+       and then Robot_Order_X_Raw (Word_Of_Robot_Order'Result) = X_Raw
+       and then Robot_Order_Y_Raw (Word_Of_Robot_Order'Result) = Y_Raw
+       and then Robot_Order_Z_Raw (Word_Of_Robot_Order'Result) = Z_Raw;
 
    function Pack_Robot_Order
      (Item : Cartesian_Robot.Robot_Order)
      return Interfaces.Unsigned_64 is
       Kind_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Cartesian_Robot.Order_Kind'Pos (Item.Kind));
+        Ravenchart.Can.To_Raw
+          (Cartesian_Robot.Order_Kind'Pos (Item.Kind),
+           3);
       X_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.X - (-20_000));
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.X) - (-20_000),
+           520_000);
       Y_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.Y - (-20_000));
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.Y) - (-20_000),
+           520_000);
       Z_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.Z - (-20_000));
-      Word : Interfaces.Unsigned_64;
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.Z) - (-20_000),
+           520_000);
    begin
-      pragma Assert (Kind_Raw <= 16#3#);
-      pragma Assert (X_Raw <= 16#7FFFF#);
-      pragma Assert (Y_Raw <= 16#7FFFF#);
-      pragma Assert (Z_Raw <= 16#7FFFF#);
-      Word :=
-        Kind_Raw
-        or Interfaces.Shift_Left (X_Raw, 2)
-        or Interfaces.Shift_Left (Y_Raw, 21)
-        or Interfaces.Shift_Left (Z_Raw, 40);
-      pragma Assert (Robot_Order_Kind_Raw (Word) = Kind_Raw);
-      pragma Assert (Robot_Order_X_Raw (Word) = X_Raw);
-      pragma Assert (Robot_Order_Y_Raw (Word) = Y_Raw);
-      pragma Assert (Robot_Order_Z_Raw (Word) = Z_Raw);
-      return Word;
+      return Word_Of_Robot_Order (Kind_Raw, X_Raw, Y_Raw, Z_Raw);
    end Pack_Robot_Order;
 
    procedure Unpack_Robot_Order
@@ -76,29 +92,42 @@ is
       pragma Assert (Valid and then Copy = Item);
    end Lemma_Robot_Order_Survives;
 
+   function Word_Of_Robot_Report
+     (Condition_Raw : Interfaces.Unsigned_64;
+      X_Raw         : Interfaces.Unsigned_64;
+      Y_Raw         : Interfaces.Unsigned_64)
+     return Interfaces.Unsigned_64 is
+     (Condition_Raw
+      or Interfaces.Shift_Left (X_Raw, 3)
+      or Interfaces.Shift_Left (Y_Raw, 22))
+   with
+     Pre =>
+       Condition_Raw <= 16#7#
+       and then X_Raw <= 16#7FFFF#
+       and then Y_Raw <= 16#7FFFF#,
+     Post =>
+       Robot_Report_Condition_Raw (Word_Of_Robot_Report'Result)
+       = Condition_Raw
+       and then Robot_Report_X_Raw (Word_Of_Robot_Report'Result) = X_Raw
+       and then Robot_Report_Y_Raw (Word_Of_Robot_Report'Result) = Y_Raw;
+
    function Pack_Robot_Report
      (Item : Cartesian_Robot.Robot_Report)
      return Interfaces.Unsigned_64 is
       Condition_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64
-          (Cartesian_Robot.Robot_Condition'Pos (Item.Condition));
+        Ravenchart.Can.To_Raw
+          (Cartesian_Robot.Robot_Condition'Pos (Item.Condition),
+           5);
       X_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.X - (-20_000));
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.X) - (-20_000),
+           520_000);
       Y_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.Y - (-20_000));
-      Word : Interfaces.Unsigned_64;
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.Y) - (-20_000),
+           520_000);
    begin
-      pragma Assert (Condition_Raw <= 16#7#);
-      pragma Assert (X_Raw <= 16#7FFFF#);
-      pragma Assert (Y_Raw <= 16#7FFFF#);
-      Word :=
-        Condition_Raw
-        or Interfaces.Shift_Left (X_Raw, 3)
-        or Interfaces.Shift_Left (Y_Raw, 22);
-      pragma Assert (Robot_Report_Condition_Raw (Word) = Condition_Raw);
-      pragma Assert (Robot_Report_X_Raw (Word) = X_Raw);
-      pragma Assert (Robot_Report_Y_Raw (Word) = Y_Raw);
-      return Word;
+      return Word_Of_Robot_Report (Condition_Raw, X_Raw, Y_Raw);
    end Pack_Robot_Report;
 
    procedure Unpack_Robot_Report
@@ -137,21 +166,31 @@ is
       pragma Assert (Valid and then Copy = Item);
    end Lemma_Robot_Report_Survives;
 
+   function Word_Of_Drive_Set_Point
+     (Mode_Raw  : Interfaces.Unsigned_64;
+      Speed_Raw : Interfaces.Unsigned_64)
+     return Interfaces.Unsigned_64 is
+     (Mode_Raw or Interfaces.Shift_Left (Speed_Raw, 1))
+   with
+     Pre => Mode_Raw <= 16#1# and then Speed_Raw <= 16#FFFFF#,
+     Post =>
+       Drive_Set_Point_Mode_Raw (Word_Of_Drive_Set_Point'Result) = Mode_Raw
+       and then Drive_Set_Point_Speed_Raw (Word_Of_Drive_Set_Point'Result)
+         = Speed_Raw;
+
    function Pack_Drive_Set_Point
      (Item : Cartesian_Robot.Drive_Set_Point)
      return Interfaces.Unsigned_64 is
       Mode_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Cartesian_Robot.Drive_Mode'Pos (Item.Mode));
+        Ravenchart.Can.To_Raw
+          (Cartesian_Robot.Drive_Mode'Pos (Item.Mode),
+           1);
       Speed_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.Speed - (-400_000));
-      Word : Interfaces.Unsigned_64;
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.Speed) - (-400_000),
+           800_000);
    begin
-      pragma Assert (Mode_Raw <= 16#1#);
-      pragma Assert (Speed_Raw <= 16#FFFFF#);
-      Word := Mode_Raw or Interfaces.Shift_Left (Speed_Raw, 1);
-      pragma Assert (Drive_Set_Point_Mode_Raw (Word) = Mode_Raw);
-      pragma Assert (Drive_Set_Point_Speed_Raw (Word) = Speed_Raw);
-      return Word;
+      return Word_Of_Drive_Set_Point (Mode_Raw, Speed_Raw);
    end Pack_Drive_Set_Point;
 
    procedure Unpack_Drive_Set_Point
@@ -184,34 +223,55 @@ is
       pragma Assert (Valid and then Copy = Item);
    end Lemma_Drive_Set_Point_Survives;
 
+   function Word_Of_Drive_Feedback
+     (Count_Raw     : Interfaces.Unsigned_64;
+      Speed_Raw     : Interfaces.Unsigned_64;
+      Limit_Raw     : Interfaces.Unsigned_64;
+      Condition_Raw : Interfaces.Unsigned_64)
+     return Interfaces.Unsigned_64 is
+     (Count_Raw
+      or Interfaces.Shift_Left (Speed_Raw, 21)
+      or Interfaces.Shift_Left (Limit_Raw, 41)
+      or Interfaces.Shift_Left (Condition_Raw, 43))
+   with
+     Pre =>
+       Count_Raw <= 16#1FFFFF#
+       and then Speed_Raw <= 16#FFFFF#
+       and then Limit_Raw <= 16#3#
+       and then Condition_Raw <= 16#1#,
+     Post =>
+       Drive_Feedback_Count_Raw (Word_Of_Drive_Feedback'Result) = Count_Raw
+       and then Drive_Feedback_Speed_Raw (Word_Of_Drive_Feedback'Result)
+         = Speed_Raw
+       and then Drive_Feedback_Limit_Raw (Word_Of_Drive_Feedback'Result)
+         = Limit_Raw
+       and then Drive_Feedback_Condition_Raw (Word_Of_Drive_Feedback'Result)
+         = Condition_Raw;
+
    function Pack_Drive_Feedback
      (Item : Cartesian_Robot.Drive_Feedback)
      return Interfaces.Unsigned_64 is
       Count_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.Count - (-1_000_000));
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.Count) - (-1_000_000),
+           2_000_000);
       Speed_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Item.Speed - (-400_000));
+        Ravenchart.Can.To_Raw
+          (Ravenchart.Number (Item.Speed) - (-400_000),
+           800_000);
       Limit_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64 (Cartesian_Robot.Switch'Pos (Item.Limit));
+        Ravenchart.Can.To_Raw (Cartesian_Robot.Switch'Pos (Item.Limit), 2);
       Condition_Raw : constant Interfaces.Unsigned_64 :=
-        Interfaces.Unsigned_64
-          (Cartesian_Robot.Drive_Condition'Pos (Item.Condition));
-      Word : Interfaces.Unsigned_64;
+        Ravenchart.Can.To_Raw
+          (Cartesian_Robot.Drive_Condition'Pos (Item.Condition),
+           1);
    begin
-      pragma Assert (Count_Raw <= 16#1FFFFF#);
-      pragma Assert (Speed_Raw <= 16#FFFFF#);
-      pragma Assert (Limit_Raw <= 16#3#);
-      pragma Assert (Condition_Raw <= 16#1#);
-      Word :=
-        Count_Raw
-        or Interfaces.Shift_Left (Speed_Raw, 21)
-        or Interfaces.Shift_Left (Limit_Raw, 41)
-        or Interfaces.Shift_Left (Condition_Raw, 43);
-      pragma Assert (Drive_Feedback_Count_Raw (Word) = Count_Raw);
-      pragma Assert (Drive_Feedback_Speed_Raw (Word) = Speed_Raw);
-      pragma Assert (Drive_Feedback_Limit_Raw (Word) = Limit_Raw);
-      pragma Assert (Drive_Feedback_Condition_Raw (Word) = Condition_Raw);
-      return Word;
+      return
+        Word_Of_Drive_Feedback
+          (Count_Raw,
+           Speed_Raw,
+           Limit_Raw,
+           Condition_Raw);
    end Pack_Drive_Feedback;
 
    procedure Unpack_Drive_Feedback

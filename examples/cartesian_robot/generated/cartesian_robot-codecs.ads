@@ -8,44 +8,53 @@ package Cartesian_Robot.Codecs
 with SPARK_Mode, Pure
 is
    use type Interfaces.Unsigned_64;
+   use type Ravenchart.Number;
 
    function Robot_Order_Kind_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Word and 16#3#);
-
    --  [Robot_Order.kind] bits 0 .. 1
+
    function Robot_Order_X_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 2) and 16#7FFFF#);
-
    --  [Robot_Order.x] bits 2 .. 20
+
    function Robot_Order_Y_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 21) and 16#7FFFF#);
-
    --  [Robot_Order.y] bits 21 .. 39
+
    function Robot_Order_Z_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 40) and 16#7FFFF#);
-
    --  [Robot_Order.z] bits 40 .. 58
+
    function Pack_Robot_Order
      (Item : Cartesian_Robot.Robot_Order)
      return Interfaces.Unsigned_64
    with
      Post =>
-       Robot_Order_Kind_Raw (Pack_Robot_Order'Result)
-       = Interfaces.Unsigned_64 (Cartesian_Robot.Order_Kind'Pos (Item.Kind))
-       and then Robot_Order_X_Raw (Pack_Robot_Order'Result)
-         = Interfaces.Unsigned_64 (Item.X - (-20_000))
-       and then Robot_Order_Y_Raw (Pack_Robot_Order'Result)
-         = Interfaces.Unsigned_64 (Item.Y - (-20_000))
-       and then Robot_Order_Z_Raw (Pack_Robot_Order'Result)
-         = Interfaces.Unsigned_64 (Item.Z - (-20_000));
+       Robot_Order_Kind_Raw (Pack_Robot_Order'Result) <= 3
+       and then Ravenchart.Number
+           (Robot_Order_Kind_Raw (Pack_Robot_Order'Result))
+         = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
+       and then Robot_Order_X_Raw (Pack_Robot_Order'Result) <= 520_000
+       and then Ravenchart.Number
+           (Robot_Order_X_Raw (Pack_Robot_Order'Result))
+         = (Ravenchart.Number (Item.X) - (-20_000))
+       and then Robot_Order_Y_Raw (Pack_Robot_Order'Result) <= 520_000
+       and then Ravenchart.Number
+           (Robot_Order_Y_Raw (Pack_Robot_Order'Result))
+         = (Ravenchart.Number (Item.Y) - (-20_000))
+       and then Robot_Order_Z_Raw (Pack_Robot_Order'Result) <= 520_000
+       and then Ravenchart.Number
+           (Robot_Order_Z_Raw (Pack_Robot_Order'Result))
+         = (Ravenchart.Number (Item.Z) - (-20_000));
 
    procedure Unpack_Robot_Order
      (Word  : Interfaces.Unsigned_64;
@@ -59,52 +68,60 @@ is
           and then Robot_Order_Y_Raw (Word) <= 520_000
           and then Robot_Order_Z_Raw (Word) <= 520_000)
        and then (if Valid
-             then Robot_Order_Kind_Raw (Word)
-                = Interfaces.Unsigned_64
-                    (Cartesian_Robot.Order_Kind'Pos (Item.Kind))
-                and then Robot_Order_X_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.X - (-20_000))
-                and then Robot_Order_Y_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.Y - (-20_000))
-                and then Robot_Order_Z_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.Z - (-20_000)));
-
+             then Robot_Order_Kind_Raw (Word) <= 3
+                and then Ravenchart.Number (Robot_Order_Kind_Raw (Word))
+                  = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
+                and then Robot_Order_X_Raw (Word) <= 520_000
+                and then Ravenchart.Number (Robot_Order_X_Raw (Word))
+                  = (Ravenchart.Number (Item.X) - (-20_000))
+                and then Robot_Order_Y_Raw (Word) <= 520_000
+                and then Ravenchart.Number (Robot_Order_Y_Raw (Word))
+                  = (Ravenchart.Number (Item.Y) - (-20_000))
+                and then Robot_Order_Z_Raw (Word) <= 520_000
+                and then Ravenchart.Number (Robot_Order_Z_Raw (Word))
+                  = (Ravenchart.Number (Item.Z) - (-20_000)));
    --  Valid when every raw value is in range; otherwise Item is the
    --  default.
+
    procedure Lemma_Robot_Order_Survives (Item : Cartesian_Robot.Robot_Order)
    with Ghost;
-
    --  What is packed is what is unpacked.
+
    function Robot_Report_Condition_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Word and 16#7#);
-
    --  [Robot_Report.condition] bits 0 .. 2
+
    function Robot_Report_X_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 3) and 16#7FFFF#);
-
    --  [Robot_Report.x] bits 3 .. 21
+
    function Robot_Report_Y_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 22) and 16#7FFFF#);
-
    --  [Robot_Report.y] bits 22 .. 40
+
    function Pack_Robot_Report
      (Item : Cartesian_Robot.Robot_Report)
      return Interfaces.Unsigned_64
    with
      Post =>
-       Robot_Report_Condition_Raw (Pack_Robot_Report'Result)
-       = Interfaces.Unsigned_64
-           (Cartesian_Robot.Robot_Condition'Pos (Item.Condition))
-       and then Robot_Report_X_Raw (Pack_Robot_Report'Result)
-         = Interfaces.Unsigned_64 (Item.X - (-20_000))
-       and then Robot_Report_Y_Raw (Pack_Robot_Report'Result)
-         = Interfaces.Unsigned_64 (Item.Y - (-20_000));
+       Robot_Report_Condition_Raw (Pack_Robot_Report'Result) <= 5
+       and then Ravenchart.Number
+           (Robot_Report_Condition_Raw (Pack_Robot_Report'Result))
+         = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
+       and then Robot_Report_X_Raw (Pack_Robot_Report'Result) <= 520_000
+       and then Ravenchart.Number
+           (Robot_Report_X_Raw (Pack_Robot_Report'Result))
+         = (Ravenchart.Number (Item.X) - (-20_000))
+       and then Robot_Report_Y_Raw (Pack_Robot_Report'Result) <= 520_000
+       and then Ravenchart.Number
+           (Robot_Report_Y_Raw (Pack_Robot_Report'Result))
+         = (Ravenchart.Number (Item.Y) - (-20_000));
 
    procedure Unpack_Robot_Report
      (Word  : Interfaces.Unsigned_64;
@@ -117,42 +134,50 @@ is
           and then Robot_Report_X_Raw (Word) <= 520_000
           and then Robot_Report_Y_Raw (Word) <= 520_000)
        and then (if Valid
-             then Robot_Report_Condition_Raw (Word)
-                = Interfaces.Unsigned_64
-                    (Cartesian_Robot.Robot_Condition'Pos (Item.Condition))
-                and then Robot_Report_X_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.X - (-20_000))
-                and then Robot_Report_Y_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.Y - (-20_000)));
-
+             then Robot_Report_Condition_Raw (Word) <= 5
+                and then Ravenchart.Number
+                    (Robot_Report_Condition_Raw (Word))
+                  = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
+                and then Robot_Report_X_Raw (Word) <= 520_000
+                and then Ravenchart.Number (Robot_Report_X_Raw (Word))
+                  = (Ravenchart.Number (Item.X) - (-20_000))
+                and then Robot_Report_Y_Raw (Word) <= 520_000
+                and then Ravenchart.Number (Robot_Report_Y_Raw (Word))
+                  = (Ravenchart.Number (Item.Y) - (-20_000)));
    --  Valid when every raw value is in range; otherwise Item is the
    --  default.
+
    procedure Lemma_Robot_Report_Survives
      (Item : Cartesian_Robot.Robot_Report)
    with Ghost;
-
    --  What is packed is what is unpacked.
+
    function Drive_Set_Point_Mode_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Word and 16#1#);
-
    --  [Drive_Set_Point.mode] bits 0 .. 0
+
    function Drive_Set_Point_Speed_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 1) and 16#FFFFF#);
-
    --  [Drive_Set_Point.speed] bits 1 .. 20
+
    function Pack_Drive_Set_Point
      (Item : Cartesian_Robot.Drive_Set_Point)
      return Interfaces.Unsigned_64
    with
      Post =>
-       Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result)
-       = Interfaces.Unsigned_64 (Cartesian_Robot.Drive_Mode'Pos (Item.Mode))
+       Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result) <= 1
+       and then Ravenchart.Number
+           (Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result))
+         = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
        and then Drive_Set_Point_Speed_Raw (Pack_Drive_Set_Point'Result)
-         = Interfaces.Unsigned_64 (Item.Speed - (-400_000));
+         <= 800_000
+       and then Ravenchart.Number
+           (Drive_Set_Point_Speed_Raw (Pack_Drive_Set_Point'Result))
+         = (Ravenchart.Number (Item.Speed) - (-400_000));
 
    procedure Unpack_Drive_Set_Point
      (Word  : Interfaces.Unsigned_64;
@@ -164,57 +189,68 @@ is
        = (Drive_Set_Point_Mode_Raw (Word) <= 1
           and then Drive_Set_Point_Speed_Raw (Word) <= 800_000)
        and then (if Valid
-             then Drive_Set_Point_Mode_Raw (Word)
-                = Interfaces.Unsigned_64
-                    (Cartesian_Robot.Drive_Mode'Pos (Item.Mode))
-                and then Drive_Set_Point_Speed_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.Speed - (-400_000)));
-
+             then Drive_Set_Point_Mode_Raw (Word) <= 1
+                and then Ravenchart.Number (Drive_Set_Point_Mode_Raw (Word))
+                  = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
+                and then Drive_Set_Point_Speed_Raw (Word) <= 800_000
+                and then Ravenchart.Number
+                    (Drive_Set_Point_Speed_Raw (Word))
+                  = (Ravenchart.Number (Item.Speed) - (-400_000)));
    --  Valid when every raw value is in range; otherwise Item is the
    --  default.
+
    procedure Lemma_Drive_Set_Point_Survives
      (Item : Cartesian_Robot.Drive_Set_Point)
    with Ghost;
-
    --  What is packed is what is unpacked.
+
    function Drive_Feedback_Count_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Word and 16#1FFFFF#);
-
    --  [Drive_Feedback.count] bits 0 .. 20
+
    function Drive_Feedback_Speed_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 21) and 16#FFFFF#);
-
    --  [Drive_Feedback.speed] bits 21 .. 40
+
    function Drive_Feedback_Limit_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 41) and 16#3#);
-
    --  [Drive_Feedback.limit] bits 41 .. 42
+
    function Drive_Feedback_Condition_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_64 is
      (Interfaces.Shift_Right (Word, 43) and 16#1#);
-
    --  [Drive_Feedback.condition] bits 43 .. 43
+
    function Pack_Drive_Feedback
      (Item : Cartesian_Robot.Drive_Feedback)
      return Interfaces.Unsigned_64
    with
      Post =>
-       Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result)
-       = Interfaces.Unsigned_64 (Item.Count - (-1_000_000))
+       Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result) <= 2_000_000
+       and then Ravenchart.Number
+           (Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result))
+         = (Ravenchart.Number (Item.Count) - (-1_000_000))
        and then Drive_Feedback_Speed_Raw (Pack_Drive_Feedback'Result)
-         = Interfaces.Unsigned_64 (Item.Speed - (-400_000))
-       and then Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result)
-         = Interfaces.Unsigned_64 (Cartesian_Robot.Switch'Pos (Item.Limit))
+         <= 800_000
+       and then Ravenchart.Number
+           (Drive_Feedback_Speed_Raw (Pack_Drive_Feedback'Result))
+         = (Ravenchart.Number (Item.Speed) - (-400_000))
+       and then Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result) <= 2
+       and then Ravenchart.Number
+           (Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result))
+         = Cartesian_Robot.Switch'Pos (Item.Limit)
        and then Drive_Feedback_Condition_Raw (Pack_Drive_Feedback'Result)
-         = Interfaces.Unsigned_64
-             (Cartesian_Robot.Drive_Condition'Pos (Item.Condition));
+         <= 1
+       and then Ravenchart.Number
+           (Drive_Feedback_Condition_Raw (Pack_Drive_Feedback'Result))
+         = Cartesian_Robot.Drive_Condition'Pos (Item.Condition);
 
    procedure Unpack_Drive_Feedback
      (Word  : Interfaces.Unsigned_64;
@@ -228,22 +264,24 @@ is
           and then Drive_Feedback_Limit_Raw (Word) <= 2
           and then Drive_Feedback_Condition_Raw (Word) <= 1)
        and then (if Valid
-             then Drive_Feedback_Count_Raw (Word)
-                = Interfaces.Unsigned_64 (Item.Count - (-1_000_000))
-                and then Drive_Feedback_Speed_Raw (Word)
-                  = Interfaces.Unsigned_64 (Item.Speed - (-400_000))
-                and then Drive_Feedback_Limit_Raw (Word)
-                  = Interfaces.Unsigned_64
-                      (Cartesian_Robot.Switch'Pos (Item.Limit))
-                and then Drive_Feedback_Condition_Raw (Word)
-                  = Interfaces.Unsigned_64
-                      (Cartesian_Robot.Drive_Condition'Pos (Item.Condition)));
-
+             then Drive_Feedback_Count_Raw (Word) <= 2_000_000
+                and then Ravenchart.Number (Drive_Feedback_Count_Raw (Word))
+                  = (Ravenchart.Number (Item.Count) - (-1_000_000))
+                and then Drive_Feedback_Speed_Raw (Word) <= 800_000
+                and then Ravenchart.Number (Drive_Feedback_Speed_Raw (Word))
+                  = (Ravenchart.Number (Item.Speed) - (-400_000))
+                and then Drive_Feedback_Limit_Raw (Word) <= 2
+                and then Ravenchart.Number (Drive_Feedback_Limit_Raw (Word))
+                  = Cartesian_Robot.Switch'Pos (Item.Limit)
+                and then Drive_Feedback_Condition_Raw (Word) <= 1
+                and then Ravenchart.Number
+                    (Drive_Feedback_Condition_Raw (Word))
+                  = Cartesian_Robot.Drive_Condition'Pos (Item.Condition));
    --  Valid when every raw value is in range; otherwise Item is the
    --  default.
+
    procedure Lemma_Drive_Feedback_Survives
      (Item : Cartesian_Robot.Drive_Feedback)
    with Ghost;
-
    --  What is packed is what is unpacked.
 end Cartesian_Robot.Codecs;

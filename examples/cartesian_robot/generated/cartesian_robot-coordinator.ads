@@ -8,28 +8,27 @@ package Cartesian_Robot.Coordinator
 with SPARK_Mode
 is
    procedure Put_Command (Item : Cartesian_Robot.Robot_Order);
-
    --  [coordinator.command.mailbox] by its senders; never blocks.
+
    procedure Put_Report_X (Item : Cartesian_Robot.Joint_Report);
-
    --  [coordinator.report_x.mailbox] by its senders; never blocks.
+
    procedure Put_Report_Y (Item : Cartesian_Robot.Joint_Report);
-
    --  [coordinator.report_y.mailbox] by its senders; never blocks.
+
    procedure Put_Report_Z (Item : Cartesian_Robot.Joint_Report);
-
    --  [coordinator.report_z.mailbox] by its senders; never blocks.
-   procedure Offer (Item : Robot_Coordinator.Event);
 
+   procedure Offer (Item : Robot_Coordinator.Event);
    --  [coordinator.events] offer Item to every region that names it; never
    --  blocks.
+
    procedure Run_Ports;
-
    --  [coordinator.ports] one execution, by its processor alone.
+
    procedure Run_Mission;
-
    --  [coordinator.Mission] one execution, by its processor alone.
-   procedure Run_Summarise;
 
+   procedure Run_Summarise;
    --  [coordinator.summarise] one execution, by its processor alone.
 end Cartesian_Robot.Coordinator;

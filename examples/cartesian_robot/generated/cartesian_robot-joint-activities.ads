@@ -11,17 +11,16 @@ is
       Top_Speed : Cartesian_Robot.Top_Speed;
       Profile   : in out Cartesian_Robot.Profile)
    with Global => null;
-
    --  [Joint.trajectory_step] budget 100_000 ns, every 5_000_000 ns
+
    procedure Position_Control
      (Profile  : Cartesian_Robot.Profile;
       Feedback : Joint.Feedback_View;
       Homed    : Boolean;
       Motion   : Joint.Motion_States.Leaf;
       Origin   : in out Cartesian_Robot.Encoder_Count;
-      Measured : in out Cartesian_Robot.Measurement;
+      Measured : out Cartesian_Robot.Measurement;
       Drive    : out Cartesian_Robot.Drive_Set_Point)
    with Global => null;
-
    --  [Joint.position_control] budget 150_000 ns, every 10_000_000 ns
 end Cartesian_Robot.Joint.Activities;

@@ -12,8 +12,6 @@ is
       Report      : out Cartesian_Robot.Joint_Report;
       Send_Report : out Boolean) is
    begin
-      Report := Cartesian_Robot.Default_Joint_Report;
-      Send_Report := False;
       if Motion in Motion_States.Fault then
          Report :=
            Cartesian_Robot.Joint_Report'(Condition => Cartesian_Robot.Failed,

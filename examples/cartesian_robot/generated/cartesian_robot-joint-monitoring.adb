@@ -65,7 +65,7 @@ is
       Ravenchart.Timers.Tick (Self.Timers);
    end Tick;
 
-   procedure Poll (Self : in out Region; Now  : out Occurrence) is
+   procedure Poll (Self : in out Region; Now : out Occurrence) is
       Due : Natural;
    begin
       if not Self.Started then
@@ -82,8 +82,8 @@ is
    end Poll;
 
    procedure Fire
-     (Self   : in out Region;
-      Box    : in out Outbox;
+     (Self : in out Region;
+      Box : in out Outbox;
       Chosen : Firing)
    with
      Pre =>

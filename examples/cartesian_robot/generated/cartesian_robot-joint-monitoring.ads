@@ -9,7 +9,6 @@ with SPARK_Mode
 is
    use type Monitoring_States.Leaf;
    use type Ravenchart.Freshness;
-   use type Motion_States.Leaf;
 
    --  [Joint.Monitoring] what a step can be made for
    type Occurrence is (Start_Of_Region, Expiry_Of_Calm, Conditions);
@@ -48,7 +47,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   --  The declared chart: source, trigger and guard of each transition.
    function Enabled
      (T    : Transition;
       Leaf : Monitoring_States.Leaf;
@@ -79,10 +77,10 @@ is
            and then Ins.Motion in Motion_States.Operational,
         when Calm =>
            Leaf = Monitoring_States.Alarmed and then Now = Expiry_Of_Calm);
+   --  The declared chart: source, trigger and guard of each transition.
 
-   --  Its source, which is the leaf or contains it.
    function In_Source
-     (T    : Transition;
+     (T : Transition;
       Leaf : Monitoring_States.Leaf)
      return Boolean is
      (case T is
@@ -91,9 +89,8 @@ is
         when End_Reached => Leaf = Monitoring_States.Watching,
         when Drive_Failed => Leaf = Monitoring_States.Watching,
         when Calm => Leaf = Monitoring_States.Alarmed);
+   --  Is its source the leaf, or around it?
 
-   --  The leaf it leads to from ``Leaf``; a composite target by its
-   --  default.
    function Target (T : Firing) return Monitoring_States.Leaf is
      (case T is
         when Initial_Entry => Monitoring_States.Watching,
@@ -102,8 +99,8 @@ is
         when End_Reached => Monitoring_States.Alarmed,
         when Drive_Failed => Monitoring_States.Alarmed,
         when Calm => Monitoring_States.Watching);
+   --  The leaf it leads to; that of a composite is its default.
 
-   --  The first that is enabled, or None when none is.
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Monitoring_States.Leaf;
@@ -118,21 +115,22 @@ is
          and then (for all T in Transition =>
                (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
    with Ghost;
+   --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
    with
      Post =>
        Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-
    --  One more execution: the time-outs come nearer.
-   procedure Poll (Self : in out Region; Now  : out Occurrence)
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
        and then (Now = Start_Of_Region) = not Self.Started;
-
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
+
    procedure Step
      (Self  : in out Region;
       Now   : Occurrence;
@@ -149,6 +147,5 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
-
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Monitoring;

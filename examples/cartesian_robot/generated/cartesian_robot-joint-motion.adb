@@ -6,9 +6,9 @@ package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
    function In_Idle
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = On_Ordered
          and then Ins.Order.Value.Kind = Cartesian_Robot.Home
@@ -35,9 +35,9 @@ is
        Is_Selection (In_Idle'Result, Motion_States.Idle, Now, Data, Ins);
 
    function In_Seeking
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = Conditions
          and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
@@ -66,9 +66,9 @@ is
           Ins);
 
    function In_Backing_Off
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = Conditions
          and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
@@ -108,9 +108,9 @@ is
    with Post => Is_Selection (In_Homing'Result, Leaf, Now, Data, Ins);
 
    function In_Accelerating
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = Conditions
          and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
@@ -145,9 +145,9 @@ is
           Ins);
 
    function In_Cruising
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = Conditions
          and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
@@ -179,9 +179,9 @@ is
           Ins);
 
    function In_Braking
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = Conditions
          and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
@@ -234,9 +234,9 @@ is
    with Post => Is_Selection (In_Operational'Result, Leaf, Now, Data, Ins);
 
    function In_Limit
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = On_Ordered
          and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
@@ -248,9 +248,9 @@ is
        Is_Selection (In_Limit'Result, Motion_States.Limit, Now, Data, Ins);
 
    function In_Drive
-     (Now  : Occurrence;
+     (Now : Occurrence;
       Data : Variables;
-      Ins  : Inputs)
+      Ins : Inputs)
      return Selection is
      (if Now = On_Ordered
          and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
@@ -324,7 +324,7 @@ is
       Ravenchart.Timers.Tick (Self.Timers);
    end Tick;
 
-   procedure Poll (Self : in out Region; Now  : out Occurrence) is
+   procedure Poll (Self : in out Region; Now : out Occurrence) is
       Due : Natural;
    begin
       if not Self.Started then
@@ -340,7 +340,7 @@ is
       end if;
    end Poll;
 
-   procedure Fire (Self   : in out Region; Ins    : Inputs; Chosen : Firing)
+   procedure Fire (Self : in out Region; Ins : Inputs; Chosen : Firing)
    with
      Pre =>
        (if Chosen = Initial_Entry

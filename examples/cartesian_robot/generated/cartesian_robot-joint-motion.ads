@@ -69,7 +69,6 @@ is
       Data    : Variables;
    end record;
 
-   --  The declared chart: source, trigger and guard of each transition.
    function Enabled
      (T    : Transition;
       Leaf : Motion_States.Leaf;
@@ -133,10 +132,10 @@ is
            and then Now = On_Ordered
            and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
            and then Ins.Feedback.State = Ravenchart.Fresh);
+   --  The declared chart: source, trigger and guard of each transition.
 
-   --  Its source, which is the leaf or contains it.
    function In_Source
-     (T    : Transition;
+     (T : Transition;
       Leaf : Motion_States.Leaf)
      return Boolean is
      (case T is
@@ -155,9 +154,8 @@ is
         when Strayed => Leaf in Motion_States.Operational,
         when Limit => Leaf in Motion_States.Operational,
         when Reset => Leaf in Motion_States.Fault);
+   --  Is its source the leaf, or around it?
 
-   --  The leaf it leads to from ``Leaf``; a composite target by its
-   --  default.
    function Target (T : Firing) return Motion_States.Leaf is
      (case T is
         when Initial_Entry => Motion_States.Idle,
@@ -176,8 +174,8 @@ is
         when Strayed => Motion_States.Drive,
         when Limit => Motion_States.Limit,
         when Reset => Motion_States.Idle);
+   --  The leaf it leads to; that of a composite is its default.
 
-   --  The first that is enabled, or None when none is.
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Motion_States.Leaf;
@@ -194,21 +192,22 @@ is
          and then (for all T in Transition =>
                (if T < Chosen then not Enabled (T, Leaf, Now, Data, Ins))))
    with Ghost;
+   --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
    with
      Post =>
        Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-
    --  One more execution: the time-outs come nearer.
-   procedure Poll (Self : in out Region; Now  : out Occurrence)
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
        and then (Now = Start_Of_Region) = not Self.Started;
-
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
+
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Ordered => On_Ordered,
@@ -232,6 +231,5 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
-
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Motion;

@@ -8,31 +8,30 @@ package Cartesian_Robot.Joint_X
 with SPARK_Mode
 is
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order);
-
    --  [joint_x.order.mailbox] by its senders; never blocks.
+
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback);
-
    --  [joint_x.feedback.mailbox] by its senders; never blocks.
-   procedure Offer (Item : Joint.Event);
 
+   procedure Offer (Item : Joint.Event);
    --  [joint_x.events] offer Item to every region that names it; never
    --  blocks.
+
    procedure Run_Trajectory_Step;
-
    --  [joint_x.trajectory_step] one execution, by its processor alone.
+
    procedure Run_Ports;
-
    --  [joint_x.ports] one execution, by its processor alone.
+
    procedure Run_Monitoring;
-
    --  [joint_x.Monitoring] one execution, by its processor alone.
+
    procedure Run_Position_Control;
-
    --  [joint_x.position_control] one execution, by its processor alone.
+
    procedure Run_Motion;
-
    --  [joint_x.Motion] one execution, by its processor alone.
-   procedure Run_Supervise;
 
+   procedure Run_Supervise;
    --  [joint_x.supervise] one execution, by its processor alone.
 end Cartesian_Robot.Joint_X;

@@ -8,31 +8,30 @@ package Cartesian_Robot.Joint_Y
 with SPARK_Mode
 is
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order);
-
    --  [joint_y.order.mailbox] by its senders; never blocks.
+
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback);
-
    --  [joint_y.feedback.mailbox] by its senders; never blocks.
-   procedure Offer (Item : Joint.Event);
 
+   procedure Offer (Item : Joint.Event);
    --  [joint_y.events] offer Item to every region that names it; never
    --  blocks.
+
    procedure Run_Trajectory_Step;
-
    --  [joint_y.trajectory_step] one execution, by its processor alone.
+
    procedure Run_Ports;
-
    --  [joint_y.ports] one execution, by its processor alone.
+
    procedure Run_Monitoring;
-
    --  [joint_y.Monitoring] one execution, by its processor alone.
+
    procedure Run_Position_Control;
-
    --  [joint_y.position_control] one execution, by its processor alone.
+
    procedure Run_Motion;
-
    --  [joint_y.Motion] one execution, by its processor alone.
-   procedure Run_Supervise;
 
+   procedure Run_Supervise;
    --  [joint_y.supervise] one execution, by its processor alone.
 end Cartesian_Robot.Joint_Y;

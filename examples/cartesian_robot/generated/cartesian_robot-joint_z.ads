@@ -8,31 +8,30 @@ package Cartesian_Robot.Joint_Z
 with SPARK_Mode
 is
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order);
-
    --  [joint_z.order.mailbox] by its senders; never blocks.
+
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback);
-
    --  [joint_z.feedback.mailbox] by its senders; never blocks.
-   procedure Offer (Item : Joint.Event);
 
+   procedure Offer (Item : Joint.Event);
    --  [joint_z.events] offer Item to every region that names it; never
    --  blocks.
+
    procedure Run_Trajectory_Step;
-
    --  [joint_z.trajectory_step] one execution, by its processor alone.
+
    procedure Run_Ports;
-
    --  [joint_z.ports] one execution, by its processor alone.
+
    procedure Run_Monitoring;
-
    --  [joint_z.Monitoring] one execution, by its processor alone.
+
    procedure Run_Position_Control;
-
    --  [joint_z.position_control] one execution, by its processor alone.
+
    procedure Run_Motion;
-
    --  [joint_z.Motion] one execution, by its processor alone.
-   procedure Run_Supervise;
 
+   procedure Run_Supervise;
    --  [joint_z.supervise] one execution, by its processor alone.
 end Cartesian_Robot.Joint_Z;

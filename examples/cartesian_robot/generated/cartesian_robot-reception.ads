@@ -16,8 +16,8 @@ is
    procedure Execute (Item : Row);
 
    procedure On_Deadline_Miss;
-
    --  [reception]
+
    package Processor is new Ravenchart.Sporadic_Processors
      (Activity_Id => Row,
       Minimum_Separation => Timing_Certificate.Reception_T,

@@ -5,6 +5,7 @@
 with Cartesian_Robot.Control;
 with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
+with Cartesian_Robot.Host_Probe;
 with Cartesian_Robot.Reception;
 with Cartesian_Robot.Robot_Bus;
 with Cartesian_Robot.Supervision;
@@ -113,6 +114,7 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Robot_Bus_Counters : Ravenchart.Can.Counters;
+      Late : Ravenchart.Nanoseconds;
    begin
       Report_Reception;
       Report_Trajectory;
@@ -125,10 +127,6 @@ is
       Lost := Trace.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
       Robot_Bus.Controller.Read_Counters (Robot_Bus_Counters);
-      Ravenchart.Hosts.Put_Lost ("robot_bus.sent", Robot_Bus_Counters.Sent);
-      Ravenchart.Hosts.Put_Lost
-        ("robot_bus.received",
-         Robot_Bus_Counters.Received);
       Ravenchart.Hosts.Put_Lost
         ("robot_bus.lost_out",
          Robot_Bus_Counters.Lost_Out);
@@ -138,5 +136,7 @@ is
       Ravenchart.Hosts.Put_Lost
         ("robot_bus.rejected_lines",
          Robot_Bus_Counters.Rejected_Lines);
+      Host_Probe.Read (Late);
+      Ravenchart.Hosts.Put_Host_Latency (Late);
    end Put_All;
 end Cartesian_Robot.Reports;

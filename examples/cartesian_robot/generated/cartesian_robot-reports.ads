@@ -6,9 +6,8 @@ package Cartesian_Robot.Reports
 with SPARK_Mode
 is
    procedure Drain_Trace;
-
    --  Hand what was traced to the host.
-   procedure Put_All;
 
+   procedure Put_All;
    --  Hand the statistics of all processors to the host.
 end Cartesian_Robot.Reports;

@@ -6,9 +6,8 @@ package Cartesian_Robot.Robot_Bus.Receiver
 with SPARK_Mode
 is
    procedure Wait;
-
    --  [robot_bus.receive.release] suspend until a frame is there.
-   procedure Run_Receive;
 
+   procedure Run_Receive;
    --  [robot_bus.receive] decode it and hand it to its receivers.
 end Cartesian_Robot.Robot_Bus.Receiver;

@@ -16,8 +16,8 @@ is
      (case Format is
         when Ravenchart.Can.Standard => Id in 128 | 288 | 289 | 290,
         when Ravenchart.Can.Extended => False);
-
    --  [robot_bus] the identifiers that this node receives
+
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 5,
       Receive_Ceiling => System.Default_Priority + 5,
@@ -28,15 +28,14 @@ is
       Accepts => Accepts);
 
    procedure Send_Robot_Status (Item : Cartesian_Robot.Robot_Report);
-
    --  [robot_status] hand one frame to the controller; never blocks.
+
    procedure Send_X_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
-
    --  [x_set_point] hand one frame to the controller; never blocks.
+
    procedure Send_Y_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
-
    --  [y_set_point] hand one frame to the controller; never blocks.
-   procedure Send_Z_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
 
+   procedure Send_Z_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
    --  [z_set_point] hand one frame to the controller; never blocks.
 end Cartesian_Robot.Robot_Bus;

@@ -169,8 +169,8 @@ is
 
    function Select_Transition
      (Leaf : Mission_States.Leaf;
-      Now  : Occurrence;
-      Ins  : Inputs)
+      Now : Occurrence;
+      Ins : Inputs)
      return Selection is
      (case Leaf is
         when Mission_States.Active => In_Active (Leaf, Now, Ins),
@@ -212,7 +212,7 @@ is
       Ravenchart.Timers.Tick (Self.Timers);
    end Tick;
 
-   procedure Poll (Self : in out Region; Now  : out Occurrence) is
+   procedure Poll (Self : in out Region; Now : out Occurrence) is
       Due : Natural;
    begin
       if not Self.Started then

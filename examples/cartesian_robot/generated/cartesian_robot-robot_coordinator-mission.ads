@@ -67,7 +67,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   --  The declared chart: source, trigger and guard of each transition.
    function Enabled
      (T    : Transition;
       Leaf : Mission_States.Leaf;
@@ -122,10 +121,10 @@ is
            Leaf in Mission_States.Active and then Now = On_Joint_Lost,
         when Shut_Down =>
            Leaf in Mission_States.Active and then Now = On_Shutdown);
+   --  The declared chart: source, trigger and guard of each transition.
 
-   --  Its source, which is the leaf or contains it.
    function In_Source
-     (T    : Transition;
+     (T : Transition;
       Leaf : Mission_States.Leaf)
      return Boolean is
      (case T is
@@ -141,9 +140,8 @@ is
         when Joint_Failed => Leaf in Mission_States.Active,
         when Joint_Lost => Leaf in Mission_States.Active,
         when Shut_Down => Leaf in Mission_States.Active);
+   --  Is its source the leaf, or around it?
 
-   --  The leaf it leads to from ``Leaf``; a composite target by its
-   --  default.
    function Target (T : Firing) return Mission_States.Leaf is
      (case T is
         when Initial_Entry => Mission_States.Waiting,
@@ -159,8 +157,8 @@ is
         when Joint_Failed => Mission_States.Failed,
         when Joint_Lost => Mission_States.Failed,
         when Shut_Down => Mission_States.Shut_Down);
+   --  The leaf it leads to; that of a composite is its default.
 
-   --  The first that is enabled, or None when none is.
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Mission_States.Leaf;
@@ -175,21 +173,22 @@ is
          and then (for all T in Transition =>
                (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
    with Ghost;
+   --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
    with
      Post =>
        Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-
    --  One more execution: the time-outs come nearer.
-   procedure Poll (Self : in out Region; Now  : out Occurrence)
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
        and then (Now = Start_Of_Region) = not Self.Started;
-
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
+
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Commanded => On_Commanded,
@@ -212,6 +211,5 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
-
    --  One run-to-completion step.
 end Cartesian_Robot.Robot_Coordinator.Mission;

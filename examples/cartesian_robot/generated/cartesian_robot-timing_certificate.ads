@@ -20,7 +20,7 @@ is
    Reception_C : constant :=
      Robot_Bus_Receive_Budget + 2 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
-   Reception_R : constant := 230_000;
+   Reception_R : constant := 260_000;
 
    --  [trajectory]
    Joint_X_Trajectory_Step_Budget : constant := 100_000;
@@ -35,7 +35,7 @@ is
      + Joint_Z_Trajectory_Step_Budget
      + 2 * Controller_Context_Switch;
    Trajectory_B : constant := Controller_Critical_Section;
-   Trajectory_R : constant := 565_000;
+   Trajectory_R : constant := 595_000;
 
    --  [control]
    Joint_X_Ports_Budget : constant := 40_000;
@@ -62,7 +62,7 @@ is
      + Joint_Z_Position_Control_Budget
      + 2 * Controller_Context_Switch;
    Control_B : constant := Controller_Critical_Section;
-   Control_R : constant := 1_350_000;
+   Control_R : constant := 1_410_000;
 
    --  [supervision]
    Coordinator_Ports_Budget : constant := 40_000;
@@ -89,7 +89,7 @@ is
      + Coordinator_Summarise_Budget
      + 2 * Controller_Context_Switch;
    Supervision_B : constant := Controller_Critical_Section;
-   Supervision_R : constant := 1_865_000;
+   Supervision_R : constant := 1_925_000;
 
    --  [robot_bus.driver_rx.robot_command]
    Robot_Bus_Driver_Rx_Robot_Command_Budget : constant :=
@@ -102,7 +102,7 @@ is
      + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Robot_Command_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 205_000;
+   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 235_000;
 
    --  [robot_bus.driver_tx.robot_status]
    Robot_Bus_Driver_Tx_Robot_Status_Budget : constant :=
@@ -114,7 +114,7 @@ is
      Robot_Bus_Driver_Tx_Robot_Status_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 205_000;
+   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 235_000;
 
    --  [robot_bus.driver_tx.x_set_point]
    Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant :=
@@ -126,7 +126,7 @@ is
      Robot_Bus_Driver_Tx_X_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 205_000;
+   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 235_000;
 
    --  [robot_bus.driver_tx.y_set_point]
    Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant :=
@@ -138,7 +138,7 @@ is
      Robot_Bus_Driver_Tx_Y_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 205_000;
+   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 235_000;
 
    --  [robot_bus.driver_tx.z_set_point]
    Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant :=
@@ -150,7 +150,7 @@ is
      Robot_Bus_Driver_Tx_Z_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 205_000;
+   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 235_000;
 
    --  [robot_bus.driver_rx.x_feedback]
    Robot_Bus_Driver_Rx_X_Feedback_Budget : constant :=
@@ -162,7 +162,7 @@ is
      Robot_Bus_Driver_Rx_X_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 205_000;
+   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 235_000;
 
    --  [robot_bus.driver_rx.y_feedback]
    Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant :=
@@ -174,7 +174,7 @@ is
      Robot_Bus_Driver_Rx_Y_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 205_000;
+   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 235_000;
 
    --  [robot_bus.driver_rx.z_feedback]
    Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant :=
@@ -186,7 +186,18 @@ is
      Robot_Bus_Driver_Rx_Z_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 205_000;
+   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 235_000;
+
+   --  [controller.probe]
+   Controller_Probe_Budget : constant :=
+     30_000 - 2 * Controller_Context_Switch;
+   Controller_Probe_T : constant := 1_000_000;
+   Controller_Probe_D : constant := 1_000_000;
+   Controller_Probe_J : constant := 0;
+   Controller_Probe_C : constant :=
+     Controller_Probe_Budget + 2 * Controller_Context_Switch;
+   Controller_Probe_B : constant := Controller_Critical_Section;
+   Controller_Probe_R : constant := 35_000;
 
    --  [reception] what can delay it
    Reception_W : constant :=
@@ -231,7 +242,10 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Reception_R + Controller_Probe_J + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Reception_W > Reception_R,
@@ -290,7 +304,10 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Trajectory_R + Controller_Probe_J + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Trajectory_W > Trajectory_R,
@@ -351,7 +368,10 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Control_R + Controller_Probe_J + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Control_W > Control_R,
@@ -414,7 +434,10 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Supervision_R + Controller_Probe_J + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Supervision_W > Supervision_R,
@@ -466,7 +489,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Robot_Command_W
@@ -529,7 +557,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_Robot_Status_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Robot_Status_W
@@ -592,7 +625,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_X_Set_Point_W > Robot_Bus_Driver_Tx_X_Set_Point_R,
@@ -650,7 +688,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Y_Set_Point_W > Robot_Bus_Driver_Tx_Y_Set_Point_R,
@@ -708,7 +751,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Z_Set_Point_W > Robot_Bus_Driver_Tx_Z_Set_Point_R,
@@ -766,7 +814,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_X_Feedback_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_X_Feedback_W > Robot_Bus_Driver_Rx_X_Feedback_R,
@@ -824,7 +877,12 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_J
           + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C);
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Y_Feedback_W > Robot_Bus_Driver_Rx_Y_Feedback_R,
@@ -882,7 +940,12 @@ is
           + Robot_Bus_Driver_Rx_Y_Feedback_J
           + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C);
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
+          + Controller_Probe_J
+          + (Controller_Probe_T - 1))
+         / Controller_Probe_T)
+        * Controller_Probe_C);
 
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Z_Feedback_W > Robot_Bus_Driver_Rx_Z_Feedback_R,
@@ -901,4 +964,20 @@ is
    pragma Assert
      ((Robot_Bus_Driver_Rx_Z_Feedback_R + Robot_Bus_Driver_Rx_Z_Feedback_J)
       <= Robot_Bus_Driver_Rx_Z_Feedback_D);
+
+   --  [controller.probe] what can delay it
+   Controller_Probe_W : constant := Controller_Probe_C + Controller_Probe_B;
+
+   pragma Compile_Time_Error
+     (Controller_Probe_W > Controller_Probe_R,
+      "controller.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Controller_Probe_R > Controller_Probe_T,
+      "controller.probe " & "can be released again before it completes");
+   pragma Compile_Time_Error
+     ((Controller_Probe_R + Controller_Probe_J) > Controller_Probe_D,
+      "controller.probe " & "can miss its deadline");
+   pragma Assert (Controller_Probe_W <= Controller_Probe_R);
+   pragma Assert
+     ((Controller_Probe_R + Controller_Probe_J) <= Controller_Probe_D);
 end Cartesian_Robot.Timing_Certificate;

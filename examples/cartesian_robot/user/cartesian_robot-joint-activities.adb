@@ -149,7 +149,7 @@ is
       Homed    : Boolean;
       Motion   : Joint.Motion_States.Leaf;
       Origin   : in out Cartesian_Robot.Encoder_Count;
-      Measured : in out Cartesian_Robot.Measurement;
+      Measured : out Cartesian_Robot.Measurement;
       Drive    : out Cartesian_Robot.Drive_Set_Point)
    is
       Count : constant Number := Number (Feedback.Value.Count);

@@ -8,18 +8,17 @@ package Three_Components.One
 with SPARK_Mode
 is
    procedure Put_Token_In (Item : Three_Components.Token);
-
    --  [one.token_in.mailbox] by its senders; never blocks.
+
    procedure Offer (Item : Starter.Event);
-
    --  [one.events] offer Item to every region that names it; never blocks.
+
    procedure Run_Ports;
-
    --  [one.ports] one execution, by its processor alone.
+
    procedure Run_Starting;
-
    --  [one.Starting] one execution, by its processor alone.
-   procedure Run_Watching;
 
+   procedure Run_Watching;
    --  [one.Watching] one execution, by its processor alone.
 end Three_Components.One;

@@ -6,9 +6,8 @@ package Three_Components.Reports
 with SPARK_Mode
 is
    procedure Drain_Trace;
-
    --  Hand what was traced to the host.
-   procedure Put_All;
 
+   procedure Put_All;
    --  Hand the statistics of all processors to the host.
 end Three_Components.Reports;

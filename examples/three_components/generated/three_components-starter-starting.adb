@@ -20,7 +20,7 @@ is
 
    function Select_Transition
      (Leaf : Starting_States.Leaf;
-      Now  : Occurrence)
+      Now : Occurrence)
      return Selection is
      (case Leaf is
         when Starting_States.Before => In_Before (Now),
@@ -44,7 +44,7 @@ is
       Ravenchart.Timers.Tick (Self.Timers);
    end Tick;
 
-   procedure Poll (Self : in out Region; Now  : out Occurrence) is
+   procedure Poll (Self : in out Region; Now : out Occurrence) is
       Due : Natural;
    begin
       if not Self.Started then

@@ -41,7 +41,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   --  The declared chart: source, trigger and guard of each transition.
    function Enabled
      (T    : Transition;
       Leaf : Starting_States.Leaf;
@@ -52,25 +51,24 @@ is
            Leaf = Starting_States.Before and then Now = Expiry_Of_Start,
         when Again =>
            Leaf = Starting_States.After_Start and then Now = On_Token_Came);
+   --  The declared chart: source, trigger and guard of each transition.
 
-   --  Its source, which is the leaf or contains it.
    function In_Source
-     (T    : Transition;
+     (T : Transition;
       Leaf : Starting_States.Leaf)
      return Boolean is
      (case T is
         when Start => Leaf = Starting_States.Before,
         when Again => Leaf = Starting_States.After_Start);
+   --  Is its source the leaf, or around it?
 
-   --  The leaf it leads to from ``Leaf``; a composite target by its
-   --  default.
    function Target (T : Firing) return Starting_States.Leaf is
      (case T is
         when Initial_Entry => Starting_States.Before,
         when Start => Starting_States.After_Start,
         when Again => Starting_States.After_Start);
+   --  The leaf it leads to; that of a composite is its default.
 
-   --  The first that is enabled, or None when none is.
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Starting_States.Leaf;
@@ -84,21 +82,22 @@ is
          and then (for all T in Transition =>
                (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
+   --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
    with
      Post =>
        Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-
    --  One more execution: the time-outs come nearer.
-   procedure Poll (Self : in out Region; Now  : out Occurrence)
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
        and then (Now = Start_Of_Region) = not Self.Started;
-
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
+
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Token_Came => On_Token_Came);
@@ -119,6 +118,5 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
-
    --  One run-to-completion step.
 end Three_Components.Starter.Starting;

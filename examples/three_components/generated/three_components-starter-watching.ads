@@ -30,7 +30,6 @@ is
       Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
    end record;
 
-   --  The declared chart: source, trigger and guard of each transition.
    function Enabled
      (T    : Transition;
       Leaf : Watching_States.Leaf;
@@ -41,25 +40,24 @@ is
            Leaf = Watching_States.Quiet and then Now = On_Token_Came,
         when Calm =>
            Leaf = Watching_States.Busy and then Now = Expiry_Of_Calm);
+   --  The declared chart: source, trigger and guard of each transition.
 
-   --  Its source, which is the leaf or contains it.
    function In_Source
-     (T    : Transition;
+     (T : Transition;
       Leaf : Watching_States.Leaf)
      return Boolean is
      (case T is
         when Seen => Leaf = Watching_States.Quiet,
         when Calm => Leaf = Watching_States.Busy);
+   --  Is its source the leaf, or around it?
 
-   --  The leaf it leads to from ``Leaf``; a composite target by its
-   --  default.
    function Target (T : Firing) return Watching_States.Leaf is
      (case T is
         when Initial_Entry => Watching_States.Quiet,
         when Seen => Watching_States.Busy,
         when Calm => Watching_States.Quiet);
+   --  The leaf it leads to; that of a composite is its default.
 
-   --  The first that is enabled, or None when none is.
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Watching_States.Leaf;
@@ -73,21 +71,22 @@ is
          and then (for all T in Transition =>
                (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
+   --  The first transition that is enabled, or None when none is.
 
    procedure Tick (Self : in out Region)
    with
      Post =>
        Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-
    --  One more execution: the time-outs come nearer.
-   procedure Poll (Self : in out Region; Now  : out Occurrence)
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
        and then (Now = Start_Of_Region) = not Self.Started;
-
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
+
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Token_Came => On_Token_Came);
@@ -106,6 +105,5 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
-
    --  One run-to-completion step.
 end Three_Components.Starter.Watching;

@@ -16,7 +16,7 @@ is
 
    function Select_Transition
      (Leaf : Handling_States.Leaf;
-      Now  : Occurrence)
+      Now : Occurrence)
      return Selection is
      (case Leaf is
         when Handling_States.Empty => In_Empty (Now),
@@ -35,7 +35,7 @@ is
           Holding => Leaf = Handling_States.Holding));
    end Chart;
 
-   procedure Poll (Self : Region; Now  : out Occurrence) is
+   procedure Poll (Self : Region; Now : out Occurrence) is
    begin
       if Self.Started then
          Now := Conditions;

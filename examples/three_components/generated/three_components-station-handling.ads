@@ -38,7 +38,6 @@ is
       Leaf    : Handling_States.Leaf := Handling_States.Empty;
    end record;
 
-   --  The declared chart: source, trigger and guard of each transition.
    function Enabled
      (T    : Transition;
       Leaf : Handling_States.Leaf;
@@ -49,25 +48,24 @@ is
            Leaf = Handling_States.Empty and then Now = On_Token_Came,
         when Pass_On =>
            Leaf = Handling_States.Holding and then Now = On_Worked);
+   --  The declared chart: source, trigger and guard of each transition.
 
-   --  Its source, which is the leaf or contains it.
    function In_Source
-     (T    : Transition;
+     (T : Transition;
       Leaf : Handling_States.Leaf)
      return Boolean is
      (case T is
         when Take => Leaf = Handling_States.Empty,
         when Pass_On => Leaf = Handling_States.Holding);
+   --  Is its source the leaf, or around it?
 
-   --  The leaf it leads to from ``Leaf``; a composite target by its
-   --  default.
    function Target (T : Firing) return Handling_States.Leaf is
      (case T is
         when Initial_Entry => Handling_States.Empty,
         when Take => Handling_States.Holding,
         when Pass_On => Handling_States.Empty);
+   --  The leaf it leads to; that of a composite is its default.
 
-   --  The first that is enabled, or None when none is.
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Handling_States.Leaf;
@@ -81,12 +79,13 @@ is
          and then (for all T in Transition =>
                (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
+   --  The first transition that is enabled, or None when none is.
 
-   procedure Poll (Self : Region; Now  : out Occurrence)
+   procedure Poll (Self : Region; Now : out Occurrence)
    with Post => (Now = Start_Of_Region) = not Self.Started;
-
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
+
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Token_Came => On_Token_Came,
@@ -108,6 +107,5 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired));
-
    --  One run-to-completion step.
 end Three_Components.Station.Handling;

@@ -15,7 +15,7 @@ is
 
    function Select_Transition
      (Leaf : Watching_States.Leaf;
-      Now  : Occurrence)
+      Now : Occurrence)
      return Selection is
      (case Leaf is
         when Watching_States.Quiet => In_Quiet (Now),
@@ -39,7 +39,7 @@ is
       Ravenchart.Timers.Tick (Self.Timers);
    end Tick;
 
-   procedure Poll (Self : in out Region; Now  : out Occurrence) is
+   procedure Poll (Self : in out Region; Now : out Occurrence) is
       Due : Natural;
    begin
       if not Self.Started then
@@ -55,7 +55,7 @@ is
       end if;
    end Poll;
 
-   procedure Fire (Self   : in out Region; Chosen : Firing)
+   procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
        (if Chosen = Initial_Entry

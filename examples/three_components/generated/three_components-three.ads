@@ -8,22 +8,21 @@ package Three_Components.Three
 with SPARK_Mode
 is
    procedure Put_Token_In (Item : Three_Components.Token);
-
    --  [three.token_in.mailbox] by its senders; never blocks.
-   procedure Offer (Item : Station.Event);
 
+   procedure Offer (Item : Station.Event);
    --  [three.events] offer Item to every region that names it; never
    --  blocks.
+
    procedure Run_Watching;
-
    --  [three.Watching] one execution, by its processor alone.
+
    procedure Run_Ports;
-
    --  [three.ports] one execution, by its processor alone.
+
    procedure Run_Handling;
-
    --  [three.Handling] one execution, by its processor alone.
-   procedure Run_Work;
 
+   procedure Run_Work;
    --  [three.work] one execution, by its processor alone.
 end Three_Components.Three;

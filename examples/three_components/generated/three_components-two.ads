@@ -8,21 +8,20 @@ package Three_Components.Two
 with SPARK_Mode
 is
    procedure Put_Token_In (Item : Three_Components.Token);
-
    --  [two.token_in.mailbox] by its senders; never blocks.
+
    procedure Offer (Item : Station.Event);
-
    --  [two.events] offer Item to every region that names it; never blocks.
+
    procedure Run_Ports;
-
    --  [two.ports] one execution, by its processor alone.
+
    procedure Run_Handling;
-
    --  [two.Handling] one execution, by its processor alone.
+
    procedure Run_Watching;
-
    --  [two.Watching] one execution, by its processor alone.
-   procedure Run_Work;
 
+   procedure Run_Work;
    --  [two.work] one execution, by its processor alone.
 end Three_Components.Two;

@@ -132,6 +132,10 @@ is
    with Global => (Input => Ada.Real_Time.Clock_Time);
    --  Let time pass before a call that failed is tried again.
 
+   pragma Warnings
+     (GNATprove, Off, "statement has no effect",
+      Reason => "to wait is the effect of the entry Wait_Idle");
+
    protected body Link is
 
       procedure Attach (New_Client : Slcan_Sockets.Socket) is
@@ -151,16 +155,10 @@ is
          Channel := Closed;
       end Detach;
 
-      pragma Warnings
-        (GNATprove, Off, "statement has no effect",
-         Reason => "to wait is the effect of this entry");
-
       entry Wait_Idle when Idle is
       begin
          null;
       end Wait_Idle;
-
-      pragma Warnings (GNATprove, On, "statement has no effect");
 
       procedure Begin_Line
         (Kind : Line_Kind; To : out Slcan_Sockets.Socket) is
