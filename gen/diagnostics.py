@@ -29,6 +29,7 @@ GROUPS: Mapping[str, str] = {
     "06": "Instances, connections and messages",
     "07": "Processors and timing",
     "08": "The system",
+    "09": "Deadlines",
 }
 
 CODES: Mapping[str, str] = {
@@ -117,6 +118,9 @@ CODES: Mapping[str, str] = {
     "RV-0801": "A section without which there is no system is missing or empty.",
     "RV-0802": "Distribution over several nodes or buses is not there yet.",
     "RV-0803": "Something that the system has once is given twice.",
+    "RV-0901": "A task may miss its deadline.",
+    "RV-0902": "A task's response time has no bound.",
+    "RV-0903": "The messages of a bus need more than all of its time.",
 }
 """Every code with what it says; docs/errors.md is written from this table."""
 

@@ -43,6 +43,11 @@ from .naming import ada_case, default_value, type_name
 WORD = "Interfaces.Unsigned_64"
 
 
+def _container(signal: Signal) -> str:
+    """The smallest type of bits that holds a signal: provers work bit by bit."""
+    return f"Interfaces.Unsigned_{next(n for n in (8, 16, 32, 64) if signal.width <= n)}"
+
+
 def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     """Spec and body of the codecs; nothing for a system without messages."""
     layouts: dict[str, Message] = {}
@@ -50,8 +55,10 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
         layouts.setdefault(message.type.name.lower(), message)
     if not layouts:
         return ()
-    spec: list[Decl] = [UseType(WORD), UseType("Ravenchart.Number")]
-    body: list[Decl] = []
+    kinds = {_container(s) for m in layouts.values() for s in m.signals} | {WORD}
+    spec: list[Decl] = [UseType(k) for k in (*sorted(kinds), "Ravenchart.Number")]
+    scalars = {s.type.name.lower(): s for m in layouts.values() for s in m.signals}
+    body: list[Decl] = [f(system, s) for s in scalars.values() for f in (_bits, _value)]
     for message in layouts.values():
         codec = _Codec(system, message)
         spec += codec.spec()
@@ -63,7 +70,66 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
             ("Interfaces",),
             Package(name, tuple(spec), (SPARK, Aspect("Pure"))),
         ),
-        Unit(header, ("Ravenchart.Can",), Package(name, tuple(body), (SPARK,), is_body=True)),
+        Unit(header, (), Package(name, tuple(body), (SPARK,), is_body=True)),
+    )
+
+
+def _largest(signal: Signal) -> int:
+    if isinstance(signal.type, IntegerType):
+        return signal.type.last - signal.type.first
+    return len(signal.type.literals) - 1
+
+
+def _raw_integer(system: System, signal: Signal, value: str) -> Expr:
+    """The raw value of ``value`` as an integer."""
+    if isinstance(signal.type, EnumerationType):
+        return call(f"{type_name(system, signal.type)}'Pos", Ref(value))
+    counted = call("Ravenchart.Number", Ref(value))
+    return Chain("-", (counted, number(signal.offset))) if signal.offset else counted
+
+
+def _bits_name(signal: Signal) -> str:
+    return f"Bits_Of_{ada_case(signal.type.name)}"
+
+
+def _bits(system: System, signal: Signal) -> Subprogram:
+    """From a scalar to its bits: the one step from integers to bits, proved by itself."""
+    name = _bits_name(signal)
+    raw = _raw_integer(system, signal, "Item")
+    result = Ref(f"{name}'Result")
+    post = both(
+        Chain("<=", (result, number(_largest(signal)))),
+        equal(call("Ravenchart.Number", result), raw),
+    )
+    return Subprogram(
+        name,
+        (Param("Item", "in", type_name(system, signal.type)),),
+        _container(signal),
+        aspects=(Aspect("Post", post),),
+        expression=call(_container(signal), raw),
+    )
+
+
+def _value(system: System, signal: Signal) -> Subprogram:
+    """From the bits of a scalar back to it."""
+    name, of_type = f"{ada_case(signal.type.name)}_Of_Bits", type_name(system, signal.type)
+    if isinstance(signal.type, EnumerationType):
+        result: Expr = call(f"{of_type}'Val", Ref("Raw"))
+    else:
+        counted: Expr = call("Ravenchart.Number", Ref("Raw"))
+        if signal.offset:
+            counted = Chain("+", (counted, number(signal.offset)))
+        result = call(of_type, counted)
+    back = _raw_integer(system, signal, f"{name}'Result")
+    return Subprogram(
+        name,
+        (Param("Raw", "in", _container(signal)),),
+        of_type,
+        aspects=(
+            Aspect("Pre", Chain("<=", (Ref("Raw"), number(_largest(signal))))),
+            Aspect("Post", equal(call("Ravenchart.Number", Ref("Raw")), back)),
+        ),
+        expression=result,
     )
 
 
@@ -81,35 +147,17 @@ class _Codec:
 
     def _position(self, signal: Signal, item: str) -> Expr:
         """The raw value of one field of ``item``, as an integer."""
-        value = self._item(signal, item)
-        if isinstance(signal.type, EnumerationType):
-            return call(f"{type_name(self.system, signal.type)}'Pos", Ref(value))
-        counted = call("Ravenchart.Number", Ref(value))
-        if not signal.offset:
-            return counted
-        return Chain("-", (counted, number(signal.offset)))
+        return _raw_integer(self.system, signal, self._item(signal, item))
 
     def _raw_of(self, signal: Signal, item: str) -> Expr:
         """The bits of one field of ``item``."""
-        last = number(self._largest(signal))
-        return call("Ravenchart.Can.To_Raw", self._position(signal, item), last)
+        return call(_bits_name(signal), Ref(self._item(signal, item)))
 
     def _decoded(self, signal: Signal) -> Expr:
-        raw = Ref(self._local(signal))
-        if isinstance(signal.type, EnumerationType):
-            return call(f"{type_name(self.system, signal.type)}'Val", raw)
-        inner: Expr = call("Ravenchart.Number", raw)
-        if signal.offset:
-            inner = Chain("+", (inner, number(signal.offset)))
-        return call(type_name(self.system, signal.type), inner)
+        return call(f"{ada_case(signal.type.name)}_Of_Bits", Ref(self._local(signal)))
 
     def _local(self, signal: Signal) -> str:
         return f"{ada_case(signal.field or 'value')}_Raw"
-
-    def _largest(self, signal: Signal) -> int:
-        if isinstance(signal.type, IntegerType):
-            return signal.type.last - signal.type.first
-        return len(signal.type.literals) - 1
 
     def spec(self) -> list[Decl]:
         word = Param("Word", "in", WORD)
@@ -121,8 +169,8 @@ class _Codec:
                 Subprogram(
                     self._raw_name(s),
                     (word,),
-                    WORD,
-                    expression=Ref(f"{shifted} and 16#{mask:X}#"),
+                    _container(s),
+                    expression=call(_container(s), Ref(f"{shifted} and 16#{mask:X}#")),
                 )
             )
             items.append(
@@ -131,7 +179,7 @@ class _Codec:
         packed = both(*self._carries(f"Pack_{self.name}'Result", "Item"))
         valid = both(
             *(
-                Chain("<=", (call(self._raw_name(s), Ref("Word")), number(self._largest(s))))
+                Chain("<=", (call(self._raw_name(s), Ref("Word")), number(_largest(s))))
                 for s in self.signals
             )
         )
@@ -169,7 +217,7 @@ class _Codec:
         facts: list[Expr] = []
         for s in self.signals:
             raw = call(self._raw_name(s), Ref(word))
-            facts.append(Chain("<=", (raw, number(self._largest(s)))))
+            facts.append(Chain("<=", (raw, number(_largest(s)))))
             facts.append(equal(call("Ravenchart.Number", raw), self._position(s, item)))
         return facts
 
@@ -179,7 +227,7 @@ class _Codec:
     def _join(self) -> Subprogram:
         """The word of all raw values: bits alone, which is what provers of bit vectors like."""
         name = f"Word_Of_{self.name}"
-        params = tuple(Param(self._local(s), "in", WORD) for s in self.signals)
+        params = tuple(Param(self._local(s), "in", _container(s)) for s in self.signals)
         fits = both(
             *(
                 Chain("<=", (Ref(self._local(s)), Ref(f"16#{(1 << s.width) - 1:X}#")))
@@ -193,9 +241,9 @@ class _Codec:
             )
         )
         parts: list[Expr] = [
-            call("Interfaces.Shift_Left", Ref(self._local(s)), number(s.start))
+            call("Interfaces.Shift_Left", call(WORD, Ref(self._local(s))), number(s.start))
             if s.start
-            else Ref(self._local(s))
+            else call(WORD, Ref(self._local(s)))
             for s in self.signals
         ]
         return Subprogram(
@@ -208,7 +256,7 @@ class _Codec:
 
     def _pack(self) -> Subprogram:
         declarations = tuple(
-            Object(self._local(s), WORD, self._raw_of(s, "Item"), constant=True)
+            Object(self._local(s), _container(s), self._raw_of(s, "Item"), constant=True)
             for s in self.signals
         )
         word = call(f"Word_Of_{self.name}", *(Ref(self._local(s)) for s in self.signals))
@@ -222,11 +270,13 @@ class _Codec:
 
     def _unpack(self) -> Subprogram:
         declarations = tuple(
-            Object(self._local(s), WORD, call(self._raw_name(s), Ref("Word")), constant=True)
+            Object(
+                self._local(s), _container(s), call(self._raw_name(s), Ref("Word")), constant=True
+            )
             for s in self.signals
         )
         good = both(
-            *(Chain("<=", (Ref(self._local(s)), number(self._largest(s)))) for s in self.signals)
+            *(Chain("<=", (Ref(self._local(s)), number(_largest(s)))) for s in self.signals)
         )
         if isinstance(self.type, RecordType):
             built: Expr = Aggregate(

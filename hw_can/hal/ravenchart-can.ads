@@ -106,20 +106,6 @@ is
      Pre    => Fits (Id, Format);
    --  A request for Length bytes of data.
 
-   subtype Raw_Number is Number range 0 .. Number'Last;
-   --  An integer that a signal can carry.
-
-   function To_Raw
-     (Value : Raw_Number; Last : Raw_Number) return Interfaces.Unsigned_64
-   is (Interfaces.Unsigned_64 (Value))
-   with
-     Global => null,
-     Pre    => Value <= Last,
-     Post   =>
-       To_Raw'Result <= Interfaces.Unsigned_64 (Last)
-       and then Number (To_Raw'Result) = Value;
-   --  The bits of Value, which is at most Last.
-
    type Send_Status is (Queued, Rejected_Full);
    --  What became of a frame handed to a controller.
 

@@ -31,4 +31,21 @@ is
       Item := Queue.Store (Oldest);
    end Get;
 
+   --------------------
+   -- Replace_Oldest --
+   --------------------
+
+   procedure Replace_Oldest (Queue : in out Fifo; Item : Element_Type) is
+      Dropped : Capacity_Type;
+      Newest  : Capacity_Type;
+   begin
+      pragma Warnings
+        (GNATprove, Off, """Dropped"" is set by*",
+         Reason => "what is dropped is not used");
+      Rings.Shrink (Queue.Places, Dropped);
+      pragma Warnings (GNATprove, On, """Dropped"" is set by*");
+      Rings.Extend (Queue.Places, Newest);
+      Queue.Store (Newest) := Item;
+   end Replace_Oldest;
+
 end Ravenchart.Bounded_Fifos;

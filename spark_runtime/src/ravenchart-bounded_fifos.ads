@@ -62,6 +62,17 @@ is
                    Nth (Queue, I) = Nth (Queue'Old, I + 1));
    --  Remove the oldest element and hand it to the caller.
 
+   procedure Replace_Oldest (Queue : in out Fifo; Item : Element_Type)
+   with
+     Global => null,
+     Pre    => Length (Queue) > 0,
+     Post   =>
+       Length (Queue) = Length (Queue)'Old
+       and then Nth (Queue, Length (Queue)) = Item
+       and then (for all I in 1 .. Length (Queue) - 1 =>
+                   Nth (Queue, I) = Nth (Queue'Old, I + 1));
+   --  Drop the oldest element, and append Item behind the newest.
+
 private
 
    type Element_Array is array (Positive range <>) of Element_Type;

@@ -2,21 +2,181 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Ravenchart.Can;
-
 package body Cartesian_Robot.Codecs
 with SPARK_Mode
 is
+   function Bits_Of_Order_Kind
+     (Item : Cartesian_Robot.Order_Kind)
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Cartesian_Robot.Order_Kind'Pos (Item)))
+   with
+     Post =>
+       Bits_Of_Order_Kind'Result <= 3
+       and then Ravenchart.Number (Bits_Of_Order_Kind'Result)
+         = Cartesian_Robot.Order_Kind'Pos (Item);
+
+   function Order_Kind_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Order_Kind is
+     (Cartesian_Robot.Order_Kind'Val (Raw))
+   with
+     Pre => Raw <= 3,
+     Post =>
+       Ravenchart.Number (Raw)
+       = Cartesian_Robot.Order_Kind'Pos (Order_Kind_Of_Bits'Result);
+
+   function Bits_Of_Position
+     (Item : Cartesian_Robot.Position)
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32 (Ravenchart.Number (Item) - (-20_000)))
+   with
+     Post =>
+       Bits_Of_Position'Result <= 520_000
+       and then Ravenchart.Number (Bits_Of_Position'Result)
+         = (Ravenchart.Number (Item) - (-20_000));
+
+   function Position_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Cartesian_Robot.Position is
+     (Cartesian_Robot.Position (Ravenchart.Number (Raw) + (-20_000)))
+   with
+     Pre => Raw <= 520_000,
+     Post =>
+       Ravenchart.Number (Raw)
+       = (Ravenchart.Number (Position_Of_Bits'Result) - (-20_000));
+
+   function Bits_Of_Robot_Condition
+     (Item : Cartesian_Robot.Robot_Condition)
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Cartesian_Robot.Robot_Condition'Pos (Item)))
+   with
+     Post =>
+       Bits_Of_Robot_Condition'Result <= 5
+       and then Ravenchart.Number (Bits_Of_Robot_Condition'Result)
+         = Cartesian_Robot.Robot_Condition'Pos (Item);
+
+   function Robot_Condition_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Robot_Condition is
+     (Cartesian_Robot.Robot_Condition'Val (Raw))
+   with
+     Pre => Raw <= 5,
+     Post =>
+       Ravenchart.Number (Raw)
+       = Cartesian_Robot.Robot_Condition'Pos
+           (Robot_Condition_Of_Bits'Result);
+
+   function Bits_Of_Drive_Mode
+     (Item : Cartesian_Robot.Drive_Mode)
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Cartesian_Robot.Drive_Mode'Pos (Item)))
+   with
+     Post =>
+       Bits_Of_Drive_Mode'Result <= 1
+       and then Ravenchart.Number (Bits_Of_Drive_Mode'Result)
+         = Cartesian_Robot.Drive_Mode'Pos (Item);
+
+   function Drive_Mode_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Drive_Mode is
+     (Cartesian_Robot.Drive_Mode'Val (Raw))
+   with
+     Pre => Raw <= 1,
+     Post =>
+       Ravenchart.Number (Raw)
+       = Cartesian_Robot.Drive_Mode'Pos (Drive_Mode_Of_Bits'Result);
+
+   function Bits_Of_Speed
+     (Item : Cartesian_Robot.Speed)
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32 (Ravenchart.Number (Item) - (-400_000)))
+   with
+     Post =>
+       Bits_Of_Speed'Result <= 800_000
+       and then Ravenchart.Number (Bits_Of_Speed'Result)
+         = (Ravenchart.Number (Item) - (-400_000));
+
+   function Speed_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Cartesian_Robot.Speed is
+     (Cartesian_Robot.Speed (Ravenchart.Number (Raw) + (-400_000)))
+   with
+     Pre => Raw <= 800_000,
+     Post =>
+       Ravenchart.Number (Raw)
+       = (Ravenchart.Number (Speed_Of_Bits'Result) - (-400_000));
+
+   function Bits_Of_Encoder_Count
+     (Item : Cartesian_Robot.Encoder_Count)
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32 (Ravenchart.Number (Item) - (-1_000_000)))
+   with
+     Post =>
+       Bits_Of_Encoder_Count'Result <= 2_000_000
+       and then Ravenchart.Number (Bits_Of_Encoder_Count'Result)
+         = (Ravenchart.Number (Item) - (-1_000_000));
+
+   function Encoder_Count_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Cartesian_Robot.Encoder_Count is
+     (Cartesian_Robot.Encoder_Count (Ravenchart.Number (Raw) + (-1_000_000)))
+   with
+     Pre => Raw <= 2_000_000,
+     Post =>
+       Ravenchart.Number (Raw)
+       = (Ravenchart.Number (Encoder_Count_Of_Bits'Result) - (-1_000_000));
+
+   function Bits_Of_Switch
+     (Item : Cartesian_Robot.Switch)
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Cartesian_Robot.Switch'Pos (Item)))
+   with
+     Post =>
+       Bits_Of_Switch'Result <= 2
+       and then Ravenchart.Number (Bits_Of_Switch'Result)
+         = Cartesian_Robot.Switch'Pos (Item);
+
+   function Switch_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Switch is
+     (Cartesian_Robot.Switch'Val (Raw))
+   with
+     Pre => Raw <= 2,
+     Post =>
+       Ravenchart.Number (Raw)
+       = Cartesian_Robot.Switch'Pos (Switch_Of_Bits'Result);
+
+   function Bits_Of_Drive_Condition
+     (Item : Cartesian_Robot.Drive_Condition)
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Cartesian_Robot.Drive_Condition'Pos (Item)))
+   with
+     Post =>
+       Bits_Of_Drive_Condition'Result <= 1
+       and then Ravenchart.Number (Bits_Of_Drive_Condition'Result)
+         = Cartesian_Robot.Drive_Condition'Pos (Item);
+
+   function Drive_Condition_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Drive_Condition is
+     (Cartesian_Robot.Drive_Condition'Val (Raw))
+   with
+     Pre => Raw <= 1,
+     Post =>
+       Ravenchart.Number (Raw)
+       = Cartesian_Robot.Drive_Condition'Pos
+           (Drive_Condition_Of_Bits'Result);
+
    function Word_Of_Robot_Order
-     (Kind_Raw : Interfaces.Unsigned_64;
-      X_Raw    : Interfaces.Unsigned_64;
-      Y_Raw    : Interfaces.Unsigned_64;
-      Z_Raw    : Interfaces.Unsigned_64)
+     (Kind_Raw : Interfaces.Unsigned_8;
+      X_Raw    : Interfaces.Unsigned_32;
+      Y_Raw    : Interfaces.Unsigned_32;
+      Z_Raw    : Interfaces.Unsigned_32)
      return Interfaces.Unsigned_64 is
-     (Kind_Raw
-      or Interfaces.Shift_Left (X_Raw, 2)
-      or Interfaces.Shift_Left (Y_Raw, 21)
-      or Interfaces.Shift_Left (Z_Raw, 40))
+     (Interfaces.Unsigned_64 (Kind_Raw)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (X_Raw), 2)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Y_Raw), 21)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Z_Raw), 40))
    with
      Pre =>
        Kind_Raw <= 16#3#
@@ -32,22 +192,11 @@ is
    function Pack_Robot_Order
      (Item : Cartesian_Robot.Robot_Order)
      return Interfaces.Unsigned_64 is
-      Kind_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Cartesian_Robot.Order_Kind'Pos (Item.Kind),
-           3);
-      X_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.X) - (-20_000),
-           520_000);
-      Y_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.Y) - (-20_000),
-           520_000);
-      Z_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.Z) - (-20_000),
-           520_000);
+      Kind_Raw : constant Interfaces.Unsigned_8 :=
+        Bits_Of_Order_Kind (Item.Kind);
+      X_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.X);
+      Y_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.Y);
+      Z_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.Z);
    begin
       return Word_Of_Robot_Order (Kind_Raw, X_Raw, Y_Raw, Z_Raw);
    end Pack_Robot_Order;
@@ -56,11 +205,11 @@ is
      (Word  : Interfaces.Unsigned_64;
       Item  : out Cartesian_Robot.Robot_Order;
       Valid : out Boolean) is
-      Kind_Raw : constant Interfaces.Unsigned_64 :=
+      Kind_Raw : constant Interfaces.Unsigned_8 :=
         Robot_Order_Kind_Raw (Word);
-      X_Raw : constant Interfaces.Unsigned_64 := Robot_Order_X_Raw (Word);
-      Y_Raw : constant Interfaces.Unsigned_64 := Robot_Order_Y_Raw (Word);
-      Z_Raw : constant Interfaces.Unsigned_64 := Robot_Order_Z_Raw (Word);
+      X_Raw : constant Interfaces.Unsigned_32 := Robot_Order_X_Raw (Word);
+      Y_Raw : constant Interfaces.Unsigned_32 := Robot_Order_Y_Raw (Word);
+      Z_Raw : constant Interfaces.Unsigned_32 := Robot_Order_Z_Raw (Word);
    begin
       Valid :=
         Kind_Raw <= 3
@@ -69,16 +218,10 @@ is
         and then Z_Raw <= 520_000;
       if Valid then
          Item :=
-           (Kind => Cartesian_Robot.Order_Kind'Val (Kind_Raw),
-            X =>
-              Cartesian_Robot.Position
-                (Ravenchart.Number (X_Raw) + (-20_000)),
-            Y =>
-              Cartesian_Robot.Position
-                (Ravenchart.Number (Y_Raw) + (-20_000)),
-            Z =>
-              Cartesian_Robot.Position
-                (Ravenchart.Number (Z_Raw) + (-20_000)));
+           (Kind => Order_Kind_Of_Bits (Kind_Raw),
+            X => Position_Of_Bits (X_Raw),
+            Y => Position_Of_Bits (Y_Raw),
+            Z => Position_Of_Bits (Z_Raw));
       else
          Item := Cartesian_Robot.Default_Robot_Order;
       end if;
@@ -93,13 +236,13 @@ is
    end Lemma_Robot_Order_Survives;
 
    function Word_Of_Robot_Report
-     (Condition_Raw : Interfaces.Unsigned_64;
-      X_Raw         : Interfaces.Unsigned_64;
-      Y_Raw         : Interfaces.Unsigned_64)
+     (Condition_Raw : Interfaces.Unsigned_8;
+      X_Raw         : Interfaces.Unsigned_32;
+      Y_Raw         : Interfaces.Unsigned_32)
      return Interfaces.Unsigned_64 is
-     (Condition_Raw
-      or Interfaces.Shift_Left (X_Raw, 3)
-      or Interfaces.Shift_Left (Y_Raw, 22))
+     (Interfaces.Unsigned_64 (Condition_Raw)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (X_Raw), 3)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Y_Raw), 22))
    with
      Pre =>
        Condition_Raw <= 16#7#
@@ -114,18 +257,10 @@ is
    function Pack_Robot_Report
      (Item : Cartesian_Robot.Robot_Report)
      return Interfaces.Unsigned_64 is
-      Condition_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Cartesian_Robot.Robot_Condition'Pos (Item.Condition),
-           5);
-      X_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.X) - (-20_000),
-           520_000);
-      Y_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.Y) - (-20_000),
-           520_000);
+      Condition_Raw : constant Interfaces.Unsigned_8 :=
+        Bits_Of_Robot_Condition (Item.Condition);
+      X_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.X);
+      Y_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.Y);
    begin
       return Word_Of_Robot_Report (Condition_Raw, X_Raw, Y_Raw);
    end Pack_Robot_Report;
@@ -134,10 +269,10 @@ is
      (Word  : Interfaces.Unsigned_64;
       Item  : out Cartesian_Robot.Robot_Report;
       Valid : out Boolean) is
-      Condition_Raw : constant Interfaces.Unsigned_64 :=
+      Condition_Raw : constant Interfaces.Unsigned_8 :=
         Robot_Report_Condition_Raw (Word);
-      X_Raw : constant Interfaces.Unsigned_64 := Robot_Report_X_Raw (Word);
-      Y_Raw : constant Interfaces.Unsigned_64 := Robot_Report_Y_Raw (Word);
+      X_Raw : constant Interfaces.Unsigned_32 := Robot_Report_X_Raw (Word);
+      Y_Raw : constant Interfaces.Unsigned_32 := Robot_Report_Y_Raw (Word);
    begin
       Valid :=
         Condition_Raw <= 5
@@ -145,13 +280,9 @@ is
         and then Y_Raw <= 520_000;
       if Valid then
          Item :=
-           (Condition => Cartesian_Robot.Robot_Condition'Val (Condition_Raw),
-            X =>
-              Cartesian_Robot.Position
-                (Ravenchart.Number (X_Raw) + (-20_000)),
-            Y =>
-              Cartesian_Robot.Position
-                (Ravenchart.Number (Y_Raw) + (-20_000)));
+           (Condition => Robot_Condition_Of_Bits (Condition_Raw),
+            X => Position_Of_Bits (X_Raw),
+            Y => Position_Of_Bits (Y_Raw));
       else
          Item := Cartesian_Robot.Default_Robot_Report;
       end if;
@@ -167,10 +298,11 @@ is
    end Lemma_Robot_Report_Survives;
 
    function Word_Of_Drive_Set_Point
-     (Mode_Raw  : Interfaces.Unsigned_64;
-      Speed_Raw : Interfaces.Unsigned_64)
+     (Mode_Raw  : Interfaces.Unsigned_8;
+      Speed_Raw : Interfaces.Unsigned_32)
      return Interfaces.Unsigned_64 is
-     (Mode_Raw or Interfaces.Shift_Left (Speed_Raw, 1))
+     (Interfaces.Unsigned_64 (Mode_Raw)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Speed_Raw), 1))
    with
      Pre => Mode_Raw <= 16#1# and then Speed_Raw <= 16#FFFFF#,
      Post =>
@@ -181,14 +313,10 @@ is
    function Pack_Drive_Set_Point
      (Item : Cartesian_Robot.Drive_Set_Point)
      return Interfaces.Unsigned_64 is
-      Mode_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Cartesian_Robot.Drive_Mode'Pos (Item.Mode),
-           1);
-      Speed_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.Speed) - (-400_000),
-           800_000);
+      Mode_Raw : constant Interfaces.Unsigned_8 :=
+        Bits_Of_Drive_Mode (Item.Mode);
+      Speed_Raw : constant Interfaces.Unsigned_32 :=
+        Bits_Of_Speed (Item.Speed);
    begin
       return Word_Of_Drive_Set_Point (Mode_Raw, Speed_Raw);
    end Pack_Drive_Set_Point;
@@ -197,18 +325,16 @@ is
      (Word  : Interfaces.Unsigned_64;
       Item  : out Cartesian_Robot.Drive_Set_Point;
       Valid : out Boolean) is
-      Mode_Raw : constant Interfaces.Unsigned_64 :=
+      Mode_Raw : constant Interfaces.Unsigned_8 :=
         Drive_Set_Point_Mode_Raw (Word);
-      Speed_Raw : constant Interfaces.Unsigned_64 :=
+      Speed_Raw : constant Interfaces.Unsigned_32 :=
         Drive_Set_Point_Speed_Raw (Word);
    begin
       Valid := Mode_Raw <= 1 and then Speed_Raw <= 800_000;
       if Valid then
          Item :=
-           (Mode => Cartesian_Robot.Drive_Mode'Val (Mode_Raw),
-            Speed =>
-              Cartesian_Robot.Speed
-                (Ravenchart.Number (Speed_Raw) + (-400_000)));
+           (Mode => Drive_Mode_Of_Bits (Mode_Raw),
+            Speed => Speed_Of_Bits (Speed_Raw));
       else
          Item := Cartesian_Robot.Default_Drive_Set_Point;
       end if;
@@ -224,15 +350,15 @@ is
    end Lemma_Drive_Set_Point_Survives;
 
    function Word_Of_Drive_Feedback
-     (Count_Raw     : Interfaces.Unsigned_64;
-      Speed_Raw     : Interfaces.Unsigned_64;
-      Limit_Raw     : Interfaces.Unsigned_64;
-      Condition_Raw : Interfaces.Unsigned_64)
+     (Count_Raw     : Interfaces.Unsigned_32;
+      Speed_Raw     : Interfaces.Unsigned_32;
+      Limit_Raw     : Interfaces.Unsigned_8;
+      Condition_Raw : Interfaces.Unsigned_8)
      return Interfaces.Unsigned_64 is
-     (Count_Raw
-      or Interfaces.Shift_Left (Speed_Raw, 21)
-      or Interfaces.Shift_Left (Limit_Raw, 41)
-      or Interfaces.Shift_Left (Condition_Raw, 43))
+     (Interfaces.Unsigned_64 (Count_Raw)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Speed_Raw), 21)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Limit_Raw), 41)
+      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Condition_Raw), 43))
    with
      Pre =>
        Count_Raw <= 16#1FFFFF#
@@ -251,20 +377,14 @@ is
    function Pack_Drive_Feedback
      (Item : Cartesian_Robot.Drive_Feedback)
      return Interfaces.Unsigned_64 is
-      Count_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.Count) - (-1_000_000),
-           2_000_000);
-      Speed_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Ravenchart.Number (Item.Speed) - (-400_000),
-           800_000);
-      Limit_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw (Cartesian_Robot.Switch'Pos (Item.Limit), 2);
-      Condition_Raw : constant Interfaces.Unsigned_64 :=
-        Ravenchart.Can.To_Raw
-          (Cartesian_Robot.Drive_Condition'Pos (Item.Condition),
-           1);
+      Count_Raw : constant Interfaces.Unsigned_32 :=
+        Bits_Of_Encoder_Count (Item.Count);
+      Speed_Raw : constant Interfaces.Unsigned_32 :=
+        Bits_Of_Speed (Item.Speed);
+      Limit_Raw : constant Interfaces.Unsigned_8 :=
+        Bits_Of_Switch (Item.Limit);
+      Condition_Raw : constant Interfaces.Unsigned_8 :=
+        Bits_Of_Drive_Condition (Item.Condition);
    begin
       return
         Word_Of_Drive_Feedback
@@ -278,13 +398,13 @@ is
      (Word  : Interfaces.Unsigned_64;
       Item  : out Cartesian_Robot.Drive_Feedback;
       Valid : out Boolean) is
-      Count_Raw : constant Interfaces.Unsigned_64 :=
+      Count_Raw : constant Interfaces.Unsigned_32 :=
         Drive_Feedback_Count_Raw (Word);
-      Speed_Raw : constant Interfaces.Unsigned_64 :=
+      Speed_Raw : constant Interfaces.Unsigned_32 :=
         Drive_Feedback_Speed_Raw (Word);
-      Limit_Raw : constant Interfaces.Unsigned_64 :=
+      Limit_Raw : constant Interfaces.Unsigned_8 :=
         Drive_Feedback_Limit_Raw (Word);
-      Condition_Raw : constant Interfaces.Unsigned_64 :=
+      Condition_Raw : constant Interfaces.Unsigned_8 :=
         Drive_Feedback_Condition_Raw (Word);
    begin
       Valid :=
@@ -294,14 +414,10 @@ is
         and then Condition_Raw <= 1;
       if Valid then
          Item :=
-           (Count =>
-              Cartesian_Robot.Encoder_Count
-                (Ravenchart.Number (Count_Raw) + (-1_000_000)),
-            Speed =>
-              Cartesian_Robot.Speed
-                (Ravenchart.Number (Speed_Raw) + (-400_000)),
-            Limit => Cartesian_Robot.Switch'Val (Limit_Raw),
-            Condition => Cartesian_Robot.Drive_Condition'Val (Condition_Raw));
+           (Count => Encoder_Count_Of_Bits (Count_Raw),
+            Speed => Speed_Of_Bits (Speed_Raw),
+            Limit => Switch_Of_Bits (Limit_Raw),
+            Condition => Drive_Condition_Of_Bits (Condition_Raw));
       else
          Item := Cartesian_Robot.Default_Drive_Feedback;
       end if;

@@ -7,31 +7,36 @@ with Interfaces;
 package Cartesian_Robot.Codecs
 with SPARK_Mode, Pure
 is
+   use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
+   use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
    function Robot_Order_Kind_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Word and 16#3#);
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Word and 16#3#));
    --  [Robot_Order.kind] bits 0 .. 1
 
    function Robot_Order_X_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 2) and 16#7FFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 2) and 16#7FFFF#));
    --  [Robot_Order.x] bits 2 .. 20
 
    function Robot_Order_Y_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 21) and 16#7FFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 21) and 16#7FFFF#));
    --  [Robot_Order.y] bits 21 .. 39
 
    function Robot_Order_Z_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 40) and 16#7FFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 40) and 16#7FFFF#));
    --  [Robot_Order.z] bits 40 .. 58
 
    function Pack_Robot_Order
@@ -89,20 +94,22 @@ is
 
    function Robot_Report_Condition_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Word and 16#7#);
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Word and 16#7#));
    --  [Robot_Report.condition] bits 0 .. 2
 
    function Robot_Report_X_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 3) and 16#7FFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 3) and 16#7FFFF#));
    --  [Robot_Report.x] bits 3 .. 21
 
    function Robot_Report_Y_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 22) and 16#7FFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 22) and 16#7FFFF#));
    --  [Robot_Report.y] bits 22 .. 40
 
    function Pack_Robot_Report
@@ -154,14 +161,15 @@ is
 
    function Drive_Set_Point_Mode_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Word and 16#1#);
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Word and 16#1#));
    --  [Drive_Set_Point.mode] bits 0 .. 0
 
    function Drive_Set_Point_Speed_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 1) and 16#FFFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 1) and 16#FFFFF#));
    --  [Drive_Set_Point.speed] bits 1 .. 20
 
    function Pack_Drive_Set_Point
@@ -206,26 +214,27 @@ is
 
    function Drive_Feedback_Count_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Word and 16#1FFFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32 (Word and 16#1FFFFF#));
    --  [Drive_Feedback.count] bits 0 .. 20
 
    function Drive_Feedback_Speed_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 21) and 16#FFFFF#);
+     return Interfaces.Unsigned_32 is
+     (Interfaces.Unsigned_32
+        (Interfaces.Shift_Right (Word, 21) and 16#FFFFF#));
    --  [Drive_Feedback.speed] bits 21 .. 40
 
    function Drive_Feedback_Limit_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 41) and 16#3#);
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 41) and 16#3#));
    --  [Drive_Feedback.limit] bits 41 .. 42
 
    function Drive_Feedback_Condition_Raw
      (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Shift_Right (Word, 43) and 16#1#);
+     return Interfaces.Unsigned_8 is
+     (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 43) and 16#1#));
    --  [Drive_Feedback.condition] bits 43 .. 43
 
    function Pack_Drive_Feedback

@@ -13,14 +13,14 @@ is
    Controller_Critical_Section : constant := 5_000;
 
    --  [reception]
-   Robot_Bus_Receive_Budget : constant := 15_000;
-   Reception_T : constant := 500_000;
-   Reception_D : constant := 500_000;
+   Robot_Bus_Receive_Budget : constant := 40_000;
+   Reception_T : constant := 1_000_000;
+   Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
    Reception_C : constant :=
      Robot_Bus_Receive_Budget + 2 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
-   Reception_R : constant := 260_000;
+   Reception_R : constant := 485_000;
 
    --  [trajectory]
    Joint_X_Trajectory_Step_Budget : constant := 100_000;
@@ -35,17 +35,17 @@ is
      + Joint_Z_Trajectory_Step_Budget
      + 2 * Controller_Context_Switch;
    Trajectory_B : constant := Controller_Critical_Section;
-   Trajectory_R : constant := 595_000;
+   Trajectory_R : constant := 795_000;
 
    --  [control]
-   Joint_X_Ports_Budget : constant := 40_000;
-   Joint_X_Monitoring_Budget : constant := 60_000;
+   Joint_X_Ports_Budget : constant := 100_000;
+   Joint_X_Monitoring_Budget : constant := 100_000;
    Joint_X_Position_Control_Budget : constant := 150_000;
-   Joint_Y_Ports_Budget : constant := 40_000;
-   Joint_Y_Monitoring_Budget : constant := 60_000;
+   Joint_Y_Ports_Budget : constant := 100_000;
+   Joint_Y_Monitoring_Budget : constant := 100_000;
    Joint_Y_Position_Control_Budget : constant := 150_000;
-   Joint_Z_Ports_Budget : constant := 40_000;
-   Joint_Z_Monitoring_Budget : constant := 60_000;
+   Joint_Z_Ports_Budget : constant := 100_000;
+   Joint_Z_Monitoring_Budget : constant := 100_000;
    Joint_Z_Position_Control_Budget : constant := 150_000;
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
@@ -62,18 +62,18 @@ is
      + Joint_Z_Position_Control_Budget
      + 2 * Controller_Context_Switch;
    Control_B : constant := Controller_Critical_Section;
-   Control_R : constant := 1_410_000;
+   Control_R : constant := 1_935_000;
 
    --  [supervision]
-   Coordinator_Ports_Budget : constant := 40_000;
-   Coordinator_Mission_Budget : constant := 80_000;
-   Joint_X_Motion_Budget : constant := 80_000;
-   Joint_Y_Motion_Budget : constant := 80_000;
-   Joint_Z_Motion_Budget : constant := 80_000;
-   Joint_X_Supervise_Budget : constant := 30_000;
-   Joint_Y_Supervise_Budget : constant := 30_000;
-   Joint_Z_Supervise_Budget : constant := 30_000;
-   Coordinator_Summarise_Budget : constant := 30_000;
+   Coordinator_Ports_Budget : constant := 100_000;
+   Coordinator_Mission_Budget : constant := 200_000;
+   Joint_X_Motion_Budget : constant := 150_000;
+   Joint_Y_Motion_Budget : constant := 150_000;
+   Joint_Z_Motion_Budget : constant := 150_000;
+   Joint_X_Supervise_Budget : constant := 100_000;
+   Joint_Y_Supervise_Budget : constant := 100_000;
+   Joint_Z_Supervise_Budget : constant := 100_000;
+   Coordinator_Summarise_Budget : constant := 100_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervision_J : constant := 0;
@@ -89,11 +89,11 @@ is
      + Coordinator_Summarise_Budget
      + 2 * Controller_Context_Switch;
    Supervision_B : constant := Controller_Critical_Section;
-   Supervision_R : constant := 1_925_000;
+   Supervision_R : constant := 3_255_000;
 
    --  [robot_bus.driver_rx.robot_command]
    Robot_Bus_Driver_Rx_Robot_Command_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_J : constant := 0;
@@ -102,11 +102,11 @@ is
      + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Robot_Command_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 235_000;
+   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 435_000;
 
    --  [robot_bus.driver_tx.robot_status]
    Robot_Bus_Driver_Tx_Robot_Status_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_J : constant := 0;
@@ -114,11 +114,11 @@ is
      Robot_Bus_Driver_Tx_Robot_Status_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 235_000;
+   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 435_000;
 
    --  [robot_bus.driver_tx.x_set_point]
    Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_J : constant := 0;
@@ -126,11 +126,11 @@ is
      Robot_Bus_Driver_Tx_X_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 235_000;
+   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 435_000;
 
    --  [robot_bus.driver_tx.y_set_point]
    Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_J : constant := 0;
@@ -138,11 +138,11 @@ is
      Robot_Bus_Driver_Tx_Y_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 235_000;
+   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 435_000;
 
    --  [robot_bus.driver_tx.z_set_point]
    Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_J : constant := 0;
@@ -150,11 +150,11 @@ is
      Robot_Bus_Driver_Tx_Z_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 235_000;
+   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 435_000;
 
    --  [robot_bus.driver_rx.x_feedback]
    Robot_Bus_Driver_Rx_X_Feedback_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_J : constant := 0;
@@ -162,11 +162,11 @@ is
      Robot_Bus_Driver_Rx_X_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 235_000;
+   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 435_000;
 
    --  [robot_bus.driver_rx.y_feedback]
    Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_J : constant := 0;
@@ -174,11 +174,11 @@ is
      Robot_Bus_Driver_Rx_Y_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 235_000;
+   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 435_000;
 
    --  [robot_bus.driver_rx.z_feedback]
    Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant :=
-     25_000 - 2 * Controller_Context_Switch;
+     50_000 - 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_J : constant := 0;
@@ -186,7 +186,7 @@ is
      Robot_Bus_Driver_Rx_Z_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 235_000;
+   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 435_000;
 
    --  [controller.probe]
    Controller_Probe_Budget : constant :=

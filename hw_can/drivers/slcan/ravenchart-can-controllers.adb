@@ -13,6 +13,7 @@
 --  while a client has the channel open, and Stopped otherwise.
 
 with Ada.Real_Time;
+with Ravenchart.Epochs;
 with Ravenchart.Queues;
 with Ravenchart.Can.Slcan;
 with Ravenchart.Can.Slcan_Sockets;
@@ -325,6 +326,9 @@ is
       Server : Slcan_Sockets.Socket;
       Client : Slcan_Sockets.Socket;
    begin
+      delay until Epochs.Start;
+      --  A client that came before the processors run would find nobody
+      --  to take its frames.
       loop
          Slcan_Sockets.Open_Server (Server);
          exit when Server /= Slcan_Sockets.No_Socket;

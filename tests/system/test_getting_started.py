@@ -1,0 +1,73 @@
+"""The page docs/getting-started.md, followed to the letter."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ravenchart import toolchain
+from ravenchart.__main__ import main
+from ravenchart.toolchain import ROOT
+
+PAGE = (ROOT / "docs" / "getting-started.md").read_text()
+
+
+def _block(language: str) -> str:
+    found = re.search(rf"```{language}\n(.*?)```", PAGE, re.S)
+    assert found is not None
+    return found.group(1)
+
+
+@pytest.fixture
+def tank(tmp_path: Path) -> Path:
+    """The reader's folder after step 3."""
+    folder = tmp_path / "tank"
+    (folder / "user").mkdir(parents=True)
+    (folder / "model.yaml").write_text(_block("yaml"))
+    (folder / "user" / "tank_system-plant-activities.adb").write_text(_block("ada"))
+    return folder
+
+
+def test_before_the_body_is_written_generate_says_which_one_is_missing(
+    tank: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = tank / "user" / "tank_system-plant-activities.adb"
+    body.unlink()
+    assert main(["generate", str(tank / "model.yaml")]) == 0
+    assert f"note: {body} is not there yet" in capsys.readouterr().err
+
+
+def test_the_tank_builds_runs_and_keeps_its_level(
+    tank: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = str(tank / "model.yaml")
+    report = tank / "report"
+    assert main(["check", model]) == 0
+    assert main(["run", model, "--seconds", "3", "--report", str(report)]) == 0
+    said = capsys.readouterr().out
+    assert "Idle, Filling" in said
+    assert "verdict: PASS" in said
+
+
+def test_a_budget_of_15_ms_is_refused_with_the_task_and_its_place(
+    tank: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = tank / "model.yaml"
+    model.write_text(model.read_text().replace("wcet: 200 us", "wcet: 15 ms"))
+    assert main(["check", str(model)]) == 1
+    said = capsys.readouterr().err
+    assert re.search(r"model.yaml:\d+:\d+: error: (controller|simulation)", said)
+
+
+@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
+def test_the_tank_is_proved_and_the_overflow_of_the_page_is_not(
+    tank: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = str(tank / "model.yaml")
+    assert main(["prove", model]) == 0
+    assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)
+    body = tank / "user" / "tank_system-plant-activities.adb"
+    body.write_text(body.read_text().replace("else -2)", "else -2_000_000_000_000_000_000)"))
+    assert main(["prove", model]) == 1
