@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from dataclasses import replace
 
 from .emit.ada import Unit
 from .emit.ada_text import print_unit
@@ -44,11 +46,24 @@ def units(system: System, bounds: Mapping[str, Ns]) -> tuple[Unit, ...]:
     return tuple(found)
 
 
+def _pruned(unit: Unit, root: str) -> Unit:
+    """The unit without the context that its text does not name."""
+    text = print_unit(replace(unit, withs=()))
+    kept = []
+    for name in unit.withs:
+        seen_as = name.removeprefix(f"{root}.")
+        if re.search(rf"(?<![\w.]){re.escape(seen_as)}\b|\b{re.escape(name)}\b", text):
+            kept.append(name)
+    return replace(unit, withs=tuple(kept))
+
+
 def generate(system: System, bounds: Mapping[str, Ns]) -> dict[str, str]:
     """File name to text, the same bytes for the same model."""
-    files = {unit.file_name: print_unit(unit) for unit in units(system, bounds)}
-    name = ada_case(system.name).lower()
-    files[f"{name}.gpr"] = project_text(system)
+    root = ada_case(system.name)
+    pruned = (_pruned(unit, root) for unit in units(system, bounds))
+    files = {unit.file_name: print_unit(unit) for unit in pruned}
+    name = root.lower()
+    files[f"{name}.gpr"] = project_text(system, has_user_code=bool(user_units(system)))
     files["trace.json"] = trace_json(system)
     for bus in system.buses:
         files[f"{bus.name.lower()}.dbc"] = emit_dbc(system, bus)

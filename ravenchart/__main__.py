@@ -14,7 +14,7 @@ from pathlib import Path
 from analysis import report
 from analysis.table import show as show_table
 
-from . import proving, steps, toolchain
+from . import proving, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -119,9 +119,10 @@ def _prove(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
     driver = options.driver or steps.default_driver(checked)
-    results = steps.build_folder(checked, driver) / "checks" / "gnatprove"
     variables = steps.scenario(checked, "checks", driver)
-    proof = proving.prove(steps.project_of(checked), variables, results)
+    folders = steps.proof_folders(checked, driver)
+    roots = (checked.folder / "generated", checked.folder / "user")
+    proof = proving.prove(steps.project_of(checked), variables, folders, roots)
     print(f"{checked.system.name}: {proof.summary()}")
     if options.record is not None:
         options.record.write_text(proving.record_text(proof), encoding="utf-8")

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,7 +35,8 @@ class Proof:
     proved: int
     justified: int
     assumed: int
-    bodies_off: int
+    bodies_off: tuple[str, ...]
+    """Units whose bodies are outside SPARK."""
     sources: tuple[tuple[str, str], ...]
     """(path below the checkout, SHA-256), sorted."""
     entities: tuple[Entity, ...]
@@ -48,61 +50,68 @@ class Proof:
         """The one line that every proof run ends in."""
         return (
             f"checks {self.checks}, proved {self.proved}, justified {self.justified}, "
-            f"assumed {self.assumed}, bodies off {self.bodies_off}"
+            f"assumed {self.assumed}, bodies off {len(self.bodies_off)}"
         )
 
 
-def prove(project: Path, scenario: Mapping[str, str], results: Path) -> Proof:
-    """Prove a project whose results land in ``results``.
+def prove(
+    project: Path, scenario: Mapping[str, str], results: Sequence[Path], roots: Sequence[Path]
+) -> Proof:
+    """Prove a project; ``results`` are the folders its results land in, its own first.
 
-    ToolFailed with gnatprove's messages when anything is left. The results of
-    earlier runs go first: what is read then is of this run alone.
+    The record names every source below ``roots``. ToolFailed with gnatprove's
+    messages when anything is left. The results of earlier runs go first: what is
+    read then is of this run alone.
     """
-    for old in results.glob("*.spark"):
+    for old in (path for folder in results for path in folder.glob("*.spark")):
         old.unlink()
     arguments = ["-P", project.name, "--output=oneline", "--warnings=error", "-q"]
     toolchain.run("gnatprove", arguments, project.parent, scenario)
-    return read_results(results)
+    return read_results(results, roots)
 
 
-def read_results(folder: Path) -> Proof:
-    """The results of the last run, from the .spark files in ``folder``."""
-    checks = proved = justified = assumed = off = 0
+def read_results(folders: Sequence[Path], roots: Sequence[Path]) -> Proof:
+    """The results of the last run: gnatprove.out for the totals, .spark files for the rest."""
+    assumed = 0
+    off: set[str] = set()
     tallies: dict[str, tuple[int, set[str]]] = {}
-    files: set[str] = set()
-    for path in sorted(folder.glob("*.spark")):
+    for path in sorted(path for folder in folders for path in folder.glob("*.spark")):
         found = json.loads(path.read_text(encoding="utf-8"))
         assumed += len(found.get("pragma_assume", ()))
-        for item in found["spark"]:
-            files |= {place["file"] for place in item["sloc"]}
-            off += item["spark"] == "spec"
-        for check in (*found.get("proof", ()), *found.get("flow", ())):
-            if "rule" not in check or check["severity"] in ("warning",):
-                continue
-            checks += 1
-            justified += "suppressed" in check
-            proved += check["severity"] == "info" and "suppressed" not in check
+        off |= {path.stem for item in found["spark"] if item["spark"] == "spec"}
+        for check in found.get("proof", ()):
             count, provers = tallies.get(check["entity"]["name"], (0, set()))
-            provers |= set(check.get("stats", ())) or {"flow"}
+            provers |= set(check.get("stats", ()))
             tallies[check["entity"]["name"]] = (count + 1, provers)
     entities = tuple(
         Entity(name, count, tuple(sorted(provers)))
         for name, (count, provers) in sorted(tallies.items())
     )
-    return Proof(checks, proved, justified, assumed, off, digests(files), entities)
+    checks, justified, unproved = _totals((folders[0] / "gnatprove.out").read_text("utf-8"))
+    proved = checks - justified - unproved
+    bodies = tuple(sorted(off))
+    return Proof(checks, proved, justified, assumed, bodies, _digests(roots), entities)
 
 
-def digests(names: Iterable[str]) -> tuple[tuple[str, str], ...]:
-    """(path, SHA-256) of each project source among ``names``; others belong to the compiler."""
-    known = {p.name: p for p in sources()}
-    found = (known[name] for name in set(names) if name in known)
-    return tuple(sorted((str(p.relative_to(toolchain.ROOT)), digest(p)) for p in found))
+def _totals(summary: str) -> tuple[int, int, int]:
+    """Checks in all, justified, unproved: the last row of gnatprove's summary."""
+    row = re.search(r"^Total(.*)$", summary, re.M)
+    if row is None:
+        raise toolchain.ToolFailed("gnatprove's summary has no row of totals")
+    cells = re.findall(r"(\d+|\.)(?: \([^)]*\))?", row.group(1))
+    numbers = [0 if cell == "." else int(cell) for cell in cells]
+    return numbers[0], numbers[-2], numbers[-1]
 
 
-def sources() -> tuple[Path, ...]:
-    """All Ada sources of the checkout that proof reads."""
-    roots = ("spark_runtime", "hw_can", "proofs", "examples")
-    return tuple(p for r in roots for p in sorted((toolchain.ROOT / r).rglob("*.ad[sb]")))
+def _digests(roots: Sequence[Path]) -> tuple[tuple[str, str], ...]:
+    """(path below the checkout, SHA-256) of every Ada source below ``roots``, sorted."""
+    found = {p.resolve() for root in roots for p in root.rglob("*.ad[sb]")}
+    base = toolchain.ROOT
+    return tuple(
+        sorted(
+            (str(p.relative_to(base) if p.is_relative_to(base) else p), digest(p)) for p in found
+        )
+    )
 
 
 def digest(path: Path) -> str:
@@ -118,7 +127,7 @@ def record_text(proof: Proof) -> str:
         f"proved = {proof.proved}",
         f"justified = {proof.justified}",
         f"assumed = {proof.assumed}",
-        f"bodies_off = {proof.bodies_off}",
+        f"bodies_off = {json.dumps(proof.bodies_off)}",
         "",
         "[sources]",
         *(f'"{path}" = "{digest}"' for path, digest in proof.sources),

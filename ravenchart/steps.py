@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.response_times import Analysis, analyse
 from analysis.findings import findings
+from analysis.response_times import Analysis, analyse
 from gen.diagnostics import Diagnostic, render
 from gen.emit.naming import ada_case
 from gen.generate import generate, user_units
@@ -24,7 +24,7 @@ MANIFEST = "generated.list"
 """Names of the files of the last generation: only these are ever deleted."""
 
 
-class Refused(Exception):
+class Refused(Exception):  # noqa: N818
     """The model has errors; the text is the rendered diagnostics."""
 
 
@@ -102,6 +102,8 @@ def write_program(checked: Checked) -> Written:
         if name not in files and Path(name).name == name:
             (folder / name).unlink(missing_ok=True)
     user = checked.folder / "user"
+    if user_units(checked.system):
+        user.mkdir(exist_ok=True)
     missing = tuple(user / n for n in user_units(checked.system) if not (user / n).is_file())
     return Written(folder, len(files), changed, missing)
 
@@ -146,3 +148,11 @@ def build(checked: Checked, mode: str = "checks", driver: str | None = None) -> 
 def default_driver(checked: Checked) -> str:
     """slcan for a system with a bus: python-can talks to it; loopback otherwise."""
     return "slcan" if checked.system.buses else "loopback"
+
+
+def proof_folders(checked: Checked, driver: str) -> tuple[Path, Path]:
+    """Where gnatprove leaves its results: for the program, and for the runtime."""
+    return (
+        build_folder(checked, driver) / "checks" / "gnatprove",
+        ROOT / "obj" / f"checks-{driver}" / "gnatprove",
+    )

@@ -17,7 +17,7 @@ INSTALL_HINT = {
 }
 
 
-class ToolMissing(Exception):
+class ToolMissing(Exception):  # noqa: N818
     """An outside program is not installed; the text says how to get it."""
 
     def __init__(self, tool: str) -> None:
@@ -25,7 +25,7 @@ class ToolMissing(Exception):
         self.tool = tool
 
 
-class ToolFailed(Exception):
+class ToolFailed(Exception):  # noqa: N818
     """An outside program ended with an error; the text is what it printed."""
 
 
@@ -34,9 +34,7 @@ def have(tool: str) -> bool:
     return shutil.which(tool) is not None
 
 
-def run(
-    tool: str, arguments: Sequence[str], where: Path, scenario: Mapping[str, str]
-) -> str:
+def run(tool: str, arguments: Sequence[str], where: Path, scenario: Mapping[str, str]) -> str:
     """Run a tool with scenario variables set; its output, or ToolMissing or ToolFailed."""
     if not have(tool):
         raise ToolMissing(tool)

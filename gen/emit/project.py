@@ -15,7 +15,7 @@ project {name} is
    Build := external ("RAVENCHART_BUILD", "../build");
    --  Where objects and the program go.
 
-   for Source_Dirs use (".", "../user");
+   for Source_Dirs use ({sources});
    for Object_Dir use Build & "/" & Ravenchart.Mode;
    for Exec_Dir use Build;
    for Create_Missing_Dirs use "True";
@@ -38,8 +38,9 @@ end {name};
 """
 
 
-def project_text(system: System) -> str:
+def project_text(system: System, *, has_user_code: bool) -> str:
     """The project file; it finds the runtime through GPR_PROJECT_PATH."""
+    sources = '".", "../user"' if has_user_code else '"."'
     name = ada_case(system.name)
     main = f"{name.lower()}_main"
-    return _TEXT.format(model=system.name, name=name, main=main)
+    return _TEXT.format(model=system.name, name=name, main=main, sources=sources)

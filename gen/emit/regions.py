@@ -324,6 +324,11 @@ def _declared(shape: RegionShape) -> list[Decl]:
     targets = tuple((ada_case(t.name), _target(shape, t)) for t in order)
     params = _choice_params(shape)
     initial = Ref(f"{shape.states}.{ada_case(region.default_leaf(region.initial))}")
+    chosen_first: list[Expr] = [Call("Enabled", (Arg(None, Ref("Chosen")), *_args(params)))]
+    if len(order) > 1:
+        earlier = Chain("<", (Ref("T"), Ref("Chosen")))
+        not_enabled = Prefix("not", Call("Enabled", (Arg(None, Ref("T")), *_args(params))))
+        chosen_first.append(ForAll("T", "Transition", IfExpr(((earlier, not_enabled),), None)))
     is_selection = IfExpr(
         (
             (
@@ -336,22 +341,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
             ),
             (equal(Ref("Chosen"), Ref(START)), FALSE),
         ),
-        both(
-            Call("Enabled", (Arg(None, Ref("Chosen")), *_args(params))),
-            ForAll(
-                "T",
-                "Transition",
-                IfExpr(
-                    (
-                        (
-                            Chain("<", (Ref("T"), Ref("Chosen"))),
-                            Prefix("not", Call("Enabled", (Arg(None, Ref("T")), *_args(params)))),
-                        ),
-                    ),
-                    None,
-                ),
-            ),
-        ),
+        both(*chosen_first),
     )
     return [
         Subprogram(

@@ -33,10 +33,7 @@ def test_every_generated_and_user_source_of_the_examples_is_in_its_record() -> N
     for name in house.EXAMPLES:
         recorded = set(tomllib.loads(_record(name).read_text())["sources"])
         folder = house.ROOT / "examples" / name
-        there = {
-            str(p.relative_to(house.ROOT))
-            for p in folder.rglob("*.ad[sb]")
-        }
+        there = {str(p.relative_to(house.ROOT)) for p in folder.rglob("*.ad[sb]")}
         assert there <= recorded, sorted(there - recorded)
 
 

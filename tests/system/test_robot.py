@@ -41,7 +41,9 @@ def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
     seen = outcome.observation
     assert seen is not None
     visited = seen.states_visited()
-    assert {"Idle", "Seeking", "Backing_Off", "Cruising", "Braking"} <= set(visited["joint_z.Motion"])
+    assert {"Idle", "Seeking", "Backing_Off", "Cruising", "Braking"} <= set(
+        visited["joint_z.Motion"]
+    )
     assert visited["joint_x.Motion"][-1] == "Limit"
     assert seen.faults["Queue_Overflow"] == 0
 

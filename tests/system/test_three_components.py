@@ -82,7 +82,9 @@ def test_moving_an_activity_is_one_line_and_the_token_still_goes_round(
     model = folder / "model.yaml"
     text = model.read_text()
     line = next(x for x in text.splitlines(keepends=True) if x.strip().startswith("- two.work"))
-    moved = text.replace(line, "").replace("      - three.Watching\n", "      - three.Watching\n" + line)
+    moved = text.replace(line, "").replace(
+        "      - three.Watching\n", "      - three.Watching\n" + line
+    )
     assert sorted(moved.splitlines()) == sorted(text.splitlines())
     model.write_text(moved)
     before = {p.name: p.read_text() for p in (folder / "generated").glob("*station*")}
