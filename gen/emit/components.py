@@ -154,11 +154,9 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
     if flows:
         items = _specs(system, component, flows, Aspect("Global", Ref("null")))
         units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
-        bodies = (
-            *(
-                UseType(n)
-                for n in sorted(set().union(*(flow_operators(a.flow or ()) for a in flows)))
-            ),
+        operators = {name for a in flows for name in flow_operators(a.flow or ())}
+        bodies: tuple[Decl, ...] = (
+            *(UseType(name) for name in sorted(operators)),
             *(_flow_body(system, component, a) for a in flows),
         )
         units.append(Unit(header, (), Package(f"{package}.Flows", bodies, (SPARK,), is_body=True)))

@@ -6,26 +6,17 @@ logic, and publishes what came out. Logic stays in the component's packages.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ..model import (
     Activity,
-    Data,
-    End,
-    Instance,
     Overflow,
     Port,
     PortKind,
     Region,
-    Slot,
     System,
     Work,
 )
 from .ada import (
     SPARK,
-    Arg,
-    Assign,
-    Call,
     Case,
     Chain,
     Comment,
@@ -33,7 +24,6 @@ from .ada import (
     Do,
     Expr,
     If,
-    Loop,
     Object,
     Package,
     Param,
@@ -44,37 +34,23 @@ from .ada import (
     Unit,
     UseType,
     arguments,
-    call,
-    equal,
     number,
 )
 from .ada import Instance as Instantiation
-from .components import activity_params, raise_flag, reading_type, send_flag
+from .instance_rows import Rows
+from .instance_site import Site
 from .naming import (
     ada_case,
     default_value,
     instance_package,
-    priority,
-    scalar,
     states_package,
     type_name,
     value,
 )
-from .regions import RegionShape
-from .trace_calls import note
 
 
-@dataclass(frozen=True, slots=True)
-class Glue:
+class Glue(Site):
     """Builds the package of one instance."""
-
-    system: System
-    instance: Instance
-
-    @property
-    def component(self) -> str:
-        """The component's package, as seen from the instance's."""
-        return ada_case(self.instance.component.name)
 
     def units(self, header: str) -> tuple[Unit, ...]:
         """Spec and body."""
@@ -83,48 +59,6 @@ class Glue:
             instance_package(self.system, self.instance), self._body(), (SPARK,), is_body=True
         )
         return Unit(header, self._spec_withs(), spec), Unit(header, self._body_withs(), body)
-
-    # --- what stands where
-
-    def _slots(self) -> tuple[Slot, ...]:
-        return tuple(
-            s
-            for p in self.system.processors
-            for s in p.slots
-            if s.owner == self.instance.name and s.work is not Work.BUS_RECEIVE
-        )
-
-    def _element(self, name: str) -> str:
-        return f"{self.instance.name}.{name}"
-
-    def _ceiling(self, name: str) -> Expr:
-        return priority(self.system.object(self._element(name)).ceiling)
-
-    def _has_object(self, name: str) -> bool:
-        return any(o.element == self._element(name) for o in self.system.objects)
-
-    def _writer(self, data: Data) -> Region | Activity | None:
-        component = self.instance.component
-        runnables: tuple[Region | Activity, ...] = (*component.regions, *component.activities)
-        return next((r for r in runnables if data.name in r.writes), None)
-
-    def _targets(self, port: str) -> tuple[list[End], list[str]]:
-        """Input ports of the same node, and messages, that an output port feeds."""
-        end = End(self.instance.name, port)
-        ports = [c.target for c in self.system.connections if c.source == end]
-        messages = [m for m in self.system.messages if m.source == end]
-        return ports, [m.name for m in messages]
-
-    def _connected_inputs(self) -> tuple[Port, ...]:
-        targets = [c.target for c in self.system.connections]
-        targets += [t for m in self.system.messages for t in m.targets]
-        names = {t.port for t in targets if t.instance == self.instance.name}
-        return tuple(p for p in self.instance.component.inputs() if p.name in names)
-
-    def _note(
-        self, kind: str, name: str, element_kind: str, item: Expr | None = None
-    ) -> tuple[Stmt, ...]:
-        return note(self.system, kind, self._element(name), element_kind, item)
 
     # --- contexts
 
@@ -203,15 +137,16 @@ class Glue:
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
         items += [self._send_body(p) for p in component.outputs() if p.name in used]
+        rows = Rows(self.system, self.instance)
         for slot in self._slots():
             match slot.work:
                 case Work.PORT_REGION:
-                    items.append(self._run_ports())
+                    items.append(rows.run_ports())
                 case Work.REGION:
-                    items += self._run_region(component.region(slot.name))
+                    items += rows.run_region(component.region(slot.name))
                 case _:
                     activity = next(a for a in component.activities if a.name == slot.name)
-                    items.append(self._run_activity(activity))
+                    items.append(rows.run_activity(activity))
         return tuple(items)
 
     def _board(self, name: str, of_type: str, initial: Expr, element: str) -> Instantiation:
@@ -328,15 +263,6 @@ class Glue:
             body=tuple(body),
         )
 
-    def _fault(self, kind: str) -> Stmt:
-        return Do("Health_Counts.Record_Fault", arguments(Ref(f"Ravenchart.Health.{kind}")))
-
-    def _fault_number(self, kind: str) -> Expr:
-        return Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref(f"Ravenchart.Health.{kind}")))
-
-    def _raise(self, event: str) -> Stmt:
-        return Do("Offer", arguments(Ref(f"{self.component}.{ada_case(event)}")))
-
     def _offer_body(self) -> Subprogram:
         component = self.instance.component
         regions = [r for r in component.regions if r.events()]
@@ -393,244 +319,6 @@ class Glue:
         return Subprogram(
             f"Send_{ada_case(port.name)}", (param,), declarations=unused, body=tuple(body)
         )
-
-    # --- body: the port region
-
-    def _run_ports(self) -> Subprogram:
-        component = self.instance.component
-        period = component.port_region.period if component.port_region else 1
-        declarations: list[Decl] = [
-            Object("Status", "Ravenchart.Queueing.Take_Status"),
-            UseType("Ravenchart.Queueing.Take_Status"),
-        ]
-        if any(p.on_overflow for p in component.inputs()):
-            declarations.append(UseType("Ravenchart.Event_Count"))
-        body: list[Stmt] = []
-        for port in component.inputs():
-            name = ada_case(port.name)
-            declarations.append(Object(f"{name}_Item", type_name(self.system, port.type)))
-            declarations.append(Object(f"{name}_Change", f"{self.component}.{name}_Port.Change"))
-            limit: Expr = Ref(f"{self.component}.{name}_Port.Never_Stale")
-            if port.max_age is not None:
-                limit = number(port.max_age // period)
-            body.append(Do(f"{name}_Mailbox.Take", arguments(Ref(f"{name}_Item"), Ref("Status"))))
-            body.append(
-                Do(
-                    f"{self.component}.{name}_Port.Handle",
-                    arguments(
-                        Ref(f"{name}_Port"),
-                        Arrived=equal(Ref("Status"), Ref("Ravenchart.Queueing.Taken")),
-                        Item=Ref(f"{name}_Item"),
-                        Limit=limit,
-                        Outcome=Ref(f"{name}_Change"),
-                    ),
-                )
-            )
-            if self._has_object(port.name):
-                body.append(Do(f"{name}_Board.Write", arguments(Ref(f"{name}_Port"))))
-            if port.on_overflow:
-                declarations.append(Object(f"{name}_Losses", "Ravenchart.Event_Count"))
-                body += self._watch_losses(port, port.on_overflow)
-            body.append(self._react(port))
-        return Subprogram("Run_Ports", declarations=tuple(declarations), body=tuple(body))
-
-    def _watch_losses(self, port: Port, event: str) -> list[Stmt]:
-        """Raise the overflow event when the mailbox has lost more than last time."""
-        name = ada_case(port.name)
-        grown = Chain("/=", (Ref(f"{name}_Losses"), Ref(f"{name}_Lost_Before")))
-        return [
-            Assign(f"{name}_Losses", Ref(f"{name}_Mailbox.Lost")),
-            If(((grown, (self._raise(event),)),)),
-            Assign(f"{name}_Lost_Before", Ref(f"{name}_Losses")),
-        ]
-
-    def _react(self, port: Port) -> Stmt:
-        name = ada_case(port.name)
-        package = f"{self.component}.{name}_Port"
-        arrived: list[Stmt] = [*self._note("Handled", port.name, "port")]
-        if port.on_arrival:
-            arrived.append(self._raise(port.on_arrival))
-        stale: list[Stmt] = [self._fault("Stale_Input")]
-        stale += self._note("Fault", port.name, "port", self._fault_number("Stale_Input"))
-        if port.on_stale:
-            stale.append(self._raise(port.on_stale))
-        rows = (
-            (f"{package}.Nothing", ()),
-            (f"{package}.Arrival", tuple(arrived)),
-            (f"{package}.Became_Stale", tuple(stale)),
-        )
-        return Case(Ref(f"{name}_Change"), rows)
-
-    # --- body: regions
-
-    def _run_region(self, region: Region) -> list[Decl]:
-        shape = RegionShape(self.system, self.instance.component, region)
-        name = ada_case(region.name)
-        package = f"{self.component}.{name}"
-        step = self._step_region(shape, package)
-        declarations: list[Decl] = []
-        body: list[Stmt] = []
-        step_args: tuple[Arg, ...] = ()
-        if shape.inputs:
-            declarations.append(Object("Ins", f"{package}.Inputs"))
-            body += [self._copy_in(n, f"Ins.{ada_case(n)}") for n in shape.inputs]
-            step_args = arguments(Ref("Ins"))
-        if shape.timers:
-            body.append(Do(f"{package}.Tick", arguments(Ref(f"{name}_Region"))))
-        one: Stmt = Do(f"Step_{name}", step_args)
-        if region.steps_per_execution > 1:
-            one = Loop(f"for Unused in 1 .. {region.steps_per_execution}", (one,))
-        body.append(one)
-        body.append(Do(f"{name}_Board.Write", arguments(Ref(f"{name}_Region.Leaf"))))
-        for data in self.instance.component.data:
-            if data.name in region.writes and self._has_object(data.name):
-                field = f"{name}_Region.Data.{ada_case(data.name)}"
-                body.append(Do(f"{ada_case(data.name)}_Board.Write", arguments(Ref(field))))
-        run = Subprogram(f"Run_{name}", declarations=tuple(declarations), body=tuple(body))
-        return [step, run]
-
-    def _copy_in(self, name: str, target: str) -> Stmt:
-        """Read what ``name`` denotes into ``target``."""
-        component = self.instance.component
-        for parameter, given in self.instance.parameters:
-            if parameter == name:
-                of_type = next(p.type for p in component.parameters if p.name == name)
-                return Assign(target, scalar(self.system, of_type, given))
-        if any(d.name == name for d in component.data) and not self._has_object(name):
-            return Assign(target, Ref(f"{ada_case(name)}_Own"))
-        return Do(f"{ada_case(name)}_Board.Read", arguments(Ref(target)))
-
-    def _step_region(self, shape: RegionShape, package: str) -> Subprogram:
-        region = shape.region
-        name = ada_case(region.name)
-        declarations: list[Decl] = [
-            Object("Now", f"{package}.Occurrence"),
-            Object("Fired", f"{package}.Selection"),
-            UseType(f"{package}.Selection"),
-        ]
-        body: list[Stmt] = [Do(f"{package}.Poll", arguments(Ref(f"{name}_Region"), Ref("Now")))]
-        if region.events():
-            declarations += [
-                UseType(f"{package}.Occurrence"),
-                Object("Event", f"{self.component}.Event"),
-                Object("Status", "Ravenchart.Queueing.Take_Status"),
-                UseType("Ravenchart.Queueing.Take_Status"),
-            ]
-            taken = equal(Ref("Status"), Ref("Ravenchart.Queueing.Taken"))
-            convert = Assign("Now", call(f"{package}.To_Occurrence", Ref("Event")))
-            idle = equal(Ref("Now"), Ref(f"{package}.Conditions"))
-            take = Do(f"{name}_Queue.Take", arguments(Ref("Event"), Ref("Status")))
-            body.append(If(((idle, (take, If(((taken, (convert,)),)))),)))
-        args = [Ref(f"{name}_Region"), Ref("Now")]
-        args += [Ref("Ins")] if shape.inputs else []
-        if shape.has_box:
-            declarations.append(Object("Box", f"{package}.Outbox"))
-            args.append(Ref("Box"))
-        body.append(Do(f"{package}.Step", arguments(*args, Ref("Fired"))))
-        body += self._after_step(shape, package)
-        params = (Param("Ins", "in", f"{package}.Inputs"),) if shape.inputs else ()
-        return Subprogram(
-            f"Step_{name}", params, declarations=tuple(declarations), body=tuple(body)
-        )
-
-    def _after_step(self, shape: RegionShape, package: str) -> list[Stmt]:
-        """Report what fired; then send and raise what the step asked for."""
-        region = shape.region
-        name = ada_case(region.name)
-        moved: list[Stmt] = []
-        position = Chain(
-            "-",
-            (
-                Call(f"{package}.Selection'Pos", arguments(Ref("Fired"))),
-                Call(f"{package}.Selection'Pos", arguments(Ref(f"{package}.Transition'First"))),
-            ),
-        )
-        taken = self._note("Transition", region.name, "region", position)
-        if taken:
-            is_transition = Chain("in", (Ref("Fired"), Ref(f"{package}.Transition")))
-            moved.append(If(((is_transition, taken),)))
-        leaf = f"{self.component}.{states_package(region)}.Leaf"
-        moved += self._note(
-            "State",
-            region.name,
-            "region",
-            Call(f"{leaf}'Pos", arguments(Ref(f"{name}_Region.Leaf"))),
-        )
-        for port in self.instance.component.outputs():
-            if port.name in region.sends:
-                box = f"Box.{ada_case(port.name)}"
-                send = Do(f"Send_{ada_case(port.name)}", arguments(Ref(box)))
-                moved.append(If(((Ref(f"{box}_Sent"), (send,)),)))
-        if region.raises:
-            lists = f"{self.component}.Event_Lists"
-            offer = Do("Offer", arguments(call(f"{lists}.Element", Ref("Box.Raised"), Ref("I"))))
-            moved.append(Loop(f"for I in 1 .. {lists}.Count (Box.Raised)", (offer,)))
-        if not moved:
-            return [Pragma("Unreferenced", (Ref("Fired"),))]
-        return [If(((Chain("/=", (Ref("Fired"), Ref(f"{package}.None"))), tuple(moved)),))]
-
-    # --- body: activities
-
-    def _run_activity(self, activity: Activity) -> Subprogram:
-        component = self.instance.component
-        declarations: list[Decl] = []
-        before: list[Stmt] = []
-        args: list[Arg] = []
-        after: list[Stmt] = []
-        reads = [n for n in activity.reads if n not in activity.writes]
-        guard: Expr | None = None
-        if activity.while_in is not None:
-            region = component.region(activity.while_in.region)
-            guard = self._active_in(region, activity.while_in.state, declarations)
-        for name in reads:
-            local = f"{ada_case(name)}_Value"
-            declarations.append(Object(local, reading_type(self.system, component, name)))
-            before.append(self._copy_in(name, local))
-            args.append(Arg(ada_case(name), Ref(local)))
-        for name in activity.writes:
-            own = f"{ada_case(name)}_Own"
-            args.append(Arg(ada_case(name), Ref(own)))
-            if self._has_object(name):
-                after.append(Do(f"{ada_case(name)}_Board.Write", arguments(Ref(own))))
-        for port in component.outputs():
-            if port.name in activity.sends:
-                local = f"{ada_case(port.name)}_Value"
-                declarations.append(Object(local, type_name(self.system, port.type)))
-                args.append(Arg(ada_case(port.name), Ref(local)))
-                send: Stmt = Do(f"Send_{ada_case(port.name)}", arguments(Ref(local)))
-                if activity.flow is not None:
-                    flag = send_flag(port.name)
-                    declarations.append(Object(f"{flag}_Asked", "Boolean"))
-                    args.append(Arg(flag, Ref(f"{flag}_Asked")))
-                    send = If(((Ref(f"{flag}_Asked"), (send,)),))
-                after.append(send)
-        for event in activity.raises:
-            flag = raise_flag(event)
-            declarations.append(Object(flag, "Boolean"))
-            args.append(Arg(flag, Ref(flag)))
-            after.append(If(((Ref(flag), (self._raise(event),)),)))
-        home = "Activities" if activity.flow is None else "Flows"
-        work = Do(f"{self.component}.{home}.{ada_case(activity.name)}", tuple(args))
-        expected = [p.name for p in activity_params(self.system, component, activity)]
-        assert expected == [a.name for a in args], (expected, args)
-        body: tuple[Stmt, ...] = (*before, work, *after)
-        if guard is not None:
-            region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
-            read = Do(f"{region_name}_Board.Read", arguments(Ref(f"{region_name}_Now")))
-            body = (read, If(((guard, body),)))
-        return Subprogram(
-            f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
-        )
-
-    def _active_in(self, region: Region, state: str, declarations: list[Decl]) -> Expr:
-        now = f"{ada_case(region.name)}_Now"
-        states = f"{self.component}.{states_package(region)}"
-        declarations.append(Object(now, f"{states}.Leaf"))
-        qualified = f"{states}.{ada_case(state)}"
-        if region.state(state).is_leaf:
-            declarations.append(UseType(f"{states}.Leaf"))
-            return equal(Ref(now), Ref(qualified))
-        return Chain("in", (Ref(now), Ref(qualified)))
 
 
 def emit_instances(system: System, header: str) -> tuple[Unit, ...]:

@@ -118,3 +118,8 @@ def constant_name(element: str) -> str:
 def priority(level: int) -> Ref:
     """A priority of the model as one of the target, counted from the default."""
     return Ref("System.Priority'First" if level == 0 else f"System.Default_Priority + {level}")
+
+
+def root_package(system: System) -> str:
+    """The root of the generated units."""
+    return ada_case(system.name)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..model import System
-from .ada import Do, Expr, Ref, Stmt, arguments, number
+from ..model import Processor, System
+from .ada import Chain, Do, Expr, Ref, Stmt, arguments, call, number
 from .naming import constant_name
 
 
@@ -30,3 +30,10 @@ def element_constant(element: str, kind: str) -> str:
     """The constant that holds an element's number."""
     suffix = {"row": "_Row", "processor": "_Processor", "message": "_Message"}.get(kind, "")
     return constant_name(element) + suffix
+
+
+def row_number(processor: Processor, row_type: str, row: str) -> Expr:
+    """The element number of a row: those of a table follow their processor's."""
+    position = call("Ravenchart.Element_Id", call(f"{row_type}'Pos", Ref(row)))
+    first = Ref(f"Elements.{element_constant(processor.name, 'processor')}")
+    return Chain("+", (first, number(1), position))

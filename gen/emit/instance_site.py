@@ -1,0 +1,92 @@
+"""What the emitters of an instance ask about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..model import (
+    Activity,
+    Data,
+    End,
+    Instance,
+    Port,
+    Region,
+    Slot,
+    System,
+    Work,
+)
+from .ada import (
+    Call,
+    Do,
+    Expr,
+    Ref,
+    Stmt,
+    arguments,
+)
+from .naming import (
+    ada_case,
+    priority,
+)
+from .trace_calls import note
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """One instance in its system, and what is known of it there."""
+
+    system: System
+    instance: Instance
+
+    @property
+    def component(self) -> str:
+        """The component's package, as seen from the instance's."""
+        return ada_case(self.instance.component.name)
+
+    def _slots(self) -> tuple[Slot, ...]:
+        return tuple(
+            s
+            for p in self.system.processors
+            for s in p.slots
+            if s.owner == self.instance.name and s.work is not Work.BUS_RECEIVE
+        )
+
+    def _element(self, name: str) -> str:
+        return f"{self.instance.name}.{name}"
+
+    def _ceiling(self, name: str) -> Expr:
+        return priority(self.system.object(self._element(name)).ceiling)
+
+    def _has_object(self, name: str) -> bool:
+        return any(o.element == self._element(name) for o in self.system.objects)
+
+    def _writer(self, data: Data) -> Region | Activity | None:
+        component = self.instance.component
+        runnables: tuple[Region | Activity, ...] = (*component.regions, *component.activities)
+        return next((r for r in runnables if data.name in r.writes), None)
+
+    def _targets(self, port: str) -> tuple[list[End], list[str]]:
+        """Input ports of the same node, and messages, that an output port feeds."""
+        end = End(self.instance.name, port)
+        ports = [c.target for c in self.system.connections if c.source == end]
+        messages = [m for m in self.system.messages if m.source == end]
+        return ports, [m.name for m in messages]
+
+    def _connected_inputs(self) -> tuple[Port, ...]:
+        targets = [c.target for c in self.system.connections]
+        targets += [t for m in self.system.messages for t in m.targets]
+        names = {t.port for t in targets if t.instance == self.instance.name}
+        return tuple(p for p in self.instance.component.inputs() if p.name in names)
+
+    def _note(
+        self, kind: str, name: str, element_kind: str, item: Expr | None = None
+    ) -> tuple[Stmt, ...]:
+        return note(self.system, kind, self._element(name), element_kind, item)
+
+    def _fault(self, kind: str) -> Stmt:
+        return Do("Health_Counts.Record_Fault", arguments(Ref(f"Ravenchart.Health.{kind}")))
+
+    def _fault_number(self, kind: str) -> Expr:
+        return Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref(f"Ravenchart.Health.{kind}")))
+
+    def _raise(self, event: str) -> Stmt:
+        return Do("Offer", arguments(Ref(f"{self.component}.{ada_case(event)}")))
