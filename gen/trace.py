@@ -7,6 +7,7 @@ directly, so that row k of the table is the processor's number + 1 + k.
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import dataclass
 
 from .model import System
@@ -71,10 +72,16 @@ def trace_json(system: System) -> str:
             "id": item.number,
             "element": item.element,
             "kind": item.kind,
-            "origin": str(item.origin),
+            "origin": _place(item.origin, system.origin),
         }
         if item.kind == "region":
             row |= {"leaves": item.leaves, "transitions": item.transitions}
         rows.append(row)
     document = {"system": system.name, "digest": system.digest, "elements": rows}
     return json.dumps(document, indent=1, ensure_ascii=True) + "\n"
+
+
+def _place(origin: Origin, model: Origin) -> str:
+    """Where an element stands, from the model's folder: the same wherever that is."""
+    file = os.path.relpath(origin.file, os.path.dirname(model.file) or ".")
+    return f"{file}:{origin.line}:{origin.column}"

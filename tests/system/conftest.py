@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from ravenchart import steps
 from ravenchart.toolchain import ROOT
+
+CopyOf = Callable[[str], Path]
+"""Copies an example to a folder of its own."""
 
 
 def _built(name: str) -> tuple[steps.Checked, Path]:
@@ -30,7 +34,7 @@ def stations() -> tuple[steps.Checked, Path]:
 
 
 @pytest.fixture
-def copy_of(tmp_path: Path):  # type: ignore[no-untyped-def]
+def copy_of(tmp_path: Path) -> CopyOf:
     """A function that copies an example to a folder of its own."""
 
     def copied(name: str) -> Path:

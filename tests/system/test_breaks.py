@@ -6,6 +6,7 @@ The proofs need gnatprove; without it those tests are skipped, and say so.
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -100,7 +101,7 @@ def test_a_budget_past_its_slack_does_not_compile(checkout: Path) -> None:
 
 
 def test_a_budget_that_cannot_be_met_is_refused_with_the_model_line(
-    copy_of,  # type: ignore[no-untyped-def]
+    copy_of: Callable[[str], Path],
 ) -> None:
     folder = copy_of("three_components")
     model = folder / "model.yaml"

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart import house, proving
+from ravenchart.toolchain import ROOT
 
 NAMES = ("runtime-loopback", "runtime-slcan", *house.EXAMPLES)
 
@@ -32,8 +33,8 @@ def test_nothing_is_unproved_justified_or_assumed(name: str) -> None:
 def test_every_generated_and_user_source_of_the_examples_is_in_its_record() -> None:
     for name in house.EXAMPLES:
         recorded = set(tomllib.loads(_record(name).read_text())["sources"])
-        folder = house.ROOT / "examples" / name
-        there = {str(p.relative_to(house.ROOT)) for p in folder.rglob("*.ad[sb]")}
+        folder = ROOT / "examples" / name
+        there = {str(p.relative_to(ROOT)) for p in folder.rglob("*.ad[sb]")}
         assert there <= recorded, sorted(there - recorded)
 
 

@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from analysis.observed import Observation, Record, read_map, read_trace
@@ -75,7 +76,7 @@ def test_processors_2_and_3_both_touch_component_2(
 
 
 def test_moving_an_activity_is_one_line_and_the_token_still_goes_round(
-    copy_of,  # type: ignore[no-untyped-def]
+    copy_of: Callable[[str], Path],
     tmp_path: Path,
 ) -> None:
     folder = copy_of("three_components")
