@@ -65,7 +65,7 @@ def prove(
     """
     for old in (path for folder in results for path in folder.glob("*.spark")):
         old.unlink()
-    arguments = ["-P", project.name, "--output=oneline", "--warnings=error", "-q"]
+    arguments = ["-P", project.name, "-f", "--output=oneline", "--warnings=error", "-q"]
     toolchain.run("gnatprove", arguments, project.parent, scenario)
     return read_results(results, roots)
 

@@ -1,0 +1,92 @@
+"""Figures: what the runtime's operations cost, and how generator and analysis grow.
+
+Everything is measured in one run, and what matters are the ratios: absolute
+times depend on the machine.
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import time
+from collections.abc import Callable
+
+from analysis.response_times import response_times
+from gen.generate import generate
+from gen.load import load
+from gen.model import Task
+from gen.terms import Ns, Origin
+
+from . import steps, toolchain
+from .toolchain import ROOT
+
+PLACE = Origin("bench", 1, 1)
+ROUNDS = 5
+
+
+def median_ms(work: Callable[[], object]) -> float:
+    """Median time of `ROUNDS` calls, in ms."""
+    spent = []
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        work()
+        spent.append(1e3 * (time.perf_counter() - start))
+    return statistics.median(spent)
+
+
+def runtime_operations() -> None:
+    """The Ada bench, built with -O2 and checks off."""
+    where = ROOT / "tests" / "ada"
+    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "bench_runtime.adb"]
+    toolchain.run("gprbuild", options, where, {"MODE": "release", "CAN_DRIVER": "loopback"})
+    program = ROOT / "obj" / "tests-release-loopback" / "bin" / "bench_runtime"
+    print("runtime (-O2, ceiling locking; medians):")
+    done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=True)
+    for line in done.stdout.splitlines():
+        print(f"  {line}")
+
+
+def generator() -> None:
+    """Load, analyse and generate the robot."""
+    path = ROOT / "examples" / "cartesian_robot" / "model.yaml"
+    checked = steps.check(path)
+    claims = steps.bounds(checked)
+    print("the Cartesian robot (medians):")
+    print(f"  load and check the model: {median_ms(lambda: load(path)):.0f} ms")
+    print(f"  generate its program: {median_ms(lambda: generate(checked.system, claims)):.0f} ms")
+
+
+def task_set(count: int) -> tuple[Task, ...]:
+    """``count`` tasks with periods of 10, 20, 50, 100 and 200 ms, 70 % load in all."""
+    tasks = []
+    for index in range(count):
+        period = Ns(1_000_000 * (10, 20, 50, 100, 200)[index * 5 // count])
+        budget = Ns(period * 7 // (10 * count))
+        name = f"task_{index}"
+        tasks.append(Task(name, PLACE, "node", period, Ns(0), period, budget, count - index))
+    return tuple(tasks)
+
+
+def analysis() -> None:
+    """Response times of growing task sets."""
+    print("response-time analysis at 70 % load:")
+    before = 0.0
+    for count in (10, 30, 100):
+        tasks = task_set(count)
+        start = time.perf_counter()
+        response_times(tasks, ())
+        spent = 1e3 * (time.perf_counter() - start)
+        grown = f", {spent / before:.1f} times the one before" if before else ""
+        print(f"  {count} tasks: {spent:.1f} ms{grown}")
+        before = spent
+
+
+def main() -> None:
+    """All figures."""
+    runtime_operations()
+    generator()
+    analysis()
+
+
+if __name__ == "__main__":
+    main()
