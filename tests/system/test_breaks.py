@@ -46,7 +46,14 @@ def _prove(checkout: Path, *units: str) -> str:
 def test_a_transition_to_the_wrong_state_is_not_proved(checkout: Path) -> None:
     unit = "three_components-station-handling.adb"
     _prove(checkout, unit)
-    _break(checkout / "three" / "generated" / unit, "Enter_Holding;", "Enter_Empty;")
+    body = checkout / "three" / "generated" / unit
+    _break(body, "            Enter_Holding;", "            Enter_Elsewhere;")
+    _break(
+        body,
+        "            Exit_Holding;\n",
+        "            Exit_Holding;\n            Enter_Holding;\n",
+    )
+    _break(body, "            Enter_Elsewhere;", "            Enter_Empty;")
     with pytest.raises(ToolFailed, match="might fail"):
         _prove(checkout, unit)
 
