@@ -64,7 +64,7 @@ def region_of(
         use.flow(resolved[-1].exit)
     transitions: list[Transition] = []
     names: Scope[str] = Scope(f"transition of {name}")
-    for transition, given in (form.transitions or {}).items():
+    for transition, given in form.transitions.items():
         names.declare(transition, given.origin, transition, findings)
         made = _transition(transition, given, timing.period, states, words, targets, findings)
         if made is not None:
@@ -81,7 +81,7 @@ def region_of(
     if form.on_overflow is not None:
         on_overflow = targets.events.look_up(form.on_overflow, form.at("on_overflow"), findings)
     if form.queue is None and not form.lost("queue"):
-        waits = [t for t in (form.transitions or {}).values() if t.on is not None]
+        waits = [t for t in form.transitions.values() if t.on is not None]
         if waits:
             message = f"{name} waits for events and has no queue for them"
             notes = [(waits[0].at("on"), f"`{waits[0].on}` is one of them")]

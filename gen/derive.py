@@ -172,7 +172,8 @@ class _Sharing:
                 yield self.made(element, [handler, *readers])
         for data in component.data:
             users = [self.runs(instance.name, name) for name in component.users(data.name)]
-            if len(users) > 1:
+            written = any(data.name in item.writes for item in runnables)
+            if written and len(users) > 1:  # otherwise it is a constant, or its writer's own
                 yield self.made(f"{instance.name}.{data.name}", users)
         for region in component.regions:
             own = self.runs(instance.name, region.name)

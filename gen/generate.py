@@ -16,10 +16,11 @@ from .emit.deployment import emit_deployment
 from .emit.instances import emit_instances
 from .emit.naming import ada_case
 from .emit.project import project_text
+from .emit.quiet import has_decided_conditions, quiet
 from .emit.regions import emit_region
 from .emit.types import emit_root
 from .model import System
-from .terms import Ns
+from .terms import IntegerType, Ns
 from .trace import trace_json
 
 HEADER = (
@@ -43,7 +44,17 @@ def units(system: System, bounds: Mapping[str, Ns]) -> tuple[Unit, ...]:
     found += emit_instances(system, header)
     found.append(emit_certificate(system, bounds, header))
     found += emit_deployment(system, header)
+    if not any(isinstance(t, IntegerType) for t in system.types):
+        #  the root has no need of the runtime, and its children cannot see it through the root
+        found = [_seeing_runtime(unit) for unit in found]
+    if has_decided_conditions(system):
+        found = [quiet(unit) for unit in found]
     return tuple(found)
+
+
+def _seeing_runtime(unit: Unit) -> Unit:
+    sees = any(name.startswith("Ravenchart") for name in unit.withs)
+    return unit if sees else replace(unit, withs=("Ravenchart", *unit.withs))
 
 
 def _pruned(unit: Unit, root: str) -> Unit:
@@ -57,10 +68,24 @@ def _pruned(unit: Unit, root: str) -> Unit:
     return replace(unit, withs=tuple(kept))
 
 
+def _without_repeats(found: list[Unit]) -> list[Unit]:
+    """The units; no body names the runtime when its spec does."""
+    seeing: set[str] = set()
+    out: list[Unit] = []
+    for unit in found:
+        withs = unit.withs
+        if unit.item.name in seeing:
+            withs = tuple(name for name in withs if name != "Ravenchart")
+        if any(name.startswith("Ravenchart") for name in withs):
+            seeing.add(unit.item.name)
+        out.append(replace(unit, withs=withs))
+    return out
+
+
 def generate(system: System, bounds: Mapping[str, Ns]) -> dict[str, str]:
     """File name to text, the same bytes for the same model."""
     root = ada_case(system.name)
-    pruned = (_pruned(unit, root) for unit in units(system, bounds))
+    pruned = _without_repeats([_pruned(unit, root) for unit in units(system, bounds)])
     files = {unit.file_name: print_unit(unit) for unit in pruned}
     name = root.lower()
     files[f"{name}.gpr"] = project_text(system, has_user_code=bool(user_units(system)))

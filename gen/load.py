@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 
+from .clashes import clashes
 from .derive import completed
 from .diagnostics import Diagnostic, Sources, error, in_order
 from .forms import check
@@ -144,5 +145,8 @@ def load(path: Path, read: Reader = read_file) -> Loaded:
         findings.items.extend(violations(resolved))
         if not any(item.is_error for item in findings.items):
             system = completed(resolved.system)
+            findings.items.extend(clashes(system))
+            if any(item.is_error for item in findings.items):
+                system = None
     diagnostics = in_order(findings.items, reading.sources)
     return Loaded(system, diagnostics, reading.sources)

@@ -6,14 +6,12 @@ from dataclasses import dataclass, field
 
 from .charts import walk
 from .model import Data, Direction, Event, Overflow, Parameter, Port, PortKind
-from .names import Findings, Scope
+from .names import HIDING, Findings, Scope
 from .schema import ComponentForm, InputForm, OutputForm
 from .terms import Ns, Origin, Reading, RecordType, Type
 from .values import constant, initial_value
 from .vocabulary import Vocabulary
 
-HIDING = frozenset(("ada", "system", "standard", "interfaces", "ravenchart"))
-"""Library units that an element of a component would hide."""
 TABLE_WORDS = ("ports", "receive")
 """What tables call the port region and a bus's reception."""
 
@@ -49,7 +47,7 @@ class Namespace:
         elif name.lower() == self.system.lower():
             what = f"the system {self.system}"
         elif name.lower() in HIDING:
-            what = "a library unit that the generated program uses"
+            what = "a unit, type or value of Ada that the generated program uses"
         elif kind in ("region", "activity") and name.lower() in TABLE_WORDS:
             what = "a row that tables have anyway"
         if what is not None:

@@ -44,7 +44,9 @@ CHILDREN = {
 }
 """Child packages that every system has, by lower-case name."""
 
-ROOTS = PREDEFINED_TYPES - {"boolean"}
+_HIDING = "ada system standard interfaces ravenchart boolean natural true false"
+HIDING = frozenset(_HIDING.split())
+"""What the generated program names by itself everywhere: nothing in it can hide that."""
 
 T = TypeVar("T")
 

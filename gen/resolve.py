@@ -99,6 +99,10 @@ def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Find
     return _build(model, name, whole, digest, findings)
 
 
+MOST_PROCESSORS = 30
+"""Processors of a system at most: each has a priority of its own."""
+
+
 def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
     """What no system can do without, and what this version has once."""
     for section, noun in (
@@ -118,6 +122,10 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
             hint = f"declare one {noun}; another system may hold the other"
             notes = [(first, "the first is here")]
             findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
+    for _, form in model.entries("processors")[MOST_PROCESSORS:]:
+        message = f"a system has at most {MOST_PROCESSORS} processors"
+        hint = "let one processor run more rows: each table holds many"
+        findings.error("RV-0209", form.origin, message, hint=hint)
     shutdowns = [file for file in model.files if file.shutdown is not None]
     for file in shutdowns[1:]:
         message = "`shutdown` is given twice"

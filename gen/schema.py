@@ -231,8 +231,8 @@ class RegionForm(Element):
     initial: Reference = key("State entered first; any state of the region.")
     safe_state: Reference | None = optional("State that must be reachable from every other.")
     states: dict[Name, StateForm] = key("The top states.", min_length=1)
-    transitions: dict[Name, TransitionForm] | None = optional(
-        "Transitions by name; the earlier goes before the later."
+    transitions: dict[Name, TransitionForm] = key(
+        "Transitions by name; the earlier goes before the later.", min_length=1
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 
-from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope, meant
+from .names import CHILDREN, HIDING, PREDEFINED_TYPES, Findings, Scope, meant
 from .schema import FieldsType, RangeType, ValuesType
 from .schema_base import Element
 from .terms import (
@@ -85,6 +85,9 @@ def _enumeration(
         if literal.lower() in ("true", "false"):
             message = f"a literal cannot be named `{literal}`, like one of Boolean"
             findings.error("RV-0304", at, message, hint="use the type Boolean, or another name")
+        elif literal.lower() in HIDING:
+            message = f"a literal cannot be named `{literal}`, like a unit or type of Ada"
+            findings.error("RV-0304", at, message, hint="choose another name")
         literals.declare(literal, at, literal, findings)
     if findings.count() > before or form.damaged:
         return None

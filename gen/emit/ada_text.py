@@ -112,6 +112,12 @@ def _operand(expr: Expr, operator: str = "") -> Doc:
     return doc if plain else _cat("(", _nest(doc, 1), ")")
 
 
+def _signed(expr: Expr, operator: str = "") -> Doc:
+    """An operand after an operator: there Ada has no sign, ``abs`` or ``not`` of its own."""
+    nested = isinstance(expr, Prefix) and (expr.operator == "-" or not operator)
+    return _bare(expression(expr)) if nested else _operand(expr, operator)
+
+
 def _bare(doc: Doc) -> Doc:
     """Between parentheses, one column in."""
     return _group(_cat("(", _nest(doc, 1), ")"))
@@ -123,10 +129,11 @@ def expression(expr: Expr) -> Doc:
         case Ref(text):
             return _text(text)
         case Chain(operator, operands):
-            head, *rest = [_operand(o, operator) for o in operands]
+            head = _operand(operands[0], operator)
+            rest = [_signed(o, operator) for o in operands[1:]]
             return _group(_cat(head, *(_cat(SOFT, f"{operator} ", _nest(r, 2)) for r in rest)))
         case Prefix(operator, operand):
-            return _cat(operator if operator == "-" else f"{operator} ", _operand(operand))
+            return _cat(operator if operator == "-" else f"{operator} ", _signed(operand))
         case Call(name, args):
             return _group(_cat(name, _nest(_cat(SOFT, _args(args)), 2)))
         case Aggregate(args, of_type):
@@ -291,7 +298,10 @@ def _declaration(decl: Decl) -> Doc:
             items = _nest(_join([_text(i) for i in literals], ","), 1)
             return _group(_cat(f"type {name} is", _nest(_cat(SOFT, "(", items, ");"), 2)))
         case PlainType(name, definition, subtype):
-            return _text(f"{'subtype' if subtype else 'type'} {name} is {definition};")
+            parts = f"{definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
+            whole, *bounds = [_text(part.strip()) for part in parts.split("\n")]
+            head = f"{'subtype' if subtype else 'type'} {name} is"
+            return _group(_cat(head, _nest(_cat(SOFT, whole, *(_cat(SOFT, b) for b in bounds)), 2)))
         case RecordType(name, ()):
             return _text(f"type {name} is null record;")
         case RecordType(name, components):

@@ -48,6 +48,16 @@ def _container(signal: Signal) -> str:
     return f"Interfaces.Unsigned_{next(n for n in (8, 16, 32, 64) if signal.width <= n)}"
 
 
+def _narrowed(signal: Signal, word: Expr) -> Expr:
+    """A word as the bits of a signal."""
+    return word if _container(signal) == WORD else call(_container(signal), word)
+
+
+def _widened(signal: Signal, bits: str) -> Expr:
+    """The bits of a signal as a word."""
+    return Ref(bits) if _container(signal) == WORD else call(WORD, Ref(bits))
+
+
 def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     """Spec and body of the codecs; nothing for a system without messages."""
     layouts: dict[str, Message] = {}
@@ -170,7 +180,7 @@ class _Codec:
                     self._raw_name(s),
                     (word,),
                     _container(s),
-                    expression=call(_container(s), Ref(f"{shifted} and 16#{mask:X}#")),
+                    expression=_narrowed(s, Ref(f"{shifted} and 16#{mask:X}#")),
                 )
             )
             items.append(
@@ -241,9 +251,9 @@ class _Codec:
             )
         )
         parts: list[Expr] = [
-            call("Interfaces.Shift_Left", call(WORD, Ref(self._local(s))), number(s.start))
+            call("Interfaces.Shift_Left", _widened(s, self._local(s)), number(s.start))
             if s.start
-            else call(WORD, Ref(self._local(s)))
+            else _widened(s, self._local(s))
             for s in self.signals
         ]
         return Subprogram(

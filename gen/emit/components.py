@@ -25,7 +25,7 @@ from .ada import (
     number,
 )
 from .naming import ada_case, component_package, default_value, states_package, type_name
-from .terms import Scope, always, emit_flow, flow_names, flow_operators
+from .terms import Scope, always, effective, emit_flow, flow_names, flow_operators
 
 RAISED_PER_STEP = 16
 """Events that one region execution can raise; the rules keep each step below it."""
@@ -209,5 +209,5 @@ def _flow_body(system: System, component: Component, activity: Activity) -> Subp
     return Subprogram(
         ada_case(activity.name),
         activity_params(system, component, activity),
-        body=(*start, *emit_flow(scope, activity.flow)),
+        body=(*start, *emit_flow(scope, effective(activity.flow))),
     )

@@ -156,8 +156,10 @@ class Rows(Site):
         declarations: list[Decl] = [
             Object("Now", f"{package}.Occurrence"),
             Object("Fired", f"{package}.Selection"),
-            UseType(f"{package}.Selection"),
         ]
+        after = self._after_step(shape, package)
+        if not isinstance(after[0], Pragma):
+            declarations.append(UseType(f"{package}.Selection"))
         body: list[Stmt] = [Do(f"{package}.Poll", arguments(Ref(f"{name}_Region"), Ref("Now")))]
         if region.events():
             declarations += [
@@ -177,7 +179,7 @@ class Rows(Site):
             declarations.append(Object("Box", f"{package}.Outbox"))
             args.append(Ref("Box"))
         body.append(Do(f"{package}.Step", arguments(*args, Ref("Fired"))))
-        body += self._after_step(shape, package)
+        body += after
         params = (Param("Ins", "in", f"{package}.Inputs"),) if shape.inputs else ()
         return Subprogram(
             f"Step_{name}", params, declarations=tuple(declarations), body=tuple(body)

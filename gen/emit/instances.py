@@ -199,6 +199,8 @@ class Glue(Site):
             initial = value(self.system, data.type, data.initial)
             of_type = type_name(self.system, data.type)
             writer = self._writer(data)
+            if writer is None and not self.instance.component.users(data.name):
+                continue
             if writer is None:
                 items.append(Object(f"{name}_Own", of_type, initial, constant=True))
                 continue

@@ -35,10 +35,17 @@ def default_name(system: System, of_type: RecordType) -> str:
     return f"{ada_case(system.name)}.Default_{ada_case(of_type.name)}"
 
 
+def counted(given: int, unit: str | None) -> Expr:
+    """An integer of a unit; the sign of plain numbers is not directly visible everywhere."""
+    if unit is None and given < 0:
+        return Ref(f"Ravenchart.Number'Val ({given:_})")
+    return number(given)
+
+
 def scalar(system: System, of_type: IntegerType | EnumerationType, value: Scalar) -> Expr:
     """A scalar value as Ada text."""
     if isinstance(of_type, IntegerType):
-        return number(int(value))
+        return counted(int(value), of_type.unit)
     if of_type == BOOLEAN:
         return Ref(str(value).capitalize())
     return Ref(f"{ada_case(system.name)}.{ada_case(str(value))}")

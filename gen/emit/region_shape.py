@@ -29,6 +29,10 @@ from .terms import (
 
 START = "Initial_Entry"
 
+_TYPES = "occurrence selection firing transition variables inputs outbox region item chart"
+TYPES = frozenset(_TYPES.split())
+"""What hides an event of the same name inside a region's package."""
+
 
 def guard_names(region: Region) -> set[str]:
     """What the guards and conditions of a region read, by name as declared."""
@@ -141,6 +145,11 @@ class RegionShape:
                 return f"Expiry_Of_{ada_case(transition.name)}"
             case When():
                 return "Conditions"
+
+    def event(self, event: str) -> str:
+        """The event as the region's package names it."""
+        name = ada_case(event)
+        return f"{ada_case(self.component.name)}.{name}" if name.lower() in TYPES else name
 
     def occurrences(self) -> tuple[str, ...]:
         """All occurrences of the region."""

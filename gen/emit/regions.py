@@ -243,7 +243,7 @@ def _operations(shape: RegionShape) -> list[Decl]:
         Comment("Its start, or the time-out that is due; Conditions when there is neither."),
     ]
     if shape.region.events():
-        rows = tuple((f"{ada_case(e)}", Ref(f"On_{ada_case(e)}")) for e in shape.region.events())
+        rows = tuple((shape.event(e), Ref(f"On_{ada_case(e)}")) for e in shape.region.events())
         if len(rows) < len(shape.component.events):
             rows += (("others", Ref("Conditions")),)
         items += [

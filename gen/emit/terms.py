@@ -24,9 +24,8 @@ from .ada import (
     Stmt,
     arguments,
     member,
-    number,
 )
-from .naming import ada_case, states_package, type_name, unit_type
+from .naming import ada_case, counted, states_package, type_name, unit_type
 
 _CHAINS = {"and": "and then", "or": "or else"}
 _FUNCTIONS = {"min": "Min", "max": "Max"}
@@ -152,6 +151,34 @@ def always(flow: m.Flow) -> set[str]:
     return sure
 
 
+def effective(flow: m.Flow) -> m.Flow:
+    """A flow of an activity without what has no effect: values set anew before they are read."""
+    kept: list[m.Action] = []
+    raised: set[str] = set()
+    for index, action in enumerate(flow):
+        match action:
+            case m.Raise(_, event) if event in raised:
+                continue
+            case m.Raise(_, event):
+                raised.add(event)
+            case m.Set(_, data, None) if _set_anew(data, flow[index + 1 :]):
+                continue
+            case m.If(origin, condition, then, otherwise):
+                action = m.If(origin, condition, effective(then), effective(otherwise))
+        kept.append(action)
+    return tuple(kept)
+
+
+def _set_anew(data: str, rest: m.Flow) -> bool:
+    for action in rest:
+        if data in flow_names((action,)):
+            return False
+        match action:
+            case m.Set(_, again, field) if again == data:
+                return field is None
+    return False
+
+
 def flow_operators(flow: m.Flow) -> set[str]:
     """The runtime's types whose operators a flow uses."""
     return {name for expression in expressions_in(flow) for name in operators_in(expression)}
@@ -162,11 +189,11 @@ def flow_names(flow: m.Flow) -> set[str]:
     return {name for expression in expressions_in(flow) for name in names_in(expression)}
 
 
-def emit_expression(scope: Scope, expression: m.Expression) -> Expr:
-    """One model expression as Ada."""
+def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = None) -> Expr:
+    """One model expression as Ada; ``unit`` is what its place counts, for bare numbers."""
     match expression:
         case m.Literal(value, of_type):
-            return _literal(scope, value, of_type)
+            return _literal(scope, value, of_type, unit)
         case m.Name():
             return Ref(_name(scope, expression))
         case m.PortTest(port, state):
@@ -175,12 +202,12 @@ def emit_expression(scope: Scope, expression: m.Expression) -> Expr:
         case m.InState(region, state):
             return _in_state(scope, region, state)
         case m.Operation():
-            return _operation(scope, expression)
+            return _operation(scope, expression, unit)
 
 
-def _literal(scope: Scope, value: m.Scalar, of_type: m.ScalarType | None) -> Expr:
+def _literal(scope: Scope, value: m.Scalar, of_type: m.ScalarType | None, unit: str | None) -> Expr:
     if isinstance(value, int) and not isinstance(value, bool):
-        return number(value)
+        return counted(value, unit)
     if of_type is None or of_type == m.BOOLEAN:
         return TRUE if str(value).lower() == "true" else FALSE
     return Ref(f"{ada_case(scope.system.name)}.{ada_case(str(value))}")
@@ -202,9 +229,13 @@ def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
     return member(current, qualified)
 
 
-def _operation(scope: Scope, operation: m.Operation) -> Expr:
+def _operation(scope: Scope, operation: m.Operation, place: str | None) -> Expr:
     operator = operation.operator
-    operands = tuple(emit_expression(scope, o) for o in operation.operands)
+    #  bare numbers take the unit of their neighbours, or of the place
+    unit = next((u for o in operation.operands if (u := unit_of(o)) is not None), None)
+    if unit is None and operation.type is None:
+        unit = place
+    operands = tuple(emit_expression(scope, o, unit) for o in operation.operands)
     if operator == "not":
         return Prefix("not", operands[0])
     if operator == "neg":
@@ -214,14 +245,16 @@ def _operation(scope: Scope, operation: m.Operation) -> Expr:
     if operator == "if":
         return IfExpr(((operands[0], operands[1]),), operands[2])
     if operator in _FUNCTIONS or operator == "clamp":
-        return _bounded(scope, operation, operands)
+        return _bounded(scope, operation, operands, unit)
     if operator in ("*", "/"):
-        return Chain(operator, tuple(_scaled(scope, operation, o) for o in operation.operands))
+        return Chain(operator, tuple(_scaled(scope, unit, o) for o in operation.operands))
     return Chain(_CHAINS.get(operator, operator), operands)
 
 
-def _bounded(scope: Scope, operation: m.Operation, operands: tuple[Expr, ...]) -> Expr:
-    base = unit_type(scope.system, operation.unit)
+def _bounded(
+    scope: Scope, operation: m.Operation, operands: tuple[Expr, ...], unit: str | None
+) -> Expr:
+    base = unit_type(scope.system, unit)
     if operation.operator == "clamp":
         item, low, high = operands
         inner = Call(f"{base}'Max", arguments(item, low))
@@ -229,12 +262,11 @@ def _bounded(scope: Scope, operation: m.Operation, operands: tuple[Expr, ...]) -
     return Call(f"{base}'{_FUNCTIONS[operation.operator]}", arguments(*operands))
 
 
-def _scaled(scope: Scope, operation: m.Operation, operand: m.Expression) -> Expr:
+def _scaled(scope: Scope, unit: str | None, operand: m.Expression) -> Expr:
     """A factor in the unit type of the product, for Ada multiplies only within a type."""
-    text = emit_expression(scope, operand)
-    if isinstance(operand, m.Literal) or unit_of(operand) == operation.unit:
-        return text
-    return Call(unit_type(scope.system, operation.unit), arguments(text))
+    if isinstance(operand, m.Literal) or unit_of(operand) == unit:
+        return emit_expression(scope, operand, unit)
+    return Call(unit_type(scope.system, unit), arguments(emit_expression(scope, operand)))
 
 
 def emit_flow(scope: Scope, flow: m.Flow) -> tuple[Stmt, ...]:
@@ -246,7 +278,8 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
     match action:
         case m.Set(_, data, field, value):
             target = scope.target(data) + (f".{ada_case(field)}" if field else "")
-            return (Assign(target, emit_expression(scope, value)),)
+            item = next(d.type for d in scope.component.data if d.name == data)
+            return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
         case m.Send(_, port, values):
             slot, flag = scope.sent(port)
             return (Assign(slot, _sent_value(scope, port, values)), Assign(flag, TRUE))
@@ -257,14 +290,23 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
             return (If((branch,), emit_flow(scope, otherwise)),)
 
 
+def _unit_in(of_type: m.Type, field: str | None) -> str | None:
+    """What a target counts."""
+    scalar = of_type.field(field).type if isinstance(of_type, m.RecordType) and field else of_type
+    return scalar.unit if isinstance(scalar, m.IntegerType) else None
+
+
 def _sent_value(
     scope: Scope, port: str, values: tuple[tuple[str | None, m.Expression], ...]
 ) -> Expr:
     of_type = scope.component.port(port).type
     if not isinstance(of_type, m.RecordType):
-        return emit_expression(scope, values[0][1])
+        return emit_expression(scope, values[0][1], _unit_in(of_type, None))
     return Aggregate(
-        tuple(Arg(ada_case(f or ""), emit_expression(scope, v)) for f, v in values),
+        tuple(
+            Arg(ada_case(f or ""), emit_expression(scope, v, _unit_in(of_type, f)))
+            for f, v in values
+        ),
         type_name(scope.system, of_type),
     )
 

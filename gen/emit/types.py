@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from ..model import System
 from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Type
-from .ada import SPARK, Aspect, Comment, Decl, EnumType, Object, Package, PlainType, Unit
+from .ada import SPARK, Aspect, Comment, Decl, EnumType, Object, Package, PlainType, Ref, Unit
 from .ada import Component as RecordComponent
 from .ada import RecordType as AdaRecord
-from .naming import ada_case, default, default_name, type_name, unit_type, value
+from .naming import ada_case, counted, default, default_name, type_name, unit_type, value
 
 
 def emit_root(system: System, header: str) -> Unit:
@@ -29,11 +29,16 @@ def emit_root(system: System, header: str) -> Unit:
     return Unit(header, withs, Package(name, tuple(items), (SPARK, Aspect("Pure"))))
 
 
+def _bound(value: int, unit: str | None) -> str:
+    bound = counted(value, unit)
+    return bound.text if unit is None and value < 0 and isinstance(bound, Ref) else f"{value:_}"
+
+
 def _declare(system: System, item: Type) -> list[Decl]:
     name = ada_case(item.name)
     match item:
         case IntegerType(_, _, first, last, unit):
-            bounds = f"{first:_} .. {last:_}"
+            bounds = f"{_bound(first, unit)} .. {_bound(last, unit)}"
             base = unit_type(system, unit).removeprefix(f"{ada_case(system.name)}.")
             return [PlainType(name, f"{base} range {bounds}", subtype=True)]
         case EnumerationType(_, _, literals):

@@ -1,0 +1,89 @@
+"""Models in which the compiler can decide conditions, and what keeps it from saying so.
+
+A type of one value, a region of one leaf or a guard that ranges decide are
+sound, and the compiler warns of each. Only programs of such models say that
+these warnings are not wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from .. import terms as m
+from ..model import System, When
+from .ada import Package, Pragma, Ref, Unit
+from .terms import expressions_in
+
+_WORDS = ("can only be", "can never be", "explicit membership test", "'Valid attribute")
+_PRAGMAS = tuple(Pragma("Warnings", (Ref("Off"), Ref(f'"*{words} *"'))) for words in _WORDS)
+
+
+def quiet(unit: Unit) -> Unit:
+    """The unit, with these warnings off."""
+    if not isinstance(unit.item, Package):
+        return unit
+    return replace(unit, item=replace(unit.item, items=(*_PRAGMAS, *unit.item.items)))
+
+
+def has_decided_conditions(system: System) -> bool:
+    """Can the compiler decide a condition of the generated program?"""
+    if any(_has_one_value(t) for t in system.types):
+        return True
+    regions = [r for c in system.components for r in c.regions]
+    if any(len(r.leaves()) == 1 for r in regions):
+        return True
+    return any(_is_decided(e) for e in _expressions(system))
+
+
+def _has_one_value(of_type: m.Type) -> bool:
+    match of_type:
+        case m.IntegerType():
+            return of_type.first == of_type.last
+        case m.EnumerationType():
+            return len(of_type.literals) == 1
+        case _:
+            return False
+
+
+def _expressions(system: System) -> Iterator[m.Expression]:
+    for component in system.components:
+        for region in component.regions:
+            for transition in region.transitions:
+                yield from (e for e in (transition.guard,) if e is not None)
+                if isinstance(transition.trigger, When):
+                    yield transition.trigger.condition
+                yield from expressions_in(transition.effect)
+            for state in region.states:
+                yield from (*expressions_in(state.entry), *expressions_in(state.exit))
+        for activity in component.activities:
+            yield from expressions_in(activity.flow or ())
+
+
+def _is_decided(expression: m.Expression) -> bool:
+    """Holds it a comparison whose outcome, or one of whose halves, the ranges decide?"""
+    if not isinstance(expression, m.Operation):
+        return isinstance(expression, m.Literal) and isinstance(expression.value, bool)
+    if any(_is_decided(o) for o in expression.operands):
+        return True
+    if expression.operator not in ("=", "/=", "<", "<=", ">", ">="):
+        return False
+    left, right = (_bounds(o) for o in expression.operands)
+    return bool(left and right and (left[0] >= right[1] or right[0] >= left[1]))
+
+
+def _bounds(expression: m.Expression) -> tuple[int, int] | None:
+    match expression:
+        case m.Literal(int(value)):
+            return value, value
+        case m.Operation(type=None):
+            return expression.low, expression.high
+        case m.Name(_, _, field, of_type):
+            scalar = (
+                of_type.field(field).type
+                if isinstance(of_type, m.RecordType) and field
+                else of_type
+            )
+            if isinstance(scalar, m.IntegerType):
+                return scalar.first, scalar.last
+    return None
