@@ -67,7 +67,9 @@ def prove() -> bool:
     clean = True
     for target in targets():
         print(f"proving {target.name} ...", flush=True)
-        proof = proving.prove(target.project, target.scenario, target.results, target.roots)
+        proof = proving.prove(
+            target.project, target.scenario, target.results, target.roots, warnings="error"
+        )
         print(f"{target.name}: {proof.summary()}", flush=True)
         (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")
         clean = clean and proof.clean
