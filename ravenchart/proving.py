@@ -66,8 +66,8 @@ def prove(
 
     The record names every source below ``roots``. ToolFailed with gnatprove's
     messages when anything is left, and with ``warnings="error"`` also for a warning
-    of flow analysis, such as a value that is set and never used. The results of earlier runs go first: what is
-    read then is of this run alone.
+    of flow analysis, such as a value that is set and never used. The results of
+    earlier runs go first: what is read then is of this run alone.
     """
     for old in (path for folder in results for path in folder.glob("*.spark")):
         old.unlink()
