@@ -42,7 +42,7 @@ from .ada import (
     number,
 )
 from .naming import ada_case, states_package
-from .terms import Scope, emit_flow
+from .terms import Scope, certain_sends, emit_flow
 
 _WHOLE = "Chart.Node"
 
@@ -104,27 +104,38 @@ class Moves:
         return next((s for s in above if s in target_above), None)
 
     def _leave_up(self, source: str, domain: str | None) -> tuple[Stmt, ...]:
-        out: list[Stmt] = []
-        if not self.region.state(source).is_leaf:
-            out.append(self._call("Leave", source))
-        for state in self.region.ancestors(source):
-            if state == domain:
-                break
-            out.append(self._call("Exit", state))
-        return tuple(out)
+        inner = () if self.region.state(source).is_leaf else (self._call("Leave", source),)
+        return (*inner, *(self._call("Exit", s) for s in self._left(source, domain)))
+
+    def _left(self, source: str, domain: str | None) -> list[str]:
+        above = self.region.ancestors(source)
+        return list(above if domain is None else above[: above.index(domain)])
 
     def _enter_down(self, target: str, domain: str | None) -> tuple[Stmt, ...]:
-        path: list[str] = []
-        for state in self.region.ancestors(target):
-            if state == domain:
-                break
-            path.insert(0, state)
+        return tuple(self._call("Enter", state) for state in self._entered(target, domain))
+
+    def _entered(self, target: str, domain: str | None) -> list[str]:
+        path = self._left(target, domain)[::-1]
         at = self.region.state(target)
         while at.initial is not None:
             inner = self.region.ancestors(at.initial)
             path += reversed(inner[: inner.index(at.name)])
             at = self.region.state(at.initial)
-        return tuple(self._call("Enter", state) for state in path)
+        return path
+
+    def fills_outbox(self) -> bool:
+        """Does every firing send on every port that any firing sends on, and raise nothing?"""
+        region = self.region
+        rows = [[region.state(s).entry for s in self._entered(region.initial, None)]]
+        for t in region.transitions:
+            flows = [t.effect]
+            if t.kind is not TransitionKind.INTERNAL:
+                domain = self._domain(t)
+                flows += [region.state(s).exit for s in self._left(t.source, domain)]
+                flows += [region.state(s).entry for s in self._entered(t.target, domain)]
+            rows.append(flows)
+        sends = set(region.sends)
+        return not region.raises and all(set().union(*map(certain_sends, r)) == sends for r in rows)
 
     def _place_claim(self, domain: str | None) -> Pragma:
         if domain is None:

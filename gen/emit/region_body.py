@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ..model import When
 from .ada import (
     FALSE,
@@ -166,7 +168,12 @@ def _fire_params(shape: RegionShape) -> tuple[Param, ...]:
     idle = {"Now", "Fired"}
     if not behaviour_names(shape.region) & set(shape.inputs):
         idle.add("Ins")
-    kept = (p for p in step_params(shape) if p.name not in idle)
+    filled = Moves(shape.component, shape.region, shape.scope("Self.Data")).fills_outbox()
+    kept = (
+        replace(p, mode="out") if filled and p.name == "Box" else p
+        for p in step_params(shape)
+        if p.name not in idle
+    )
     return (*kept, Param("Chosen", "in", "Firing"))
 
 

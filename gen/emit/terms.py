@@ -189,6 +189,18 @@ def flow_names(flow: m.Flow) -> set[str]:
     return {name for expression in expressions_in(flow) for name in names_in(expression)}
 
 
+def certain_sends(flow: m.Flow) -> set[str]:
+    """The ports that a flow sends on whatever way it takes."""
+    ports: set[str] = set()
+    for action in flow:
+        match action:
+            case m.Send(_, port, _):
+                ports.add(port)
+            case m.If(_, _, then, otherwise):
+                ports |= certain_sends(then) & certain_sends(otherwise)
+    return ports
+
+
 def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = None) -> Expr:
     """One model expression as Ada; ``unit`` is what its place counts, for bare numbers."""
     match expression:

@@ -31,19 +31,20 @@ package Ravenchart.Can.Controllers
     SPARK_Mode,
     Elaborate_Body,
     Abstract_State =>
-      (State with Synchronous, External => (Async_Readers, Async_Writers)),
-    Initializes    => State
+      ((State with Synchronous, External => (Async_Readers, Async_Writers)),
+       (Wake_Up with Synchronous, External)),
+    Initializes    => (State, Wake_Up)
 is
    pragma Assert
      (Driver_Priority <= Transmit_Ceiling
       and then Driver_Priority <= Receive_Ceiling);
 
    procedure Send (F : Frame; Status : out Send_Status)
-   with Global => (In_Out => State);
+   with Global => (In_Out => (State, Wake_Up));
    --  Queue F for transmission; a full queue rejects it.
 
    procedure Wait_Frame (F : out Frame)
-   with Global => (In_Out => State);
+   with Global => (In_Out => (State, Wake_Up));
    --  Suspend the one caller until a frame is there, and hand it over.
 
    procedure Read_State (Now : out Controller_State)

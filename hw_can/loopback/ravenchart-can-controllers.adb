@@ -5,29 +5,28 @@
 --  Tasking      one task, the bus
 --  Timing       a frame takes no time on the bus
 
-with Ravenchart.Queues;
+with Ravenchart.Waiting_Queues;
 
 package body Ravenchart.Can.Controllers
   with
     SPARK_Mode,
     Refined_State =>
-      (State => (Transmit.State, Receive.State, Status_Board, Bus))
+      (State   => (Transmit.State, Receive.State, Status_Board, Bus),
+       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up))
 is
    use type Queueing.Put_Status;
 
-   package Transmit is new Queues
+   package Transmit is new Waiting_Queues
      (Element_Type => Frame,
       Null_Element => Null_Frame,
       Capacity     => Transmit_Depth,
-      Ceiling      => Transmit_Ceiling,
-      Policy       => Queueing.Reject_Newest);
+      Ceiling      => Transmit_Ceiling);
 
-   package Receive is new Queues
+   package Receive is new Waiting_Queues
      (Element_Type => Frame,
       Null_Element => Null_Frame,
       Capacity     => Receive_Depth,
-      Ceiling      => Receive_Ceiling,
-      Policy       => Queueing.Reject_Newest);
+      Ceiling      => Receive_Ceiling);
 
    protected Status_Board
      with Priority => Transmit_Ceiling
@@ -100,7 +99,7 @@ is
    end Bus;
 
    procedure Send (F : Frame; Status : out Send_Status)
-   with Refined_Global => (In_Out => Transmit.State)
+   with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
    is
       Result : Queueing.Put_Status;
    begin
@@ -110,7 +109,7 @@ is
    end Send;
 
    procedure Wait_Frame (F : out Frame)
-   with Refined_Global => (In_Out => Receive.State)
+   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
    is
    begin
       Receive.Wait (F);

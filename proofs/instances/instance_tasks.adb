@@ -37,7 +37,8 @@ is
         In_Out => (Timers, Raised,
                    Instance_Store.Dropping_Queue.State,
                    Instance_Store.Counters.State,
-                   Instance_Bus.Controller.State));
+                   Instance_Bus.Controller.State,
+                   Instance_Bus.Controller.Wake_Up));
    --  The region.
 
    -----------------

@@ -39,7 +39,8 @@ is
                    Instance_Store.Board.State,
                    Instance_Store.Trace.State,
                    Instance_Store.Counters.State,
-                   Instance_Bus.Controller.State));
+                   Instance_Bus.Controller.State,
+                   Instance_Bus.Controller.Wake_Up));
    --  Run one activity of the periodic processor.
 
    type Service is (Receive);
@@ -49,7 +50,8 @@ is
    with
      Global =>
        (Output => Sporadic_State,
-        In_Out => Instance_Bus.Controller.State);
+        In_Out => (Instance_Bus.Controller.State,
+                   Instance_Bus.Controller.Wake_Up));
    --  Suspend until a frame has come.
 
    procedure Run_Service (Activity : Service)

@@ -17,14 +17,10 @@ is
       procedure Take
         (Item : out Element_Type; Status : out Queueing.Take_Status);
 
-      entry Wait (Item : out Element_Type);
-
       function Lost return Event_Count;
 
    private
       Store    : Fifos.Fifo (Capacity);
-      Occupied : Boolean := False;
-      --  Kept equal to "Store is not empty", for a barrier must be simple.
       Given_Up : Event_Count := 0;
    end Queue;
 
@@ -37,11 +33,9 @@ is
             Reason => "each instance has one policy");
          if Fifos.Length (Store) < Capacity then
             Fifos.Put (Store, Item);
-            Occupied := True;
-            Status   := Queueing.Queued;
+            Status := Queueing.Queued;
          elsif Policy = Queueing.Drop_Oldest then
             Fifos.Replace_Oldest (Store, Item);
-            Occupied := True;
             Given_Up := Next (Given_Up);
             Status   := Queueing.Dropped_Oldest;
          else
@@ -56,24 +50,12 @@ is
       begin
          if Fifos.Length (Store) > 0 then
             Fifos.Get (Store, Item);
-            Occupied := Fifos.Length (Store) > 0;
             Status   := Queueing.Taken;
          else
             Item   := Null_Element;
             Status := Queueing.Empty;
          end if;
       end Take;
-
-      entry Wait (Item : out Element_Type) when Occupied is
-      begin
-         if Fifos.Length (Store) > 0 then
-            Fifos.Get (Store, Item);
-         else
-            --  Never so, but no invariant can tell the prover.
-            Item := Null_Element;
-         end if;
-         Occupied := Fifos.Length (Store) > 0;
-      end Wait;
 
       function Lost return Event_Count
       is (Given_Up);
@@ -93,13 +75,6 @@ is
    begin
       Queue.Take (Item, Status);
    end Take;
-
-   procedure Wait (Item : out Element_Type)
-   with Refined_Global => (In_Out => Queue)
-   is
-   begin
-      Queue.Wait (Item);
-   end Wait;
 
    function Lost return Event_Count
    with Refined_Global => Queue

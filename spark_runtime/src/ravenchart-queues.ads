@@ -1,10 +1,10 @@
 --  Bounded queue between tasks: a mailbox of a queued port, an event queue of
---  a region, the way into and out of a driver.
+--  a region.
 --
 --  Guarantees   strict order; what does not fit is given up by Policy and
 --               counted; every operation is total
---  Tasking      any number of callers up to Ceiling; one caller of Wait
---  Timing       constant; only Wait suspends
+--  Tasking      any number of callers up to Ceiling
+--  Timing       constant, none suspends
 --  Analysis     one shared object, ceiling Ceiling
 
 with System;
@@ -32,10 +32,6 @@ is
    procedure Take (Item : out Element_Type; Status : out Queueing.Take_Status)
    with Global => (In_Out => State);
    --  Hand over the oldest element, or Null_Element when Empty.
-
-   procedure Wait (Item : out Element_Type)
-   with Global => (In_Out => State);
-   --  Suspend the one caller until there is an element, and hand it over.
 
    function Lost return Event_Count
    with Volatile_Function, Global => State;

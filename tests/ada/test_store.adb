@@ -67,13 +67,14 @@ procedure Test_Store is
       Facts.Check ("a full queue rejects the newest", Right);
       Facts.Check
         ("a queue counts what it rejects", Objects.Rejecting.Lost = 2);
-      Objects.Rejecting.Wait (Item);
-      Facts.Check ("Wait hands over the oldest element", Item = 1);
-      Objects.Rejecting.Take (Item, Take);
-      Right := Take = Ravenchart.Queueing.Taken and then Item = 2;
-      Objects.Rejecting.Wait (Item);
-      Facts.Check
-        ("a queue that rejected keeps its order", Right and then Item = 3);
+      Right := True;
+      for I in 1 .. 3 loop
+         Objects.Rejecting.Take (Item, Take);
+         Right := Right
+           and then Take = Ravenchart.Queueing.Taken
+           and then Item = I;
+      end loop;
+      Facts.Check ("a queue that rejected keeps its order", Right);
       Objects.Rejecting.Take (Item, Take);
       Facts.Check
         ("an empty queue says so and gives its null element",

@@ -3,10 +3,9 @@
 with System;
 with Ada.Real_Time;
 with Ravenchart.Periodic_Processors;
-with Ravenchart.Queueing;
-with Ravenchart.Queues;
 with Ravenchart.Schedules;
 with Ravenchart.Sporadic_Processors;
+with Ravenchart.Waiting_Queues;
 
 package Workload is
 
@@ -91,12 +90,11 @@ package Workload is
       Execute          => Run_Late,
       On_Deadline_Miss => Note_Miss);
 
-   package Requests is new Ravenchart.Queues
+   package Requests is new Ravenchart.Waiting_Queues
      (Element_Type => Natural,
       Null_Element => 0,
       Capacity     => 8,
-      Ceiling      => System.Default_Priority + 8,
-      Policy       => Ravenchart.Queueing.Reject_Newest);
+      Ceiling      => System.Default_Priority + 8);
 
    package Sporadic is new Ravenchart.Sporadic_Processors
      (Activity_Id        => Job,

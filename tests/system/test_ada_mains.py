@@ -17,14 +17,7 @@ MAINS = (
     "test_slcan",
     "test_processors",
     "test_host",
-    pytest.param(
-        "test_controller",
-        marks=pytest.mark.xfail(
-            raises=subprocess.TimeoutExpired,
-            strict=False,
-            reason="open defect: about one run in twenty waits for a loopback frame for ever",
-        ),
-    ),
+    "test_controller",
 )
 
 

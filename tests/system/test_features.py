@@ -21,12 +21,17 @@ from ravenchart.toolchain import ROOT
 CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
 
 
-@pytest.fixture(params=CASES, ids=lambda p: p.name)
-def case(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Path, dict[str, Any]]:
-    """A copy of the case, and what is expected of it."""
-    folder = tmp_path / request.param.name
-    shutil.copytree(request.param, folder)
-    return folder, yaml.safe_load((folder / "expect.yaml").read_text())
+def _expected(case: Path) -> dict[str, Any]:
+    found: dict[str, Any] = yaml.safe_load((case / "expect.yaml").read_text())
+    return found
+
+
+@pytest.fixture
+def folder(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """A copy of the case."""
+    copy = tmp_path / request.param.name
+    shutil.copytree(request.param, copy)
+    return copy
 
 
 def _run(folder: Path, seconds: float) -> tuple[steps.Checked, Observation]:
@@ -42,8 +47,9 @@ def _run(folder: Path, seconds: float) -> tuple[steps.Checked, Observation]:
     return checked, read_trace(trace.read_text().splitlines(), names)
 
 
-def test_it_runs_to_its_trace(case: tuple[Path, dict[str, Any]]) -> None:
-    folder, expected = case
+@pytest.mark.parametrize("folder", CASES, ids=lambda p: p.name, indirect=True)
+def test_it_runs_to_its_trace(folder: Path) -> None:
+    expected = _expected(folder)
     _, seen = _run(folder, expected["seconds"])
     for region, wanted in expected["transitions"].items():
         assert [r.text for r in seen.of("transition", region)] == wanted
@@ -58,12 +64,7 @@ def test_it_runs_to_its_trace(case: tuple[Path, dict[str, Any]]) -> None:
 
 
 @pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
-def test_it_is_proved(
-    case: tuple[Path, dict[str, Any]], capsys: pytest.CaptureFixture[str]
-) -> None:
-    folder, expected = case
-    if not expected.get("proved"):
-        assert "proved" not in expected
-        return
+@pytest.mark.parametrize("folder", CASES, ids=lambda p: p.name, indirect=True)
+def test_it_is_proved(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["prove", str(folder / "model.yaml")]) == 0
     assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)

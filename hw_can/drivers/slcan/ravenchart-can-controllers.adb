@@ -13,8 +13,9 @@
 --  while a client has the channel open, and Stopped otherwise.
 
 with Ada.Real_Time;
+with Ada.Synchronous_Task_Control;
 with Ravenchart.Epochs;
-with Ravenchart.Queues;
+with Ravenchart.Waiting_Queues;
 with Ravenchart.Can.Slcan;
 with Ravenchart.Can.Slcan_Sockets;
 
@@ -22,8 +23,10 @@ package body Ravenchart.Can.Controllers
   with
     SPARK_Mode,
     Refined_State =>
-      (State => (Transmit.State, Receive.State, Link, Reader, Writer))
+      (State   => (Transmit.State, Receive.State, Link, Reader, Writer),
+       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go))
 is
+   use Ada.Synchronous_Task_Control;
    use type Ada.Real_Time.Time;
    use type Queueing.Put_Status;
    use type Slcan.Outcome;
@@ -38,19 +41,17 @@ is
    end record;
    --  Answers go the way of the frames, so that one task alone writes.
 
-   package Transmit is new Queues
+   package Transmit is new Waiting_Queues
      (Element_Type => Outgoing,
       Null_Element => (others => <>),
       Capacity     => Transmit_Depth,
-      Ceiling      => Transmit_Ceiling,
-      Policy       => Queueing.Reject_Newest);
+      Ceiling      => Transmit_Ceiling);
 
-   package Receive is new Queues
+   package Receive is new Waiting_Queues
      (Element_Type => Frame,
       Null_Element => Null_Frame,
       Capacity     => Receive_Depth,
-      Ceiling      => Receive_Ceiling,
-      Policy       => Queueing.Reject_Newest);
+      Ceiling      => Receive_Ceiling);
 
    type Channel_State is (Closed, Open);
    --  Whether the client wants frames.
@@ -67,9 +68,6 @@ is
       procedure Detach;
       --  The client has gone: no further line is begun.
 
-      entry Wait_Idle;
-      --  Suspend the reader until the writer has let go of the client.
-
       procedure Begin_Line
         (Kind : Line_Kind; To : out Slcan_Sockets.Socket);
       --  The client that a line may go to, or No_Socket.
@@ -83,6 +81,9 @@ is
       procedure Count_Rejected;
       --  A line was not understood, or came while the channel was closed.
 
+      function Is_Idle return Boolean;
+      --  The writer uses no client.
+
       function State_Now return Controller_State;
 
       function All_Counts return Counters;
@@ -94,6 +95,9 @@ is
       --  False while the writer uses the client's socket.
       Counts  : Counters;
    end Link;
+
+   Let_Go : Suspension_Object;
+   --  True when the writer may have become idle since the reader looked.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -108,19 +112,27 @@ is
    --  Writes what is in the transmit queue.
 
    procedure Put_Answer (Kind : Line_Kind)
-   with Global => (In_Out => Transmit.State);
+   with Global => (In_Out => (Transmit.State, Transmit.Wake_Up));
    --  Queue an answer; when there is no room the client gets none.
 
    procedure Obey (Result : Slcan.Outcome; F : Frame)
-   with Global => (In_Out => (Link, Transmit.State, Receive.State));
+   with
+     Global =>
+       (In_Out => (Link, Transmit.State, Transmit.Wake_Up,
+                   Receive.State, Receive.Wake_Up));
    --  Do what a line of the client says.
 
    procedure Serve (Client : Slcan_Sockets.Socket)
    with
      Global =>
-       (In_Out => (Link, Transmit.State, Receive.State,
+       (In_Out => (Link, Transmit.State, Transmit.Wake_Up,
+                   Receive.State, Receive.Wake_Up,
                    Slcan_Sockets.Network));
    --  Take the client's lines until it goes.
+
+   procedure Wait_Idle
+   with Global => (In_Out => Let_Go, Input => Link);
+   --  Suspend the reader until the writer uses no client.
 
    procedure Format
      (Item : Outgoing;
@@ -132,10 +144,6 @@ is
    procedure Pause (Milliseconds : Positive)
    with Global => (Input => Ada.Real_Time.Clock_Time);
    --  Let time pass before a call that failed is tried again.
-
-   pragma Warnings
-     (GNATprove, Off, "statement has no effect",
-      Reason => "to wait is the effect of the entry Wait_Idle");
 
    protected body Link is
 
@@ -155,11 +163,6 @@ is
          Client  := Slcan_Sockets.No_Socket;
          Channel := Closed;
       end Detach;
-
-      entry Wait_Idle when Idle is
-      begin
-         null;
-      end Wait_Idle;
 
       procedure Begin_Line
         (Kind : Line_Kind; To : out Slcan_Sockets.Socket) is
@@ -192,6 +195,9 @@ is
       begin
          Counts.Rejected_Lines := Next (Counts.Rejected_Lines);
       end Count_Rejected;
+
+      function Is_Idle return Boolean
+      is (Idle);
 
       function State_Now return Controller_State
       is (if Channel = Open then Error_Active else Stopped);
@@ -272,6 +278,20 @@ is
       end loop;
    end Serve;
 
+   ---------------
+   -- Wait_Idle --
+   ---------------
+
+   procedure Wait_Idle is
+      Idle : Boolean;
+   begin
+      loop
+         Idle := Link.Is_Idle;
+         exit when Idle;
+         Suspend_Until_True (Let_Go);
+      end loop;
+   end Wait_Idle;
+
    ------------
    -- Format --
    ------------
@@ -346,7 +366,7 @@ is
             --  a closed socket to the next one.
             Link.Detach;
             Slcan_Sockets.Break_Off (Client);
-            Link.Wait_Idle;
+            Wait_Idle;
             Slcan_Sockets.Close (Client);
          end if;
       end loop;
@@ -372,11 +392,12 @@ is
             Slcan_Sockets.Send (Client, Line, Last, Done);
          end if;
          Link.End_Line (Item.Kind, Done);
+         Set_True (Let_Go);
       end loop;
    end Writer;
 
    procedure Send (F : Frame; Status : out Send_Status)
-   with Refined_Global => (In_Out => Transmit.State)
+   with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
    is
       Result : Queueing.Put_Status;
    begin
@@ -386,7 +407,7 @@ is
    end Send;
 
    procedure Wait_Frame (F : out Frame)
-   with Refined_Global => (In_Out => Receive.State)
+   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
    is
    begin
       Receive.Wait (F);
