@@ -12,7 +12,8 @@ from collections.abc import Iterator
 
 import networkx as nx
 
-from gen.model import Activity, Component, Direction, Instance, Region, System, Work
+from gen.model import Activity, Component, Direction, Instance, System, Work
+from gen.statechart import Region
 
 FLOW = frozenset({"reads", "writes", "sends", "carries"})
 """The kinds of edges along which values travel."""

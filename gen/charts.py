@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from .flows import Targets, Use, flow_of
-from .model import (
+from .names import Findings, Scope
+from .schema import RegionForm, StateForm, TransitionForm
+from .statechart import (
     After,
+    Initial,
+    NestedRegion,
     OnEvent,
     Overflow,
     Region,
@@ -16,8 +20,6 @@ from .model import (
     TransitionKind,
     When,
 )
-from .names import Findings, Scope
-from .schema import RegionForm, StateForm, TransitionForm
 from .terms import Ns, Origin
 from .typed import condition
 from .vocabulary import Vocabulary
@@ -106,7 +108,7 @@ def region_of(
         overflow=Overflow(form.overflow or "reject_newest"),
         on_overflow=on_overflow,
         steps_per_execution=form.steps,
-        initial=initial,
+        initial=Initial(initial),
         safe_state=safe,
         states=tuple(resolved),
         transitions=tuple(transitions),
@@ -145,7 +147,8 @@ def _state(
         findings.error("RV-0210", form.at_key("initial"), message)
     entry = flow_of(form.entry, words, targets, findings)
     exit_flow = flow_of(form.exit, words, targets, findings)
-    return State(name, form.origin, parent, initial, entry, exit_flow)
+    regions = (NestedRegion("", form.origin, Initial(initial)),) if initial else ()
+    return State(name, form.origin, parent, "", regions, entry, exit_flow)
 
 
 def _transition(

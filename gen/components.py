@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from .charts import region_of, states_of
 from .flows import Targets, Use, flow_of
 from .members import Members, Namespace, members_of, outputs_of, vocabulary_of
-from .model import Activity, Component, Direction, Region, StateRef, Timing
+from .model import Activity, Component, Direction, StateRef
 from .names import Findings, Scope, meant
 from .quantities import shown
 from .schema import ActivityForm, ComponentForm, PortRegionForm, ProbeForm, RegionForm
+from .statechart import Region, Timing
 from .terms import Flow, Ns, Origin, Type
 from .vocabulary import Vocabulary
 

@@ -19,7 +19,6 @@ from .model import (
     Processor,
     Shutdown,
     Slot,
-    Timing,
     Work,
 )
 from .names import Findings, Scope
@@ -33,6 +32,7 @@ from .schema import (
     ShutdownForm,
 )
 from .signals import length_of, signals_of
+from .statechart import Timing
 from .terms import Ns, Origin, Scalar
 from .values import constant
 

@@ -8,17 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from .model import (
-    Activity,
-    Bus,
-    Instance,
-    Processor,
-    Region,
-    SharedObject,
-    Slot,
-    System,
-    Task,
-)
+from .model import Activity, Bus, Instance, Processor, SharedObject, Slot, System, Task
+from .statechart import Region
 from .terms import Ns
 
 PROBE = "probe"

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from .charts import walk
-from .model import Data, Direction, Event, Overflow, Parameter, Port, PortKind
+from .model import Data, Direction, Event, Parameter, Port, PortKind
 from .names import HIDING, Findings, Scope
 from .schema import ComponentForm, InputForm, OutputForm
+from .statechart import Overflow
 from .terms import Ns, Origin, Reading, RecordType, Type
 from .values import constant, initial_value
 from .vocabulary import Vocabulary

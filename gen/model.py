@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+from .statechart import Overflow, Region, Timing
 from .terms import Expression, Flow, Ns, Origin, Scalar, ScalarType, Type, Value, named
 
 NO_TIME = Ns(0)
@@ -31,13 +32,6 @@ class PortKind(Enum):
 
     SAMPLED = "sampled"
     QUEUED = "queued"
-
-
-class Overflow(Enum):
-    """What a full queue does with one element more; either way the loss is counted."""
-
-    REJECT_NEWEST = "reject_newest"
-    DROP_OLDEST = "drop_oldest"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +55,22 @@ class Port:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An event of a component, without parameters."""
+    """An event of a component; ``type`` is that of the value it carries, if any."""
 
     name: str
     origin: Origin
+    type: Type | None = None
+    overflow: Overflow | None = None
+    """What a full queue does with this event; None: what the region says."""
+
+
+@dataclass(frozen=True, slots=True)
+class Invariant:
+    """``never``: a condition over states and data that shall hold in no reachable situation."""
+
+    name: str
+    origin: Origin
+    condition: Expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,15 +94,6 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
-class Timing:
-    """Period, worst-case execution time and relative deadline of an activity."""
-
-    period: Ns
-    wcet: Ns
-    deadline: Ns
-
-
-@dataclass(frozen=True, slots=True)
 class StateRef:
     """A state of a region of the same component."""
 
@@ -111,7 +108,8 @@ class Activity:
     ``reads`` names data, parameters, input ports and regions (their published
     state), ``writes`` data, ``sends`` output ports (a user body sends each at
     every execution, a flow where it says so), ``raises`` events. All in model
-    order. With ``while_in`` it is the do activity of that state.
+    order. With ``while_in`` it is the do activity of that state, and may raise
+    `DONE`, which completes it.
     """
 
     name: str
@@ -127,129 +125,6 @@ class Activity:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
-    """A state; ``initial`` names the default substate of a composite."""
-
-    name: str
-    origin: Origin
-    parent: str | None
-    initial: str | None
-    entry: Flow
-    exit: Flow
-
-    @property
-    def is_leaf(self) -> bool:
-        """No substates."""
-        return self.initial is None
-
-
-class TransitionKind(Enum):
-    """External leaves its source, internal leaves nothing."""
-
-    EXTERNAL = "external"
-    INTERNAL = "internal"
-
-
-@dataclass(frozen=True, slots=True)
-class OnEvent:
-    """Triggered by an event from the region's queue."""
-
-    event: str
-
-
-@dataclass(frozen=True, slots=True)
-class After:
-    """Triggered this long after the source was entered, in whole executions."""
-
-    delay: Ns
-    executions: int
-
-
-@dataclass(frozen=True, slots=True)
-class When:
-    """Triggered by a condition, read when no other occurrence waits."""
-
-    condition: Expression
-
-
-@dataclass(frozen=True, slots=True)
-class Transition:
-    """One transition; internal ones have their source as target."""
-
-    name: str
-    origin: Origin
-    source: str
-    target: str
-    kind: TransitionKind
-    trigger: OnEvent | After | When
-    guard: Expression | None
-    effect: Flow
-
-
-@dataclass(frozen=True, slots=True)
-class Region:
-    """A top-level region. ``states`` stand in tree order: parent first, then its children.
-
-    ``reads`` and ``writes`` are derived from its guards and flows.
-    """
-
-    name: str
-    origin: Origin
-    timing: Timing
-    queue_depth: int
-    overflow: Overflow
-    on_overflow: str | None
-    steps_per_execution: int
-    initial: str
-    safe_state: str | None
-    states: tuple[State, ...]
-    transitions: tuple[Transition, ...]
-    reads: tuple[str, ...]
-    writes: tuple[str, ...]
-    sends: tuple[str, ...]
-    raises: tuple[str, ...]
-
-    def state(self, name: str) -> State:
-        """The state called ``name``; KeyError where there is none."""
-        return named(self.states, name)
-
-    def children(self, name: str | None) -> tuple[State, ...]:
-        """The direct substates of ``name``, or the top states for None."""
-        return tuple(s for s in self.states if s.parent == name)
-
-    def ancestors(self, name: str) -> tuple[str, ...]:
-        """``name`` and its enclosing states, innermost first."""
-        chain: list[str] = []
-        at: str | None = name
-        while at is not None:
-            chain.append(at)
-            at = self.state(at).parent
-        return tuple(chain)
-
-    def leaves(self, name: str | None = None) -> tuple[str, ...]:
-        """The leaf states inside ``name`` (itself, when a leaf), in tree order."""
-        return tuple(
-            s.name
-            for s in self.states
-            if s.is_leaf and (name is None or name in self.ancestors(s.name))
-        )
-
-    def default_leaf(self, name: str) -> str:
-        """The leaf that entering ``name`` by default leads to."""
-        initial = self.state(name).initial
-        return name if initial is None else self.default_leaf(initial)
-
-    def precedence(self) -> tuple[Transition, ...]:
-        """The transitions, innermost source first, then in model order."""
-        return tuple(sorted(self.transitions, key=lambda t: -len(self.ancestors(t.source))))
-
-    def events(self) -> tuple[str, ...]:
-        """The events that the region names in its triggers, each once, in model order."""
-        named = (t.trigger.event for t in self.transitions if isinstance(t.trigger, OnEvent))
-        return tuple(dict.fromkeys(named))
-
-
-@dataclass(frozen=True, slots=True)
 class Component:
     """A component type. ``port_region`` is None exactly when it has no input port."""
 
@@ -262,6 +137,7 @@ class Component:
     port_region: Timing | None
     regions: tuple[Region, ...]
     activities: tuple[Activity, ...]
+    invariants: tuple[Invariant, ...] = ()
 
     def inputs(self) -> tuple[Port, ...]:
         """The input ports, in model order."""

@@ -13,8 +13,9 @@ import networkx
 
 from .diagnostics import Diagnostic, error, warning
 from .flows import actions_of
-from .model import Activity, Component, OnEvent, Region, Transition, TransitionKind, When
+from .model import Activity, Component
 from .resolve import Resolved
+from .statechart import OnEvent, Region, Transition, TransitionKind, When
 from .terms import BOOLEAN, Expression, Flow, If, Literal, Origin, Send, Set
 
 ComponentRule = Callable[[Component, Resolved], Iterator[Diagnostic]]
@@ -94,7 +95,9 @@ def steps_send_once(component: Component, resolved: Resolved) -> Iterator[Diagno
     reported: set[tuple[Origin, Origin]] = set()
     ways: list[tuple[str, Sends]] = []
     for region in _sound_regions(component, resolved):
-        ways.append((f"entering {region.name}", _sends(_entries(region, None, region.initial))))
+        ways.append(
+            (f"entering {region.name}", _sends(_entries(region, None, region.initial.target)))
+        )
         for transition in region.transitions:
             what = f"the transition {transition.name} of {region.name}"
             ways += [(what, _sends(flows)) for flows in _steps(region, transition)]
@@ -156,7 +159,7 @@ def _graph(region: Region) -> networkx.DiGraph[Any]:
 def states_are_reachable(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
     """Each state is entered on some way from the initial one."""
     for region in _sound_regions(component, resolved):
-        start = region.default_leaf(region.initial)
+        start = region.default_leaf(region.initial.target)
         reached = {start} | networkx.descendants(_graph(region), start)
         lost = [s for s in region.states if not reached & set(region.leaves(s.name))]
         names = {state.name for state in lost}
@@ -179,7 +182,7 @@ def safe_states_are_reachable(component: Component, resolved: Resolved) -> Itera
     for region in _sound_regions(component, resolved):
         if region.safe_state is None:
             continue
-        graph, start = _graph(region), region.default_leaf(region.initial)
+        graph, start = _graph(region), region.default_leaf(region.initial.target)
         safe = set(region.leaves(region.safe_state))
         for leaf in region.leaves():
             if leaf != start and leaf not in networkx.descendants(graph, start):

@@ -112,6 +112,8 @@ class Reading(Enum):
     DATA = "data"
     PARAMETER = "parameter"
     PORT = "port"
+    EVENT = "event"
+    """The value that the triggering event carries; ``name`` is the event's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,10 +194,14 @@ class Send:
 
 @dataclass(frozen=True, slots=True)
 class Raise:
-    """``raise: event``: offered to every region of the component that names it."""
+    """``raise: event``: offered to every region of the component that names it.
+
+    ``values`` is as in `Send`; empty for an event that carries nothing.
+    """
 
     origin: Origin
     event: str
+    values: tuple[tuple[str | None, Expression], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

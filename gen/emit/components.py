@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..model import Activity, Component, Direction, Region, System
+from ..model import Activity, Component, Direction, System
+from ..statechart import Region
 from ..terms import Type
 from .ada import (
     FALSE,

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from ..model import (
-    Activity,
-    Port,
-    Region,
-)
+from ..model import Activity, Port
+from ..statechart import Region
 from .ada import (
     Arg,
     Assign,

@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..model import (
-    Activity,
-    Data,
-    End,
-    Instance,
-    Port,
-    Region,
-    Slot,
-    System,
-    Work,
-)
+from ..model import Activity, Data, End, Instance, Port, Slot, System, Work
+from ..statechart import Region
 from .ada import (
     Call,
     Do,

@@ -6,15 +6,8 @@ logic, and publishes what came out. Logic stays in the component's packages.
 
 from __future__ import annotations
 
-from ..model import (
-    Activity,
-    Overflow,
-    Port,
-    PortKind,
-    Region,
-    System,
-    Work,
-)
+from ..model import Activity, Port, PortKind, System, Work
+from ..statechart import Overflow, Region
 from .ada import (
     SPARK,
     Case,
@@ -216,7 +209,7 @@ class Glue(Site):
         for region in self.instance.component.regions:
             name = ada_case(region.name)
             states = f"{self.component}.{states_package(region)}"
-            initial = f"{states}.{ada_case(region.default_leaf(region.initial))}"
+            initial = f"{states}.{ada_case(region.default_leaf(region.initial.target))}"
             items.append(Comment(f"[{self._element(region.name)}]"))
             items.append(Object(f"{name}_Region", f"{self.component}.{name}.Region"))
             items.append(self._board(name, f"{states}.Leaf", Ref(initial), region.name))

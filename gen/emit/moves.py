@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ..model import Component, Region, Transition, TransitionKind
+from ..model import Component
+from ..statechart import Region, Transition, TransitionKind
 from .ada import (
     FALSE,
     NULL,
@@ -85,7 +86,7 @@ class Moves:
 
     def start(self) -> tuple[Stmt, ...]:
         """Initial entry of the region."""
-        return self._enter_down(self.region.initial, None)
+        return self._enter_down(self.region.initial.target, None)
 
     def transition(self, transition: Transition) -> tuple[Stmt, ...]:
         """Exits, effect, entries."""
@@ -117,16 +118,16 @@ class Moves:
     def _entered(self, target: str, domain: str | None) -> list[str]:
         path = self._left(target, domain)[::-1]
         at = self.region.state(target)
-        while at.initial is not None:
-            inner = self.region.ancestors(at.initial)
+        while at.regions:
+            inner = self.region.ancestors(at.regions[0].initial.target)
             path += reversed(inner[: inner.index(at.name)])
-            at = self.region.state(at.initial)
+            at = self.region.state(inner[0])
         return path
 
     def fills_outbox(self) -> bool:
         """Does every firing send on every port that any firing sends on, and raise nothing?"""
         region = self.region
-        rows = [[region.state(s).entry for s in self._entered(region.initial, None)]]
+        rows = [[region.state(s).entry for s in self._entered(region.initial.target, None)]]
         for t in region.transitions:
             flows = [t.effect]
             if t.kind is not TransitionKind.INTERNAL:

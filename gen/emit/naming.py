@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..model import Component, Instance, Processor, Region, Slot, System
+from ..model import Component, Instance, Processor, Slot, System
+from ..statechart import Region
 from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Scalar, Type, Value
 from .ada import Aggregate, Arg, Expr, Ref, number
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .. import terms as m
-from ..model import After, Component, OnEvent, Region, System, Transition, TransitionKind, When
+from ..model import Component, System
+from ..statechart import After, OnEvent, Region, Transition, TransitionKind, When
 from .ada import (
     Arg,
     Chain,
@@ -143,7 +144,7 @@ class RegionShape:
                 return f"On_{ada_case(event)}"
             case After():
                 return f"Expiry_Of_{ada_case(transition.name)}"
-            case When():
+            case _:
                 return "Conditions"
 
     def event(self, event: str) -> str:

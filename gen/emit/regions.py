@@ -11,7 +11,8 @@ matter of preconditions.
 
 from __future__ import annotations
 
-from ..model import Component, Region, System, Transition, TransitionKind, When
+from ..model import Component, System
+from ..statechart import Region, Transition, TransitionKind, When
 from .ada import (
     FALSE,
     SPARK,
@@ -139,7 +140,7 @@ def _records(shape: RegionShape) -> list[Decl]:
         Field(
             "Leaf",
             shape.leaf,
-            Ref(f"{shape.states}.{ada_case(region.default_leaf(region.initial))}"),
+            Ref(f"{shape.states}.{ada_case(region.default_leaf(region.initial.target))}"),
         ),
     )
     if shape.timers:
@@ -167,7 +168,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
     sources = tuple((ada_case(t.name), shape.in_state("Leaf", t.source)) for t in order)
     targets = tuple((ada_case(t.name), _target(shape, t)) for t in order)
     params = choice_params(shape)
-    initial = Ref(f"{shape.states}.{ada_case(region.default_leaf(region.initial))}")
+    initial = Ref(f"{shape.states}.{ada_case(region.default_leaf(region.initial.target))}")
     chosen_first: list[Expr] = [Call("Enabled", (Arg(None, Ref("Chosen")), *plain_args(params)))]
     if len(order) > 1:
         earlier = Chain("<", (Ref("T"), Ref("Chosen")))

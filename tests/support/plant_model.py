@@ -14,21 +14,16 @@ from gen.model import (
     Instance,
     Message,
     Node,
-    OnEvent,
     Parameter,
     Port,
     Processor,
-    Region,
     Shutdown,
     Slot,
-    State,
     System,
-    Timing,
-    Transition,
-    TransitionKind,
     Work,
 )
-from gen.model import Overflow as Full
+from gen.statechart import Initial, OnEvent, Region, State, Timing, Transition, TransitionKind
+from gen.statechart import Overflow as Full
 from gen.terms import IntegerType, Ns, Origin
 from tests.support.systems import shared, task
 
@@ -69,7 +64,7 @@ def _sensor() -> Component:
 
 
 def _pump() -> Component:
-    states = (State("Off", HERE, None, None, (), ()), State("On", HERE, None, None, (), ()))
+    states = (State("Off", HERE, None, "", (), (), ()), State("On", HERE, None, "", (), (), ()))
     start = Transition("start", HERE, "Off", "On", TransitionKind.EXTERNAL, OnEvent("Go"), None, ())
     mode = Region(
         "Mode",
@@ -79,7 +74,7 @@ def _pump() -> Component:
         Full.REJECT_NEWEST,
         None,
         1,
-        "Off",
+        Initial("Off"),
         None,
         states,
         (start,),

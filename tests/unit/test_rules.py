@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gen.model import After, Direction, OnEvent, Overflow, PortKind, TransitionKind, Work
+from gen.model import Direction, PortKind, Work
+from gen.statechart import After, OnEvent, Overflow, TransitionKind
 from gen.terms import If, Literal, Name, Send, Set
 from tests.support.pump import changed, codes, loaded, system_of
 
@@ -84,7 +85,10 @@ def test_states_stand_in_tree_order() -> None:
         .components[0]
         .regions[0]
     )
-    assert [(s.name, s.parent, s.initial) for s in region.states] == [
+    assert [
+        (s.name, s.parent, s.regions[0].initial.target if s.regions else None)
+        for s in region.states
+    ] == [
         ("Idle", None, None),
         ("Filling", None, "Slow"),
         ("Slow", "Filling", None),
