@@ -13,7 +13,7 @@ help:
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples'
 	@echo 'make generate  the examples'' generated/ from their models'
 	@echo 'make bench     figures: runtime operations, generator, analysis'
-	@echo 'make docs      model reference, JSON Schema and error list from the code'
+	@echo 'make docs      model reference, JSON Schema and error list; pictures of the examples'
 
 setup:
 	@scripts/setup.sh
@@ -41,6 +41,8 @@ bench: setup
 
 docs: setup
 	@$(PYTHON) -m gen.reference
+	@for e in $(EXAMPLES); do \
+	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 
 lock:
 	@.venv/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --extra dev \

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from .charts import region_of, states_of
+from .chart_names import States, names_of
+from .chart_structure import structure_errors
+from .charts import region_of
 from .flows import Targets, Use, flow_of
-from .members import Members, Namespace, members_of, outputs_of, vocabulary_of
+from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .model import Activity, Component, Direction, StateRef
 from .names import Findings, Scope, meant
 from .quantities import shown
 from .schema import ActivityForm, ComponentForm, PortRegionForm, ProbeForm, RegionForm
-from .statechart import Region, Timing
+from .statechart import DONE, Region, Timing
 from .terms import Flow, Ns, Origin, Type
 from .vocabulary import Vocabulary
 
@@ -68,26 +70,26 @@ def parts_of(
     for gone in form.dropped("regions"):
         states.declare(gone, None, None)
     damaged: set[str] = set()
+    names: dict[str, States] = {}
     for region, at in (form.regions or {}).items():
         count = findings.count()
-        states.declare(region, at.origin, states_of(region, at, findings), findings)
-        if findings.count() > count:
+        names[region] = names_of(region, at, findings)
+        states.declare(region, at.origin, names[region], findings)
+        if findings.count() > count or at.damaged:
             damaged.add(region)
     words = vocabulary_of(members, states, literals)
-    events: Scope[str] = Scope("event", open=members.events.open)
-    for event in members.events.sound():
-        events.declare(event.name, event.origin, event.name)
-    targets = Targets(members.data_types, outputs_of(members), events)
+    targets = Targets(members.data_types, outputs_of(members), members.events)
     regions: list[Region] = []
     activities: Scope[Activity] = Scope("activity")
     for region, at in (form.regions or {}).items():
-        count, known = findings.count(), states.find(region)
+        count = findings.count()
         timing = timing_of(region, at, findings)
         own = replace(words, own_region=region)
-        if known is not None:
-            made = region_of(region, at, timing, known, own, targets, findings)
-            regions.extend([] if made is None else [made])
-        if findings.count() > count or at.damaged:
+        made = region_of(region, at, timing, names[region], own, targets, findings)
+        regions.append(made)
+        if findings.count() == count and region not in damaged:
+            findings.items.extend(structure_errors(made))
+        if findings.count() > count:
             damaged.add(region)
     for activity, on in (form.activities or {}).items():
         count = findings.count()
@@ -105,6 +107,7 @@ def parts_of(
         port_region=_port_region(name, form, members, findings),
         regions=tuple(regions),
         activities=activities.sound(),
+        invariants=invariants_of(form, words, findings),
     )
     if not (component.regions or component.activities or form.damaged or component.port_region):
         message = f"the component {name} has nothing to run: no region, no activity, no input"
@@ -171,6 +174,7 @@ def _activity(
     while_in = None
     if form.while_ is not None:
         while_in = _state_ref(form.while_, form.at("while"), words, findings)
+    targets = replace(targets, do_activity=form.while_ is not None)
     lists = _lists(form, words, targets, findings)
     flow: Flow | None = None
     if not isinstance(form.body, str):
@@ -201,6 +205,10 @@ def _state_ref(text: str, origin: Origin, words: Vocabulary, findings: Findings)
         return None
     states = words.regions.look_up(region, origin, findings)
     found = None if states is None else states.look_up(state, origin, findings)
+    vertex = states.vertices.find(state) if isinstance(states, States) else None
+    if found is not None and vertex is not None and vertex.is_final:
+        message = f"`{found}` is a final state, and here a plain state is wanted"
+        findings.error("RV-0514", origin, message, hint="nothing is done in a final state")
     return None if found is None else StateRef(words.regions.items[region.lower()][0], found)
 
 
@@ -228,12 +236,25 @@ def _lists(
         names: Scope[str] = Scope(f"entry of `{key}`")
         for index, name in enumerate(given or ()):
             origin = form.item_at(key, index)
-            declared = _declared(name, kind, scopes, origin, findings)
+            if key == "raises" and name.lower() == DONE:
+                declared = _done(targets, origin, findings)
+            else:
+                declared = _declared(name, kind, scopes, origin, findings)
             if declared is not None and not names.declare(declared, origin, declared):
                 message = f"`{declared}` stands twice in `{key}`"
                 findings.error("RV-0303", origin, message, hint="remove one of them")
         lists[key] = names.sound()
     return lists
+
+
+def _done(targets: Targets, origin: Origin, findings: Findings) -> str | None:
+    """`DONE`, which only a do activity raises."""
+    if not targets.do_activity:
+        message = f"only a do activity raises `{DONE}`"
+        hint = "a do activity has `while: Region.State`, and completes that state"
+        findings.error("RV-0527", origin, message, hint=hint)
+        return None
+    return DONE
 
 
 def _declared(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from .model import Event
 from .names import Findings, Scope, meant
 from .schema import IfForm, RaiseForm, SendForm, SetForm
+from .statechart import DONE
 from .terms import (
     Action,
     Expression,
@@ -18,6 +20,7 @@ from .terms import (
     Origin,
     PortTest,
     Raise,
+    Reading,
     RecordType,
     ScalarType,
     Send,
@@ -37,7 +40,9 @@ class Targets:
 
     data: Scope[Type]
     outputs: Scope[Type]
-    events: Scope[str]
+    events: Scope[Event]
+    do_activity: bool = False
+    """These are the flows of a do activity: it may raise `DONE`."""
 
 
 def flow_of(
@@ -60,8 +65,7 @@ def _action(
         case SendForm():
             return _send(form, words, targets, findings)
         case RaiseForm():
-            event = targets.events.look_up(form.raise_, form.at("raise"), findings)
-            return None if event is None else Raise(form.at_key("raise"), event)
+            return _raise(form, words, targets, findings)
     guard = condition(form.if_, form.place("if"), words, findings, "if")
     then = flow_of(form.then, words, targets, findings)
     otherwise = flow_of(form.else_, words, targets, findings)
@@ -123,66 +127,123 @@ def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Finding
         findings.lose()
         return None
     name = targets.outputs.items[form.send.lower()][0]
-    values: Iterable[tuple[str | None, Expression]] | None
+    values = _values(form, form.with_, name, type_, words, findings)
+    return None if values is None else Send(form.at_key("send"), name, values)
+
+
+def _raise(
+    form: RaiseForm, words: Vocabulary, targets: Targets, findings: Findings
+) -> Action | None:
+    origin = form.at("raise")
+    if form.raise_.lower() == DONE:
+        if not targets.do_activity:
+            message = f"only a do activity raises `{DONE}`"
+            hint = "a do activity has `while: Region.State`, and completes that state"
+            findings.error("RV-0527", origin, message, hint=hint)
+        elif form.has("with"):
+            message = f"`{DONE}` carries no value"
+            findings.error("RV-0528", form.at_key("with"), message, hint="remove `with`")
+        else:
+            return Raise(form.at_key("raise"), DONE)
+        return None
+    event = targets.events.look_up(form.raise_, origin, findings)
+    if event is None:
+        return None
+    if event.type is None:
+        if form.has("with"):
+            message = f"the event {event.name} carries no value"
+            hint = f"remove `with`, or declare `{event.name}: {{type: ...}}` under `events`"
+            findings.error("RV-0528", form.at_key("with"), message, hint=hint)
+            return None
+        return Raise(form.at_key("raise"), event.name)
+    if form.with_ is None:
+        if not form.lost("with"):
+            message = f"the event {event.name} carries {event.type.name}, and here is no value"
+            hint = "give it by `with: ...`"
+            findings.error("RV-0528", origin, message, hint=hint)
+        findings.lose()
+        return None
+    values = _values(form, form.with_, event.name, event.type, words, findings)
+    return None if values is None else Raise(form.at_key("raise"), event.name, values)
+
+
+Values = tuple[tuple[str | None, Expression], ...]
+Given = int | bool | str | Mapping[str, int | bool | str]
+
+
+def _values(
+    form: SendForm | RaiseForm,
+    given: Given,
+    carrier: str,
+    type_: Type,
+    words: Vocabulary,
+    findings: Findings,
+) -> Values | None:
+    """What a port or event that carries ``type_`` is given by ``with``."""
     if isinstance(type_, RecordType):
-        values = _fields(form, name, type_, words, findings)
-    elif isinstance(form.with_, dict):
-        message = f"`{name}` carries the scalar type {type_.name}: give one expression"
+        return _fields(form, given, carrier, type_, words, findings)
+    if isinstance(given, Mapping):
+        message = f"`{carrier}` carries the scalar type {type_.name}: give one expression"
         findings.error("RV-0415", form.at("with"), message)
         return None
-    else:
-        value = fitting(form.with_, form.place("with"), name, type_, words, findings)
-        values = None if value is None else [(None, value)]
-    return None if values is None else Send(form.at_key("send"), name, tuple(values))
+    value = fitting(given, form.place("with"), carrier, type_, words, findings)
+    return None if value is None else ((None, value),)
 
 
 def _fields(
-    form: SendForm, port: str, type_: RecordType, words: Vocabulary, findings: Findings
-) -> Iterable[tuple[str | None, Expression]] | None:
-    """The values of a record that is sent, in the type's field order."""
-    if not isinstance(form.with_, dict):
-        return _whole(form.with_, form.place("with"), port, type_, words, findings)
+    form: SendForm | RaiseForm,
+    given: Given,
+    carrier: str,
+    type_: RecordType,
+    words: Vocabulary,
+    findings: Findings,
+) -> Values | None:
+    """The values of a record, in the type's field order."""
+    if not isinstance(given, Mapping):
+        return _whole(given, form.place("with"), carrier, type_, words, findings)
     before = findings.count()
-    given = {name.lower(): name for name in form.with_}
+    names = {name.lower(): name for name in given}
     lost = {name.lower() for name in form.dropped("with")}
     values: list[tuple[str | None, Expression]] = []
     for one in type_.fields:
-        key = given.pop(one.name.lower(), None)
+        key = names.pop(one.name.lower(), None)
         if key is None:
             if one.name.lower() not in lost:
                 message = f"`with` gives no value for the field `{one.name}` of {type_.name}"
                 findings.error("RV-0415", form.at_key("with"), message)
             continue
         place = form.place("with", key)
-        value = fitting(form.with_[key], place, f"{port}.{one.name}", one.type, words, findings)
+        value = fitting(given[key], place, f"{carrier}.{one.name}", one.type, words, findings)
         if value is not None:
             values.append((one.name, value))
-    for key in given.values():
+    for key in names.values():
         hint = meant(key, (one.name for one in type_.fields))
-        message = f"{type_.name}, the type of `{port}`, has no field `{key}`"
+        message = f"{type_.name}, the type of `{carrier}`, has no field `{key}`"
         findings.error("RV-0415", form.entry_at("with", key), message, hint=hint)
-    return values if findings.count() == before and len(values) == len(type_.fields) else None
+    whole = findings.count() == before and len(values) == len(type_.fields)
+    return tuple(values) if whole else None
 
 
 def _whole(
     text: int | bool | str,
     place: Place,
-    port: str,
+    carrier: str,
     type_: RecordType,
     words: Vocabulary,
     findings: Findings,
-) -> Iterable[tuple[str | None, Expression]] | None:
-    """A record sent as it was read from data or a port of the same type."""
+) -> Values | None:
+    """A record given as it was read from something of the same type."""
     checked = read(text, place, words, findings)
     if checked is None:
         return None
     source = checked.expression
     if checked.type is not type_ or not isinstance(source, Name):
         fields = ", ".join(f"{one.name}: ..." for one in type_.fields[:4])
-        message = f"`{port}` carries {type_.name}: give its fields, or a name of that type"
+        message = f"`{carrier}` carries {type_.name}: give its fields, or a name of that type"
         findings.error("RV-0415", place.origin, message, hint=f"`with: {{{fields}}}`")
         return None
-    return [(one.name, Name(source.kind, source.name, one.name, one.type)) for one in type_.fields]
+    fields_of = (Name(source.kind, source.name, one.name, one.type) for one in type_.fields)
+    return tuple((name.field, name) for name in fields_of)
 
 
 # --- What flows do ---------------------------------------------------------------
@@ -200,6 +261,8 @@ class Use:
     def expression(self, expression: Expression | None) -> None:
         """Add what an expression reads."""
         match expression:
+            case Name(kind=Reading.EVENT):
+                pass
             case Name(name=name) | PortTest(port=name) | InState(region=name):
                 self.reads.setdefault(name)
             case Operation(operands=operands):
@@ -217,7 +280,9 @@ class Use:
                     for _, value in values:
                         self.expression(value)
                     self.sends.setdefault(port, origin)
-                case Raise(origin, event):
+                case Raise(origin, event, values):
+                    for _, value in values:
+                        self.expression(value)
                     self.raises.setdefault(event, origin)
                 case If():
                     self.expression(action.condition)

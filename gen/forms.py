@@ -19,19 +19,26 @@ from .tree import Map, Seq
 
 Path = tuple[str | int, ...]
 
-LATER: dict[str, str] = {
-    name: "regions have hierarchical states only"
-    for name in ("history", "shallow_history", "deep_history", "choice", "choices", "junction")
-} | {
-    "every": "repeat an `after` by a transition from the state to itself",
-    "defer": "events cannot be deferred",
-    "completion": "name a trigger: `on`, `after` or `when`",
-    "local": "transitions are external or `internal: true`",
-    "terminate": "end in a state without a way out",
-    "regions": "a state has one set of substates; put a second region beside the first",
-    "kind": "what it is follows from its other keys",
-}
-"""Keys that people know from other tools, with what this version has instead."""
+ELSEWHERE: dict[str, str] = (
+    {
+        name: "declare a vertex of that kind under `states`: `Name: {kind: ...}`"
+        for name in ("choice", "choices", "junction", "fork", "join", "final", "terminate")
+    }
+    | {
+        name: "declare it under the `states` it restores: `Name: {kind: history}` or `deep_history`"
+        for name in ("history", "shallow_history", "deep_history")
+    }
+    | {
+        "completion": "a transition without a trigger is taken when its source completes",
+        "trigger": "write the trigger as `on`, `after`, `every` or `when`",
+        "event": "write the trigger as `on`",
+        "target": "write the target as `to`",
+        "source": "write the source as `from`",
+        "do": "write an activity with `while: Region.State`",
+        "parallel": "write the regions of an orthogonal state under `regions`",
+    }
+)
+"""Keys that people know from other tools, with how that is written here."""
 
 KINDS = {
     "int_type": ("RV-0203", "must be a whole number"),
@@ -186,9 +193,9 @@ class Place:
         origin = self.origin
         if isinstance(self.container, Map) and name in self.container.keys_at:
             origin = self.container.keys_at[name]
-        if name.lower() in LATER:
-            message = f"the key `{name}` is not there in this version"
-            hint = f"{LATER[name.lower()]}; the keys here: {', '.join(allowed)}"
+        if name.lower() in ELSEWHERE and {"initial", "from"} & set(allowed):
+            message = f"the key `{name}` is unknown here"
+            hint = f"{ELSEWHERE[name.lower()]}; the keys here: {', '.join(allowed)}"
             return error("RV-0201", origin, message, hint=hint)
         if "(" in name or ")" in name or " " in name:
             hint = "inside { }, put an expression that has a comma into quotes"

@@ -9,6 +9,7 @@ from dataclasses import replace
 from .emit.ada import Unit
 from .emit.ada_text import print_unit
 from .emit.certificate import emit_certificate
+from .emit.charts.declared import emit_region
 from .emit.codecs import emit_codecs
 from .emit.components import emit_activities, emit_component
 from .emit.dbc import emit_dbc
@@ -17,7 +18,6 @@ from .emit.instances import emit_instances
 from .emit.naming import ada_case
 from .emit.project import project_text
 from .emit.quiet import has_decided_conditions, quiet
-from .emit.regions import emit_region
 from .emit.types import emit_root
 from .model import System
 from .terms import IntegerType, Ns

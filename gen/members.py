@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .charts import walk
-from .model import Data, Direction, Event, Parameter, Port, PortKind
+from .chart_names import walk
+from .model import Data, Direction, Event, Invariant, Parameter, Port, PortKind
 from .names import HIDING, Findings, Scope
 from .schema import ComponentForm, InputForm, OutputForm
-from .statechart import Overflow
+from .statechart import DONE, Overflow
 from .terms import Ns, Origin, Reading, RecordType, Type
+from .typed import condition
 from .values import constant, initial_value
-from .vocabulary import Vocabulary
+from .vocabulary import EVENT, Vocabulary
 
 TABLE_WORDS = ("ports", "receive")
 """What tables call the port region and a bus's reception."""
@@ -70,31 +71,54 @@ class Members:
 def members_of(form: ComponentForm, types: Scope[Type], space: Namespace) -> Members:
     """The members of a component, each checked by itself."""
     for region, at_region in (form.regions or {}).items():
-        for state, at_state, _ in walk(at_region.states):
+        for state, at_state, _, _ in walk(at_region.states):
             space.avoid("state", state, at_state.origin)
+            for nested, inside in (at_state.regions or {}).items():
+                space.avoid("nested region", nested, inside.origin)
         for name, transition in (at_region.transitions or {}).items():
             space.avoid("transition", name, transition.origin)
         space.claim("region", region, at_region.origin)
     for name, activity in (form.activities or {}).items():
         space.claim("activity", name, activity.origin)
-    events = _events(form, space)
+    events = _events(form, types, space)
     data, data_types = _data(form, types, space)
-    return Members(
-        _parameters(form, types, space),
-        _ports(form, types, events, space),
-        events,
-        data,
-        data_types,
-    )
+    parameters, ports = _parameters(form, types, space), _ports(form, types, events, space)
+    carrying = next((event for event in events.sound() if event.type is not None), None)
+    for scope in (parameters, ports, data):
+        name, origin, _ = scope.items.get(EVENT, ("", None, None))
+        if carrying is not None and origin is not None:
+            message = f"the {scope.kind} `{name}` hides the value of events"
+            notes = [(carrying.origin, f"{carrying.name} carries one, called `{EVENT}` in guards")]
+            hint = "choose another name"
+            space.findings.error("RV-0304", origin, message, notes=notes, hint=hint)
+    return Members(parameters, ports, events, data, data_types)
 
 
-def _events(form: ComponentForm, space: Namespace) -> Scope[Event]:
+def _events(form: ComponentForm, types: Scope[Type], space: Namespace) -> Scope[Event]:
     scope: Scope[Event] = Scope("event")
     scope.open = form.lost("events") or form.list_damaged("events")
-    for index, name in enumerate(form.events or ()):
-        origin = form.item_at("events", index)
+    for gone in form.dropped("events"):
+        scope.declare(gone, None, None)
+    made: list[tuple[str, Origin, Event | None]] = []
+    if isinstance(form.events, dict):
+        for name, at in form.events.items():
+            findings = space.findings
+            type_ = None if at.type is None else types.look_up(at.type, at.at("type"), findings)
+            overflow = None if at.overflow is None else Overflow(at.overflow)
+            sound = type_ is not None or at.type is None
+            event = Event(name, at.origin, type_, overflow) if sound else None
+            made.append((name, at.origin, event))
+    else:
+        for index, name in enumerate(form.events or ()):
+            origin = form.item_at("events", index)
+            made.append((name, origin, Event(name, origin)))
+    for name, origin, event in made:
         space.claim("event", name, origin)
-        scope.declare(name, origin, Event(name, origin), space.findings)
+        if name.lower() == DONE:
+            message = f"an event cannot be named `{name}`: do activities raise it"
+            hint = "choose another name; `raise: done` completes the state of a do activity"
+            space.findings.error("RV-0304", origin, message, hint=hint)
+        scope.declare(name, origin, event, space.findings)
     return scope
 
 
@@ -153,6 +177,8 @@ def _input(
         if event is not None:
             found = events.look_up(event, form.at(key), findings)
             raised[key] = None if found is None else found.name
+            if found is not None and type_ is not None:
+                _check_carried(key, name, type_, found, form.at(key), findings)
     kind_known = not form.lost("kind")
     if form.kind == "sampled" and kind_known:
         for key in ("depth", "overflow", "on_overflow"):
@@ -185,6 +211,21 @@ def _input(
     )
 
 
+def _check_carried(
+    key: str, port: str, type_: Type, event: Event, origin: Origin, findings: Findings
+) -> None:
+    """A port gives an event its value by `on_arrival` only, and of its own type only."""
+    if event.type is None or (key == "on_arrival" and event.type is type_):
+        return
+    if key == "on_arrival":
+        message = f"{event.name} carries {event.type.name}, and {port} takes {type_.name}"
+        hint = "name an event of the port's type, or one without"
+    else:
+        message = f"`{key}` has no value for {event.name}, which carries {event.type.name}"
+        hint = "name an event without a type"
+    findings.error("RV-0528", origin, message, hint=hint)
+
+
 def _data(
     form: ComponentForm, types: Scope[Type], space: Namespace
 ) -> tuple[Scope[Data], Scope[Type]]:
@@ -204,6 +245,19 @@ def _data(
         scope.declare(name, at.origin, made, findings)
         kinds.declare(name, at.origin, type_)
     return scope, kinds
+
+
+def invariants_of(
+    form: ComponentForm, words: Vocabulary, findings: Findings
+) -> tuple[Invariant, ...]:
+    """What shall never hold."""
+    scope: Scope[Invariant] = Scope("invariant")
+    for name, text in (form.never or {}).items():
+        origin = form.entry_at("never", name)
+        met = condition(text, form.place("never", name), words, findings, name)
+        made = None if met is None else Invariant(name, origin, met)
+        scope.declare(name, origin, made, findings)
+    return scope.sound()
 
 
 def vocabulary_of(

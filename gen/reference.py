@@ -27,9 +27,12 @@ TITLES: Mapping[str, str] = {
     "InputForm": "Port: input",
     "OutputForm": "Port: output",
     "PortRegionForm": "Port region",
+    "EventForm": "Event",
     "DataForm": "Data item",
     "RegionForm": "Region",
+    "InitialForm": "Initial transition",
     "StateForm": "State",
+    "NestedRegionForm": "Region of a state",
     "TransitionForm": "Transition",
     "ActivityForm": "Activity",
     "SetForm": "Action: set",
@@ -76,6 +79,35 @@ comparison use it: in `if x < 1000 then x + 1 else 0`, `x + 1` is at most 1000. 
 must provably fit its target, a divisor must provably differ from 0, and every intermediate result
 must fit 64 bits. `+ - = /= < <= > >= min max clamp if` take operands of one unit or plain numbers;
 of the operands of `*` one has no unit, and so has the divisor of `/`.
+
+In guard and effect of a transition `on` an event with a type, `event` is the value that came with
+it, or `event.field` a field of it.
+
+## Charts
+
+Names of states, pseudostates and nested regions are all different in one region. A state with
+`states` is composite and has one region; with several `regions` it is orthogonal, and all of them
+are active while it is. A final state or pseudostate is declared among the states, by its `kind`,
+and has no other key.
+
+A transition from a state has one trigger; without any it is taken when the state completes: a leaf
+on entry, a composite when each of its regions is in a final state, a state with a do activity
+(`while`) when that has raised `done` besides. A transition from a pseudostate is a segment: it has
+no trigger, and goes on in the same step.
+
+| kind | what it does |
+| --- | --- |
+| `final` | ends its region; nothing leaves it |
+| `choice` | the first segment whose guard holds is taken, guards read after the effects before it |
+| `junction` | joins and splits ways; all guards are read before any effect |
+| `history` | enters the state of its region that was left last, by default inside |
+| `deep_history` | enters what was active in its region when that was left last, at any depth |
+| `fork` | enters states in different regions of one orthogonal state |
+| `join` | waits until states in different regions of one orthogonal state have completed |
+| `terminate` | ends the whole region, without exits |
+
+A choice or junction tries its segments in model order, one with `guard: else` last. One segment may
+leave a history: it is taken when nothing is recorded.
 """
 
 

@@ -92,23 +92,33 @@ class SetForm(Element):
     to: ExpressionText = key("Expression that provably fits the target's range.")
 
 
+Carried = Annotated[
+    Annotated[ExpressionText, Tag("<one>")] | Annotated[dict[str, ExpressionText], Tag("<map>")],
+    shaped("an expression, or a mapping from fields to expressions"),
+]
+"""A value that is sent, or that an event carries."""
+
+
 class SendForm(Element):
     """Send one value on an output port."""
 
     send: Reference = key("The output port.")
-    with_: Annotated[
-        Annotated[ExpressionText, Tag("<one>")]
-        | Annotated[dict[str, ExpressionText], Tag("<map>")],
-        shaped("an expression, or a mapping from fields to expressions"),
-    ] = key(
+    with_: Carried = key(
         "Expression for a scalar port; for a record one expression for each field.", alias="with"
     )
 
 
 class RaiseForm(Element):
-    """Raise an event of the component."""
+    """Raise an event of the component; in a do activity also `done`."""
 
-    raise_: Reference = key("The event.", alias="raise")
+    raise_: Reference = key(
+        "The event; `done` in a do activity completes its state.", alias="raise"
+    )
+    with_: Carried | None = optional(
+        "The value that an event with a type carries: an expression, or for a record one for each "
+        "field.",
+        alias="with",
+    )
 
 
 class IfForm(Element):
@@ -188,27 +198,88 @@ class DataForm(Element):
     ] = key("Initial value; for a record a value for each field.")
 
 
-class StateForm(Element):
-    """A state; with `states` it is composite."""
+class InitialForm(Element):
+    """Default entry of a region, with actions."""
 
+    to: Reference = key("The state entered by default, at any depth in the region.")
+    effect: list[ActionForm] | None = optional(
+        "Actions after the entry of the state around and before that of the target."
+    )
+
+
+InitialState = Annotated[
+    Annotated[Reference, Tag("<one>")] | Annotated[InitialForm, Tag("<map>")],
+    shaped("a state, or a mapping with the keys `to` and `effect`"),
+]
+"""Where a region begins."""
+
+
+class StateForm(Element):
+    """A state or, with `kind`, another vertex of the chart.
+
+    With `states` it is composite, with several `regions` orthogonal.
+    """
+
+    kind: (
+        Literal[
+            "final",
+            "choice",
+            "junction",
+            "history",
+            "deep_history",
+            "fork",
+            "join",
+            "terminate",
+        ]
+        | None
+    ) = optional("A final state or a pseudostate, which has no other key; a state unless given.")
     entry: list[ActionForm] | None = optional("Actions on entry.")
     exit: list[ActionForm] | None = optional("Actions on exit.")
-    initial: Reference | None = optional("State inside it entered by default; composites need it.")
+    defer: list[Reference] | None = optional(
+        "Events kept for later while it is active and nothing inside takes them."
+    )
+    initial: InitialState | None = optional(
+        "State inside it entered by default; needed with `states`."
+    )
     states: dict[Name, StateForm] | None = optional("Substates.", min_length=1)
+    regions: dict[Name, NestedRegionForm] | None = optional(
+        "Regions side by side, instead of `states`.", min_length=1
+    )
+
+
+class NestedRegionForm(Element):
+    """A region of a state, active while the state is."""
+
+    initial: InitialState = key("State inside it entered by default.")
+    states: dict[Name, StateForm] = key("Its states.", min_length=1)
 
 
 class TransitionForm(Element):
-    """A transition, with exactly one of `on`, `after` and `when`."""
+    """A transition, with at most one of `on`, `after`, `every` and `when`.
 
-    from_: Reference = key("Source state.", alias="from")
-    to: Reference | None = optional("Target state; without it the transition is internal.")
+    Without a trigger it is taken when its source completes; from a pseudostate it is the next
+    segment of what led there.
+    """
+
+    from_: Reference = key("Source: a state or pseudostate.", alias="from")
+    to: Reference | None = optional(
+        "Target: a state or pseudostate; without it the transition is internal."
+    )
     on: Reference | None = optional("Trigger: this event from the region's queue.")
     after: PositiveSpan | None = optional(
         "Trigger: this long after the source was entered, in whole executions, rounded up."
     )
+    every: PositiveSpan | None = optional(
+        "Trigger: like `after`, again and again while the source is active."
+    )
     when: ExpressionText | None = optional("Trigger: a condition, read when nothing else waits.")
-    guard: ExpressionText | None = optional("Condition without which the transition is disabled.")
+    guard: ExpressionText | None = optional(
+        "Condition without which the transition is disabled; `else` from a choice or junction."
+    )
     effect: list[ActionForm] | None = optional("Actions between exits and entries.")
+    local: bool | None = optional(
+        "`true`: from a composite state to one inside it, without leaving the composite."
+    )
     internal: bool | None = optional("`true`: no state is left; `to` may then be left out.")
 
 
@@ -221,6 +292,11 @@ class RegionForm(Element):
     queue: int | None = optional(
         "Events that wait at most, 1 to 1024; needed when a transition has `on`.", ge=1, le=1024
     )
+    deferred: int | None = optional(
+        "Deferred events that wait at most, 1 to 1024; needed when a state has `defer`.",
+        ge=1,
+        le=1024,
+    )
     overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
         "What a full queue loses; `reject_newest` unless given."
     )
@@ -228,9 +304,9 @@ class RegionForm(Element):
     steps: int = PydanticField(
         default=1, ge=1, le=16, description="Steps in one execution at most, 1 to 16."
     )
-    initial: Reference = key("State entered first; any state of the region.")
+    initial: InitialState = key("State entered first; any state of the region.")
     safe_state: Reference | None = optional("State that must be reachable from every other.")
-    states: dict[Name, StateForm] = key("The top states.", min_length=1)
+    states: dict[Name, StateForm] = key("The top states and pseudostates.", min_length=1)
     transitions: dict[Name, TransitionForm] = key(
         "Transitions by name; the earlier goes before the later.", min_length=1
     )
@@ -248,13 +324,24 @@ class ActivityForm(Element):
     reads: list[Reference] | None = optional("Data, parameters, input ports and regions it reads.")
     writes: list[Reference] | None = optional("Data items it writes.")
     sends: list[Reference] | None = optional("Output ports it sends on.")
-    raises: list[Reference] | None = optional("Events it raises.")
+    raises: list[Reference] | None = optional(
+        "Events it raises; with `while` also `done`, which completes the state."
+    )
     body: Annotated[
         Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],
         shaped("`user` or a list of actions"),
     ] = key(
         "`user` for a procedure written by hand, or a list of actions; the four lists above may "
         "then be left out."
+    )
+
+
+class EventForm(Element):
+    """An event, where it carries a value or has a rule of its own for full queues."""
+
+    type: Reference | None = optional("The type of the value it carries; none unless given.")
+    overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
+        "What a full queue loses when it comes; what the region says unless given."
     )
 
 
@@ -266,10 +353,19 @@ class ComponentForm(Element):
     port_region: PortRegionForm | None = optional(
         "When input ports are handled; required with an input port, refused without."
     )
-    events: list[Name] | None = optional("Events, each offered to every region that names it.")
+    events: (
+        Annotated[
+            Annotated[list[Name], Tag("<list>")] | Annotated[dict[Name, EventForm], Tag("<map>")],
+            shaped("a list of names, or a mapping from names to events"),
+        ]
+        | None
+    ) = optional("Events, each offered to every region that names it.")
     data: dict[Name, DataForm] | None = optional("Data items.")
     regions: dict[Name, RegionForm] | None = optional("State machines, run side by side.")
     activities: dict[Name, ActivityForm] | None = optional("Activities.")
+    never: dict[Name, ExpressionText] | None = optional(
+        "Invariants: conditions over states of any region and data that shall never hold."
+    )
 
 
 # --- Deployment ------------------------------------------------------------------

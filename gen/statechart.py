@@ -19,6 +19,10 @@ DONE = "done"
 """What a do activity raises to complete its state."""
 
 
+RAISED_PER_STEP = 16
+"""Events that one step of a region raises at most."""
+
+
 class Overflow(Enum):
     """What a full queue does with one element more; either way the loss is counted."""
 
@@ -250,10 +254,19 @@ class Region:
 
     def default_leaf(self, name: str) -> str:
         """The leaf of its lane that entering ``name`` by default leads to."""
-        state = self.state(name)
-        return (
-            name if len(state.regions) != 1 else self.default_leaf(state.regions[0].initial.target)
-        )
+        regions = self.state(name).regions
+        return name if len(regions) != 1 else self.default_of(name, regions[0].name)
+
+    def default_of(self, owner: str | None, region: str = "") -> str:
+        """The leaf of its lane that entering a region by default leads to; None: the top-level one.
+
+        An orthogonal state on the way to the initial target is that leaf.
+        """
+        initial = self.initial if owner is None else self.state(owner).nested(region).initial
+        chain = self.ancestors(initial.target)
+        entered = chain if owner is None else chain[: chain.index(owner)]
+        stop = next((name for name in reversed(entered) if self.state(name).is_orthogonal), None)
+        return stop or self.default_leaf(initial.target)
 
     # --- lanes
 

@@ -10,6 +10,7 @@ import json
 import os
 from dataclasses import dataclass
 
+from .emit.charts.places import Places
 from .model import System
 from .terms import Origin
 
@@ -44,13 +45,16 @@ def elements(system: System) -> tuple[Element, ...]:
         for event in component.events:
             add(f"{instance.name}.{event.name}", "event", event.origin)
         for region in component.regions:
-            add(
-                f"{instance.name}.{region.name}",
-                "region",
-                region.origin,
-                leaves=region.leaves(),
-                transitions=tuple(t.name for t in region.precedence()),
-            )
+            places = Places(region)
+            for lane in reversed(places.lanes):
+                fired = () if lane.owner else tuple(f.name for f in places.compounds.firings())
+                add(
+                    f"{instance.name}.{places.traced(lane)}",
+                    "region",
+                    region.origin,
+                    leaves=places.literals(lane),
+                    transitions=fired,
+                )
     for message in system.messages:
         add(message.name, "message", message.origin)
     return tuple(found)

@@ -91,6 +91,8 @@ class Builder:
     """The key that waits for its value, for each open container."""
     root: object = None
     root_at: Origin | None = None
+    refused: bool = False
+    """The reading ended early."""
 
     def at(self, event: Event) -> Origin:
         """Where the event begins."""
@@ -198,10 +200,32 @@ def lines_of(text: str) -> tuple[str, ...]:
 
 def grow(text: str, file: str) -> tuple[Map | None, list[Diagnostic]]:
     """The tree of a file whose content must be one mapping, and what is wrong with it."""
-    found: list[Diagnostic] = []
+    builder = _built(text, file)
+    found = builder.found
+    if builder.refused:
+        return None, found
+    if builder.root_at is None or builder.root == "":
+        hint = "start with `system: Name_Of_The_System`"
+        return None, [*found, error("RV-0104", Origin(file, 1, 1), "the file is empty", hint=hint)]
+    if not isinstance(builder.root, Map):
+        message = "a model file must be a mapping, that is `key: value` lines"
+        return None, [*found, error("RV-0203", builder.root_at, message)]
+    return builder.root, found
+
+
+def grow_list(text: str, file: str) -> tuple[Seq | None, list[Diagnostic]]:
+    """The tree of a file whose content is one list, None when it is not one."""
+    builder = _built(text, file)
+    if isinstance(builder.root, Seq) and not builder.refused:
+        return builder.root, builder.found
+    return None, builder.found
+
+
+def _built(text: str, file: str) -> Builder:
+    """The tree of a file, as far as it could be read."""
+    builder = Builder(file, [])
     try:
         _no_tabs(text, file)
-        builder = Builder(file, found)
         documents = 0
         for event in _events(text, file):
             if isinstance(event, DocumentStartEvent):
@@ -211,14 +235,9 @@ def grow(text: str, file: str) -> tuple[Map | None, list[Diagnostic]]:
                     raise builder.refuse("RV-0111", event, "a second document begins here", hint)
             builder.take(event)
     except RefusedError as refused:
-        return None, [*found, refused.diagnostic]
-    if builder.root_at is None or builder.root == "":
-        hint = "start with `system: Name_Of_The_System`"
-        return None, [*found, error("RV-0104", Origin(file, 1, 1), "the file is empty", hint=hint)]
-    if not isinstance(builder.root, Map):
-        message = "a model file must be a mapping, that is `key: value` lines"
-        return None, [*found, error("RV-0203", builder.root_at, message)]
-    return builder.root, found
+        builder.found.append(refused.diagnostic)
+        builder.refused = True
+    return builder
 
 
 def _no_tabs(text: str, file: str) -> None:

@@ -25,7 +25,7 @@ from .terms import (
     Type,
 )
 from .tree import Place
-from .vocabulary import Checked, Vocabulary, described, range_of
+from .vocabulary import EVENT, Checked, Vocabulary, described, range_of
 
 FUNCTIONS: Mapping[str, int] = {
     "abs": 1,
@@ -122,7 +122,11 @@ class Checker:
         if term.kind == "name" and term.word.lower() in ("true", "false"):
             return Checked(Literal(term.word.capitalize(), BOOLEAN), BOOLEAN)
         known = self.vocabulary.readable.names()
-        if term.kind == "member":
+        if term.word.lower() == EVENT and not _is_literal_of(term.word, expected):
+            message = f"`{EVENT}` has no value: {self.vocabulary.no_event}"
+            told = "guard and effect of an `on` can read it, where the event has a type"
+            self.refuse("RV-0403", term, message, told)
+        elif term.kind == "member":
             message = f"`{term.word}` is no data item, parameter or input port of the component"
             self.refuse("RV-0403", term, message, meant(term.word, known))
         elif expected is None and term.word.lower() in self.vocabulary.literals:

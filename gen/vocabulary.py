@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .intervals import Interval
 from .names import Scope
 from .terms import EnumerationType, Expression, Reading, RecordType, Type
+
+EVENT = "event"
+"""What expressions call the value of the triggering event."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +23,19 @@ class Vocabulary:
     literals: frozenset[str]
     """All enumeration literals of the model, in lower case."""
     own_region: str | None = None
+    no_event: str = "there is no triggering event here"
+    """Why ``event`` has no value."""
+
+    def with_event(self, event: str, type_: Type | None) -> Vocabulary:
+        """The same, where ``event`` is the value of the triggering event; silent without type."""
+        known = self.readable
+        value = None if type_ is None else (Reading.EVENT, event, type_)
+        items = {**known.items, EVENT: (EVENT, None, value)}
+        return replace(self, readable=Scope(known.kind, items, known.open))
+
+    def without_event(self, reason: str) -> Vocabulary:
+        """The same, with another reason why ``event`` has no value."""
+        return replace(self, no_event=reason)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from pathlib import Path
 from analysis import report
 from analysis.table import show as show_table
 
-from . import proving, steps
+from . import draw, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -75,7 +75,32 @@ def _parser() -> argparse.ArgumentParser:
         "--seconds", type=float, default=10.0, help="how long without a scenario (default 10)"
     )
     run.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
+    _add_draw(commands)
+    simulation = command("simulate", _simulate, "run the model in virtual time, step by step")
+    simulation.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
+    simulation.add_argument(
+        "--interpreter", action="store_true", help="by the interpreter, not the generated program"
+    )
+    simulation.add_argument("--json", action="store_true", help="one JSON object for each step")
     return parser
+
+
+def _add_draw(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    help_text = "draw the charts and the component structure"
+    sub = commands.add_parser("draw", help=help_text, description=help_text)
+    source = sub.add_mutually_exclusive_group(required=True)
+    source.add_argument(
+        "model", type=Path, nargs="?", metavar="MODEL", help="the model's YAML file"
+    )
+    source.add_argument(
+        "--from-ada",
+        type=Path,
+        metavar="FILE",
+        help="draw what the generated spec of a region says",
+    )
+    sub.add_argument("--out", type=Path, metavar="DIR", help="where to (default: drawings/ beside)")
+    sub.add_argument("--format", choices=draw.FORMATS, default="svg", help="default: svg")
+    sub.set_defaults(command=_draw)
 
 
 def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
@@ -153,6 +178,26 @@ def _run(options: argparse.Namespace) -> int:
         folder,
     )
     return OK if run_model(request) else WRONG
+
+
+def _simulate(options: argparse.Namespace) -> int:
+    checked = _checked(options, deadlines=False)
+    trace = simulate.simulated(
+        checked, options.events, interpreter=options.interpreter, as_json=options.json
+    )
+    print(trace, end="")
+    return OK
+
+
+def _draw(options: argparse.Namespace) -> int:
+    if options.from_ada is not None:
+        drawings = draw.texts_of_ada(options.from_ada, options.format)
+    else:
+        drawings = draw.texts(_checked(options, deadlines=False).system, options.format)
+    folder = options.out or (options.from_ada or options.model).parent / "drawings"
+    draw.write(drawings, folder)
+    print(f"{folder}: {len(drawings)} drawings")
+    return OK
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import behaviour.rules
 from analysis.findings import findings
 from analysis.response_times import Analysis, analyse
 from gen.diagnostics import Diagnostic, render
@@ -55,7 +56,8 @@ def check(path: Path, *, deadlines: bool = True) -> Checked:
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics))
     analysis = analyse(system)
-    everything = (*loaded.diagnostics, *(findings(analysis) if deadlines else ()))
+    late = findings(analysis) if deadlines else ()
+    everything = (*loaded.diagnostics, *behaviour.rules.findings(system), *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything))
     return Checked(path, system, analysis, _rendered(loaded, everything))

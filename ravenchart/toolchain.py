@@ -1,4 +1,4 @@
-"""The outside programs: gprbuild and gnatprove, found, run, and their words passed on."""
+"""The outside programs: gprbuild, gnatprove and dot, found, run, their words passed on."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 INSTALL_HINT = {
     "gprbuild": "install the Debian packages gnat and gprbuild (`make setup` does)",
+    "dot": "install the Debian package graphviz (`make setup` does)",
     "gnatprove": "install gnatprove with Alire: `alr get gnatprove`, and put its bin on PATH",
 }
 
@@ -53,4 +54,16 @@ def run(tool: str, arguments: Sequence[str], where: Path, scenario: Mapping[str,
     )
     if done.returncode != 0:
         raise ToolFailed(done.stdout)
+    return done.stdout
+
+
+def filtered(tool: str, arguments: Sequence[str], text: str) -> str:
+    """What a tool makes of a text; ToolMissing, or ToolFailed with what it printed."""
+    if not have(tool):
+        raise ToolMissing(tool)
+    done = subprocess.run(
+        [tool, *arguments], input=text, capture_output=True, encoding="utf-8", check=False
+    )
+    if done.returncode != 0:
+        raise ToolFailed(done.stderr)
     return done.stdout

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Install what is missing: Debian's GNAT and gprbuild, and a virtual
+# Install what is missing: Debian's GNAT, gprbuild and Graphviz, and a virtual
 # environment in .venv from requirements.lock. Does nothing when all is there.
 set -eu
 cd "$(dirname "$0")/.."
@@ -9,6 +9,7 @@ say() { printf 'setup: %s\n' "$*"; }
 packages=
 command -v gnatmake >/dev/null 2>&1 || packages="$packages gnat"
 command -v gprbuild >/dev/null 2>&1 || packages="$packages gprbuild"
+command -v dot >/dev/null 2>&1 || packages="$packages graphviz"
 python3 -c 'import ensurepip, venv' 2>/dev/null || packages="$packages python3-venv"
 if [ -n "$packages" ]; then
    as_root=

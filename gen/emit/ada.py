@@ -83,7 +83,16 @@ class ForAll:
     condition: Expr
 
 
-Expr = Ref | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll
+@dataclass(frozen=True, slots=True)
+class ForSome:
+    """``(for some v in domain => condition)``."""
+
+    variable: str
+    domain: str
+    condition: Expr
+
+
+Expr = Ref | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | ForSome
 
 # --- Statements --------------------------------------------------------------
 

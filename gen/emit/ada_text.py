@@ -26,6 +26,7 @@ from .ada import (
     EnumType,
     Expr,
     ForAll,
+    ForSome,
     If,
     IfExpr,
     Instance,
@@ -159,9 +160,13 @@ def expression(expr: Expr) -> Doc:
             return _upright(
                 _cat("(", _nest(_cat("case ", expression(selector), " is", body), 1), ")")
             )
-        case ForAll(variable, domain, condition):
+        case ForAll(variable, domain, condition) | ForSome(variable, domain, condition):
+            word = "all" if isinstance(expr, ForAll) else "some"
             return _bare(
-                _cat(f"for all {variable} in {domain} =>", _nest(_cat(SOFT, expression(condition))))
+                _cat(
+                    f"for {word} {variable} in {domain} =>",
+                    _nest(_cat(SOFT, expression(condition))),
+                )
             )
 
 
@@ -269,7 +274,7 @@ def _subprogram(sub: Subprogram) -> Doc:
     aspects = _aspects(sub.aspects) if sub.aspects else _text("")
     if sub.expression is not None:
         inner = expression(sub.expression)
-        if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll)):
+        if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll, ForSome)):
             inner = _bare(inner)
         body = _cat(head, " is", _nest(_cat(SOFT, inner), 2))
         return _upright(_cat(_group(body), aspects, ";"))

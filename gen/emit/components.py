@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from ..model import Activity, Component, Direction, System
-from ..statechart import Region
+from ..statechart import RAISED_PER_STEP, Region
 from ..terms import Type
 from .ada import (
     FALSE,
     SPARK,
+    TRUE,
     Aspect,
     Assign,
     Comment,
     Decl,
-    EnumType,
+    Expr,
     Instance,
     Package,
     Param,
@@ -25,16 +26,15 @@ from .ada import (
     arguments,
     number,
 )
-from .naming import ada_case, component_package, default_value, states_package, type_name
+from .charts.places import Places
+from .events import event_types, null_event
+from .naming import ada_case, component_package, default_value, type_name
 from .terms import Scope, always, effective, emit_flow, flow_names, flow_operators
-
-RAISED_PER_STEP = 16
-"""Events that one region execution can raise; the rules keep each step below it."""
 
 
 def leaf_type(component: Component, region: Region) -> str:
     """The type of a region's published state, seen from a sibling package."""
-    return f"{ada_case(component.name)}.{states_package(region)}.Leaf"
+    return f"{ada_case(component.name)}.{Places(region).place_type}"
 
 
 def view_type(component: Component, port: str) -> str:
@@ -64,20 +64,21 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
     """The package of a component type: pure, no state."""
     items: list[Decl] = []
     if component.events:
-        items.append(Comment(f"[{component.name}.events]"))
-        items.append(EnumType("Event", tuple(ada_case(e.name) for e in component.events)))
+        items += event_types(system, component)
         items.append(
             Instance(
                 "Event_Lists",
                 "Ravenchart.Event_Lists",
                 arguments(
-                    Event=Ref(f"{ada_case(component.name)}.Event"), Capacity=number(RAISED_PER_STEP)
+                    Event=Ref(f"{ada_case(component.name)}.Event"),
+                    Null_Event=null_event(component),
+                    Capacity=number(RAISED_PER_STEP),
                 ),
             )
         )
     for region in component.regions:
         items.append(Comment(f"[{component.name}.{region.name}.states]"))
-        items.append(_states(region))
+        items.append(Places(region).package_of_states())
     for port in component.inputs():
         name = ada_case(port.name)
         items.append(Comment(f"[{component.name}.{port.name}] what its readers see"))
@@ -98,24 +99,27 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
     return Unit(header, tuple(withs), Package(package, tuple(items), (SPARK,)))
 
 
-def _states(region: Region) -> Package:
-    """Leaf states in tree order; a composite is the subtype of its leaves."""
-    items: list[Decl] = [EnumType("Leaf", tuple(ada_case(n) for n in region.leaves()))]
-    for state in region.states:
-        if not state.is_leaf:
-            leaves = region.leaves(state.name)
-            parent = ada_case(state.parent) if state.parent else "Leaf"
-            bounds = f"{parent} range {ada_case(leaves[0])} .. {ada_case(leaves[-1])}"
-            items.append(PlainType(ada_case(state.name), bounds, subtype=True))
-    return Package(states_package(region), tuple(items))
-
-
 # --- Activities --------------------------------------------------------------
 
 
 def raise_flag(event: str) -> str:
     """The parameter by which an activity raises an event."""
     return f"Raise_{ada_case(event)}"
+
+
+def raise_value(event: str) -> str:
+    """The parameter by which an activity gives the value of an event."""
+    return f"{ada_case(event)}_Value"
+
+
+def raised_type(component: Component, event: str) -> Type | None:
+    """The type of the value that an event carries; None for `DONE` and events without."""
+    return next((e.type for e in component.events if e.name == event), None)
+
+
+def _raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
+    value = () if given is None else (Assign(raise_value(event), given),)
+    return (Assign(raise_flag(event), TRUE), *value)
 
 
 def send_flag(port: str) -> str:
@@ -139,7 +143,10 @@ def activity_params(system: System, component: Component, activity: Activity) ->
             params.append(Param(ada_case(port.name), "out", type_name(system, port.type)))
             if activity.flow is not None:
                 params.append(Param(send_flag(port.name), "out", "Boolean"))
-    params += [Param(raise_flag(event), "out", "Boolean") for event in activity.raises]
+    for event in activity.raises:
+        params.append(Param(raise_flag(event), "out", "Boolean"))
+        if (carried := raised_type(component, event)) is not None:
+            params.append(Param(raise_value(event), "out", type_name(system, carried)))
     return tuple(params)
 
 
@@ -198,7 +205,7 @@ def _flow_body(system: System, component: Component, activity: Activity) -> Subp
         variable=ada_case,
         target=ada_case,
         sent=lambda port: (ada_case(port), send_flag(port)),
-        raised=lambda event: Assign(raise_flag(event), Ref("True")),
+        raised=_raised,
     )
     sure = always(activity.flow)  # needs no value before
     start: list[Stmt] = []
@@ -206,7 +213,11 @@ def _flow_body(system: System, component: Component, activity: Activity) -> Subp
         if port.name in activity.sends and port.name not in sure:
             start.append(Assign(ada_case(port.name), default_value(system, port.type)))
             start.append(Assign(send_flag(port.name), FALSE))
-    start += [Assign(raise_flag(e), FALSE) for e in activity.raises if e not in sure]
+    for event in activity.raises:
+        if event not in sure:
+            start.append(Assign(raise_flag(event), FALSE))
+            if (carried := raised_type(component, event)) is not None:
+                start.append(Assign(raise_value(event), default_value(system, carried)))
     return Subprogram(
         ada_case(activity.name),
         activity_params(system, component, activity),

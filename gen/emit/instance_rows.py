@@ -27,15 +27,23 @@ from .ada import (
     equal,
     number,
 )
-from .components import activity_params, raise_flag, reading_type, send_flag
+from .charts.places import Places
+from .charts.shape import RegionShape
+from .components import (
+    activity_params,
+    raise_flag,
+    raise_value,
+    raised_type,
+    reading_type,
+    send_flag,
+)
+from .events import null_event
 from .instance_site import Site
 from .naming import (
     ada_case,
     scalar,
-    states_package,
     type_name,
 )
-from .region_shape import RegionShape
 
 
 class Rows(Site):
@@ -96,7 +104,7 @@ class Rows(Site):
         package = f"{self.component}.{name}_Port"
         arrived: list[Stmt] = [*self._note("Handled", port.name, "port")]
         if port.on_arrival:
-            arrived.append(self._raise(port.on_arrival))
+            arrived.append(self._raise(port.on_arrival, Ref(f"{name}_Port.Value")))
         stale: list[Stmt] = [self._fault("Stale_Input")]
         stale += self._note("Fault", port.name, "port", self._fault_number("Stale_Input"))
         if port.on_stale:
@@ -128,7 +136,7 @@ class Rows(Site):
         if region.steps_per_execution > 1:
             one = Loop(f"for Unused in 1 .. {region.steps_per_execution}", (one,))
         body.append(one)
-        body.append(Do(f"{name}_Board.Write", arguments(Ref(f"{name}_Region.Leaf"))))
+        body.append(Do(f"{name}_Board.Write", arguments(Ref(f"{name}_Region.{shape.place}"))))
         for data in self.instance.component.data:
             if data.name in region.writes and self._has_object(data.name):
                 field = f"{name}_Region.Data.{ada_case(data.name)}"
@@ -152,16 +160,23 @@ class Rows(Site):
         name = ada_case(region.name)
         declarations: list[Decl] = [
             Object("Now", f"{package}.Occurrence"),
-            Object("Fired", f"{package}.Selection"),
+            Object("Fired", f"{package}.{'Firing_List' if shape.listed else 'Selection'}"),
         ]
+        if len(shape.lanes) > 1 and self._note("State", region.name, "region"):
+            states = f"{self.component}.{shape.states}"
+            owners = {t for n in shape.lanes if n.owner for t in shape.compared_types(n.owner)}
+            declarations += [UseType(f"{states}.{t}") for t in sorted(owners)]
         after = self._after_step(shape, package)
         if not isinstance(after[0], Pragma):
             declarations.append(UseType(f"{package}.Selection"))
-        body: list[Stmt] = [Do(f"{package}.Poll", arguments(Ref(f"{name}_Region"), Ref("Now")))]
+        polled = [Ref(f"{name}_Region"), Ref("Now")]
+        polled += [Ref("Event")] if len(shape.poll_params()) > 2 else []
+        body: list[Stmt] = [Do(f"{package}.Poll", arguments(*polled))]
         if region.events():
+            start = null_event(self.instance.component) if shape.takes_item else None
             declarations += [
                 UseType(f"{package}.Occurrence"),
-                Object("Event", f"{self.component}.Event"),
+                Object("Event", f"{self.component}.Event", start),
                 Object("Status", "Ravenchart.Queueing.Take_Status"),
                 UseType("Ravenchart.Queueing.Take_Status"),
             ]
@@ -172,10 +187,18 @@ class Rows(Site):
             body.append(If(((idle, (take, If(((taken, (convert,)),)))),)))
         args = [Ref(f"{name}_Region"), Ref("Now")]
         args += [Ref("Ins")] if shape.inputs else []
+        args += [Ref("Event")] if shape.takes_item else []
         if shape.has_box:
             declarations.append(Object("Box", f"{package}.Outbox"))
             args.append(Ref("Box"))
         body.append(Do(f"{package}.Step", arguments(*args, Ref("Fired"))))
+        if shape.deferring:
+            lost = f"{name}_Region.Lost"
+            counted = [self._fault("Queue_Overflow")]
+            counted += self._note(
+                "Fault", region.name, "region", self._fault_number("Queue_Overflow")
+            )
+            body.append(If(((Ref(lost), (*counted, Assign(lost, Ref("False")))),)))
         body += after
         params = (Param("Ins", "in", f"{package}.Inputs"),) if shape.inputs else ()
         return Subprogram(
@@ -185,26 +208,8 @@ class Rows(Site):
     def _after_step(self, shape: RegionShape, package: str) -> list[Stmt]:
         """Report what fired; then send and raise what the step asked for."""
         region = shape.region
-        name = ada_case(region.name)
-        moved: list[Stmt] = []
-        position = Chain(
-            "-",
-            (
-                Call(f"{package}.Selection'Pos", arguments(Ref("Fired"))),
-                Call(f"{package}.Selection'Pos", arguments(Ref(f"{package}.Transition'First"))),
-            ),
-        )
-        taken = self._note("Transition", region.name, "region", position)
-        if taken:
-            is_transition = Chain("in", (Ref("Fired"), Ref(f"{package}.Transition")))
-            moved.append(If(((is_transition, taken),)))
-        leaf = f"{self.component}.{states_package(region)}.Leaf"
-        moved += self._note(
-            "State",
-            region.name,
-            "region",
-            Call(f"{leaf}'Pos", arguments(Ref(f"{name}_Region.Leaf"))),
-        )
+        moved = self._report_firings(shape, package)
+        moved += self._report_leaves(shape)
         for port in self.instance.component.outputs():
             if port.name in region.sends:
                 box = f"Box.{ada_case(port.name)}"
@@ -216,7 +221,34 @@ class Rows(Site):
             moved.append(Loop(f"for I in 1 .. {lists}.Count (Box.Raised)", (offer,)))
         if not moved:
             return [Pragma("Unreferenced", (Ref("Fired"),))]
-        return [If(((Chain("/=", (Ref("Fired"), Ref(f"{package}.None"))), tuple(moved)),))]
+        any_fired = Chain("/=", (Ref("Fired"), Ref(f"{package}.None")))
+        if shape.listed:
+            any_fired = Chain(">", (Ref("Fired.Count"), number(0)))
+        return [If(((any_fired, tuple(moved)),))]
+
+    def _report_firings(self, shape: RegionShape, package: str) -> list[Stmt]:
+        fired = Ref("Fired.Items (I)" if shape.listed else "Fired")
+        first = Call(f"{package}.Selection'Pos", arguments(Ref(f"{package}.Transition'First")))
+        position = Chain("-", (Call(f"{package}.Selection'Pos", arguments(fired)), first))
+        taken = self._note("Transition", shape.region.name, "region", position)
+        if not taken:
+            return []
+        report = If(((Chain("in", (fired, Ref(f"{package}.Transition"))), taken),))
+        return [Loop("for I in 1 .. Fired.Count", (report,)) if shape.listed else report]
+
+    def _report_leaves(self, shape: RegionShape) -> list[Stmt]:
+        """The leaf of each lane; that of a lane inside a state only while that is active."""
+        found: list[Stmt] = []
+        held = f"{ada_case(shape.region.name)}_Region.{shape.place}"
+        prefix = f"{self.component}."
+        for lane in reversed(shape.lanes):
+            of_type = f"{prefix}{shape.states}.{shape.lane_type(lane)}"
+            leaf = Call(f"{of_type}'Pos", arguments(Ref(shape.at(held, lane))))
+            note = self._note("State", shape.traced(lane), "region", leaf)
+            if lane.owner is not None and note:
+                note = (If(((shape.in_state(held, lane.owner, prefix), note),)),)
+            found += note
+        return found
 
     # --- body: activities
 
@@ -257,7 +289,12 @@ class Rows(Site):
             flag = raise_flag(event)
             declarations.append(Object(flag, "Boolean"))
             args.append(Arg(flag, Ref(flag)))
-            after.append(If(((Ref(flag), (self._raise(event),)),)))
+            given: Expr | None = None
+            if (carried := raised_type(component, event)) is not None:
+                given = Ref(raise_value(event))
+                declarations.append(Object(raise_value(event), type_name(self.system, carried)))
+                args.append(Arg(raise_value(event), given))
+            after.append(If(((Ref(flag), (self._raise(event, given),)),)))
         home = "Activities" if activity.flow is None else "Flows"
         work = Do(f"{self.component}.{home}.{ada_case(activity.name)}", tuple(args))
         expected = [p.name for p in activity_params(self.system, component, activity)]
@@ -273,10 +310,8 @@ class Rows(Site):
 
     def _active_in(self, region: Region, state: str, declarations: list[Decl]) -> Expr:
         now = f"{ada_case(region.name)}_Now"
-        states = f"{self.component}.{states_package(region)}"
-        declarations.append(Object(now, f"{states}.Leaf"))
-        qualified = f"{states}.{ada_case(state)}"
-        if region.state(state).is_leaf:
-            declarations.append(UseType(f"{states}.Leaf"))
-            return equal(Ref(now), Ref(qualified))
-        return Chain("in", (Ref(now), Ref(qualified)))
+        places = Places(region)
+        declarations.append(Object(now, f"{self.component}.{places.place_type}"))
+        states = f"{self.component}.{places.states}"
+        declarations += [UseType(f"{states}.{t}") for t in places.compared_types(state)]
+        return places.in_state(now, state, f"{self.component}.")

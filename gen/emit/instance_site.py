@@ -14,6 +14,7 @@ from .ada import (
     Stmt,
     arguments,
 )
+from .events import event_value
 from .naming import (
     ada_case,
     priority,
@@ -79,5 +80,5 @@ class Site:
     def _fault_number(self, kind: str) -> Expr:
         return Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref(f"Ravenchart.Health.{kind}")))
 
-    def _raise(self, event: str) -> Stmt:
-        return Do("Offer", arguments(Ref(f"{self.component}.{ada_case(event)}")))
+    def _raise(self, event: str, value: Expr | None = None) -> Stmt:
+        return Do("Offer", arguments(event_value(self.instance.component, event, value)))

@@ -30,13 +30,15 @@ from .ada import (
     number,
 )
 from .ada import Instance as Instantiation
+from .charts.places import Places
+from .components import leaf_type
+from .events import name_of, null_event
 from .instance_rows import Rows
 from .instance_site import Site
 from .naming import (
     ada_case,
     default_value,
     instance_package,
-    states_package,
     type_name,
     value,
 )
@@ -206,16 +208,20 @@ class Glue(Site):
 
     def _region_objects(self) -> list[Decl]:
         items: list[Decl] = []
-        for region in self.instance.component.regions:
+        component = self.instance.component
+        for region in component.regions:
             name = ada_case(region.name)
-            states = f"{self.component}.{states_package(region)}"
-            initial = f"{states}.{ada_case(region.default_leaf(region.initial.target))}"
+            places = Places(region)
             items.append(Comment(f"[{self._element(region.name)}]"))
             items.append(Object(f"{name}_Region", f"{self.component}.{name}.Region"))
-            items.append(self._board(name, f"{states}.Leaf", Ref(initial), region.name))
+            items.append(
+                self._board(
+                    name, leaf_type(component, region), places.initial(self.component), region.name
+                )
+            )
             if region.events():
                 event = f"{self.component}.Event"
-                first = Ref(f"{self.component}.{ada_case(region.events()[0])}")
+                first = null_event(component)
                 items.append(
                     self._queue(
                         f"{name}_Queue",
@@ -279,7 +285,7 @@ class Glue(Site):
             "Offer",
             self._offer_spec().params,
             declarations=declarations,
-            body=(Case(Ref("Item"), tuple(rows)),),
+            body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
         )
 
     def _enqueue(self, region: Region) -> list[Stmt]:

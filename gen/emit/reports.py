@@ -27,6 +27,7 @@ from .ada import (
     equal,
     number,
 )
+from .events import event_value
 from .naming import ada_case, processor_package, root_package
 from .trace_calls import element_constant, row_number, traced
 
@@ -151,7 +152,7 @@ def emit_main(system: System, header: str) -> Unit:
     shutdown = [
         Do(
             f"{root}.{ada_case(i)}.Offer",
-            arguments(Ref(f"{root}.{ada_case(system.instance(i).component.name)}.{ada_case(e)}")),
+            arguments(event_value(system.instance(i).component, e, prefix=f"{root}.")),
         )
         for i, e in system.shutdown.raises
     ]

@@ -23,9 +23,10 @@ from .ada import (
     Ref,
     Stmt,
     arguments,
-    member,
 )
-from .naming import ada_case, counted, states_package, type_name, unit_type
+from .charts.places import Places
+from .events import field_of
+from .naming import ada_case, counted, type_name, unit_type
 
 _CHAINS = {"and": "and then", "or": "or else"}
 _FUNCTIONS = {"min": "Min", "max": "Max"}
@@ -45,7 +46,7 @@ class Scope:
     variable: Callable[[str], str]
     target: Callable[[str], str]
     sent: Callable[[str], tuple[str, str]]
-    raised: Callable[[str], Stmt]
+    raised: Callable[[str, Expr | None], tuple[Stmt, ...]]
 
 
 def unit_of(expression: m.Expression) -> str | None:
@@ -69,8 +70,8 @@ def names_in(expression: m.Expression) -> set[str]:
     match expression:
         case m.Literal():
             return set()
-        case m.Name(_, name):
-            return {name}
+        case m.Name(kind, name):
+            return set() if kind is m.Reading.EVENT else {name}
         case m.PortTest(port):
             return {port}
         case m.InState(region):
@@ -127,6 +128,8 @@ def expressions_in(flow: m.Flow) -> Iterator[m.Expression]:
         match action:
             case m.Set():
                 yield action.value
+            case m.Raise(_, _, values):
+                yield from (value for _, value in values)
             case m.Send():
                 yield from (value for _, value in action.values)
             case m.If():
@@ -226,19 +229,25 @@ def _literal(scope: Scope, value: m.Scalar, of_type: m.ScalarType | None, unit: 
 
 
 def _name(scope: Scope, name: m.Name) -> str:
+    if name.kind is m.Reading.EVENT:
+        return _of_event(scope, name)
     text = scope.variable(name.name)
     if name.kind is m.Reading.PORT:
         text += ".Value"
     return text if name.field is None else f"{text}.{ada_case(name.field)}"
 
 
+def _of_event(scope: Scope, name: m.Name) -> str:
+    """The value of the event that a step is made for, or a field of it."""
+    of_type = m.named(scope.component.events, name.name).type
+    assert of_type is not None
+    text = f"Item.{field_of(of_type)}"
+    return text if name.field is None else f"{text}.{ada_case(name.field)}"
+
+
 def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
-    region = scope.component.region(region_name)
-    qualified = f"{states_package(region)}.{ada_case(state)}"
-    current = Ref(scope.variable(region_name))
-    if region.state(state).is_leaf:
-        return Chain("=", (current, Ref(qualified)))
-    return member(current, qualified)
+    places = Places(scope.component.region(region_name))
+    return places.in_state(scope.variable(region_name), state)
 
 
 def _operation(scope: Scope, operation: m.Operation, place: str | None) -> Expr:
@@ -294,9 +303,11 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
             return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
         case m.Send(_, port, values):
             slot, flag = scope.sent(port)
-            return (Assign(slot, _sent_value(scope, port, values)), Assign(flag, TRUE))
-        case m.Raise(_, event):
-            return (scope.raised(event),)
+            given = _given(scope, scope.component.port(port).type, values)
+            return (Assign(slot, given), Assign(flag, TRUE))
+        case m.Raise(_, event, values):
+            of_type = m.named(scope.component.events, event).type if values else None
+            return scope.raised(event, _given(scope, of_type, values) if of_type else None)
         case m.If(_, condition, then, otherwise):
             branch = (emit_expression(scope, condition), emit_flow(scope, then))
             return (If((branch,), emit_flow(scope, otherwise)),)
@@ -308,10 +319,10 @@ def _unit_in(of_type: m.Type, field: str | None) -> str | None:
     return scalar.unit if isinstance(scalar, m.IntegerType) else None
 
 
-def _sent_value(
-    scope: Scope, port: str, values: tuple[tuple[str | None, m.Expression], ...]
+def _given(
+    scope: Scope, of_type: m.Type, values: tuple[tuple[str | None, m.Expression], ...]
 ) -> Expr:
-    of_type = scope.component.port(port).type
+    """The value that a send or raise gives."""
     if not isinstance(of_type, m.RecordType):
         return emit_expression(scope, values[0][1], _unit_in(of_type, None))
     return Aggregate(
@@ -323,6 +334,17 @@ def _sent_value(
     )
 
 
-def raise_in_list(list_package: str, target: str, event: str) -> Stmt:
+def raise_in_list(list_package: str, target: str, event: Expr) -> Stmt:
     """Append ``event`` to the list of events raised in this step."""
-    return Do(f"{list_package}.Append", arguments(Ref(target), Ref(event)))
+    return Do(f"{list_package}.Append", arguments(Ref(target), event))
+
+
+def asks_event(expression: m.Expression) -> bool:
+    """Does it ask for the value of the event?"""
+    match expression:
+        case m.Name(kind):
+            return kind is m.Reading.EVENT
+        case m.Operation(_, operands):
+            return any(asks_event(o) for o in operands)
+        case _:
+            return False

@@ -60,8 +60,9 @@ is
       Default    => No_Reading);
 
    package Events is new Ravenchart.Event_Lists
-     (Event    => Signal,
-      Capacity => 3);
+     (Event      => Signal,
+      Null_Event => Start,
+      Capacity   => 3);
 
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);

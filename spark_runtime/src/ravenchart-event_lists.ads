@@ -5,7 +5,9 @@
 --  Timing       constant
 
 generic
-   type Event is (<>);
+   type Event is private;
+   Null_Event : Event;
+   --  Fills the places that hold no event.
    Capacity : Positive;
    --  The most events one step can raise; the generator computes it.
 package Ravenchart.Event_Lists
@@ -40,6 +42,17 @@ is
                          Element (L, I) = Element (L'Old, I)));
    --  Add Item as the last event; a full list ignores it.
 
+   procedure Remove (L : in out List; Index : Positive)
+   with
+     Global => null,
+     Pre    => Index <= Count (L),
+     Post   =>
+       Count (L) = Count (L'Old) - 1
+       and then (for all I in 1 .. Count (L) =>
+                   Element (L, I) =
+                     Element (L'Old, (if I < Index then I else I + 1)));
+   --  Take the event that was added as number Index out of the list.
+
    procedure Clear (L : out List)
    with
      Global => null,
@@ -51,7 +64,7 @@ private
    type Event_Array is array (Positive range 1 .. Capacity) of Event;
 
    type List is record
-      Events : Event_Array := (others => Event'First);
+      Events : Event_Array := (others => Null_Event);
       Used   : Length := 0;
    end record;
    --  The events are the first Used ones.

@@ -5,9 +5,15 @@ is
    -- Arm --
    ---------
 
-   procedure Arm (T : out Timer; Executions : Execution_Count) is
+   procedure Arm
+     (T          : out Timer;
+      Executions : Execution_Count;
+      Period     : Execution_Count := 0) is
    begin
-      T := (Armed => True, Remaining => Remaining_Count (Executions));
+      T :=
+        (Armed     => True,
+         Remaining => Remaining_Count (Executions),
+         Period    => Period);
    end Arm;
 
    ------------
@@ -16,7 +22,7 @@ is
 
    procedure Disarm (T : out Timer) is
    begin
-      T := (Armed => False, Remaining => 0);
+      T := (Armed => False, Remaining => 0, Period => 0);
    end Disarm;
 
    ----------
@@ -59,7 +65,7 @@ is
                               then Precedes (Timers, Due, J))));
       end loop;
       if Due > 0 then
-         Disarm (Timers (Due));
+         Timers (Due) := Expired (Timers (Due));
       end if;
    end Take_Due;
 

@@ -15,8 +15,9 @@ is
    type Timer is record
       Armed     : Boolean := False;
       Remaining : Remaining_Count := 0;
+      Period    : Execution_Count := 0;
    end record;
-   --  One time-out of a state.
+   --  One time-out of a state; with a Period it starts again at each expiry.
 
    type Timer_Array is array (Positive range <>) of Timer;
    --  All time-outs of a region, in model order.
@@ -28,10 +29,23 @@ is
 
    function Ticked (T : Timer) return Timer
    is (if T.Armed and then T.Remaining > Remaining_Count'First
-       then (Armed => True, Remaining => T.Remaining - 1)
+       then (Armed     => True,
+             Remaining => T.Remaining - 1,
+             Period    => T.Period)
        else T)
    with Global => null;
    --  T one execution later.
+
+   function Expired (T : Timer) return Timer
+   is (if T.Period = 0
+       then (Armed => False, Remaining => 0, Period => 0)
+       else (Armed     => T.Armed,
+             Remaining => T.Remaining + Remaining_Count (T.Period),
+             Period    => T.Period))
+   with
+     Global => null,
+     Pre    => T.Remaining <= 0;
+   --  T after its expiry was taken: disarmed, or one period on, without drift.
 
    function Precedes
      (Timers : Timer_Array; Left, Right : Positive) return Boolean
@@ -43,18 +57,22 @@ is
      Pre    => Left in Timers'Range and then Right in Timers'Range;
    --  Did Left expire before Right, or with it and stands no later?
 
-   procedure Arm (T : out Timer; Executions : Execution_Count)
+   procedure Arm
+     (T          : out Timer;
+      Executions : Execution_Count;
+      Period     : Execution_Count := 0)
    with
      Global => null,
      Post   =>
        T = (Armed     => True,
-            Remaining => Remaining_Count (Executions));
-   --  Let T expire after so many ticks.
+            Remaining => Remaining_Count (Executions),
+            Period    => Period);
+   --  Let T expire after so many ticks, and then once in each Period.
 
    procedure Disarm (T : out Timer)
    with
      Global => null,
-     Post   => T = (Armed => False, Remaining => 0);
+     Post   => T = (Armed => False, Remaining => 0, Period => 0);
    --  Cancel T.
 
    procedure Tick (Timers : in out Timer_Array)
@@ -74,12 +92,11 @@ is
           and then (for all I in Timers'Range =>
                       (if Is_Due (Timers'Old (I))
                        then Precedes (Timers'Old, Due, I)))
-          and then not Timers (Due).Armed
+          and then Timers (Due) = Expired (Timers'Old (Due))
           and then (for all I in Timers'Range =>
                       (if I /= Due then Timers (I) = Timers'Old (I))),
         others                               =>
           Due = 0 and then Timers = Timers'Old);
-   --  Disarm the timer that expired earliest and say which; 0 when none is
-   --  due.
+   --  Take the timer that expired earliest and say which; 0 when none is due.
 
 end Ravenchart.Timers;

@@ -47,8 +47,9 @@ package Objects is
       Default    => 7);
 
    package Events is new Ravenchart.Event_Lists
-     (Event    => Signal,
-      Capacity => 3);
+     (Event      => Signal,
+      Null_Event => Start,
+      Capacity   => 3);
 
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);

@@ -76,6 +76,7 @@ parameters ports port_region events data regions activities period wcet deadline
 safe_state states transitions from to on after when guard effect internal entry exit set send
 raise if then else with type default in out kind depth max_age range unit values fields body
 reads writes sends raises while node component bus id stack released_by A B C
+kind defer deferred every local never done event
 """
 KEYS = st.sampled_from(KEYS_TEXT.split())
 TREES = st.recursive(

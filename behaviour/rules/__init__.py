@@ -1,0 +1,54 @@
+"""Rules of behaviour: what the charts of a model can and cannot come to.
+
+`findings` looks at each component by search and by z3. Nothing is said to be
+impossible that is possible, and nothing to happen without a way to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gen.diagnostics import Diagnostic, in_order, warning
+from gen.model import Component, System
+
+from .control import RULES
+from .invariants import invariants_hold
+from .livelock import eventless_steps_end
+from .reach import Clock, OutOfTime, Reach
+from .stepping import TooManyWays
+
+SECONDS = 10.0
+"""What the check of a model may take."""
+
+
+def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]:
+    """What the behaviour of a valid model gets wrong, in order of place."""
+    clock = Clock(seconds)
+    found: list[Diagnostic] = []
+    for component in system.components:
+        try:
+            for item in _of_component(component, system, clock):
+                found.append(item)
+        except OutOfTime:
+            found.append(
+                _limit(component, f"looked at {clock.situations} situations in {seconds:g} s")
+            )
+            break
+        except TooManyWays:
+            found.append(_limit(component, "one of its steps has too many outcomes"))
+    return in_order(found)
+
+
+def _of_component(component: Component, system: System, clock: Clock) -> Iterator[Diagnostic]:
+    reach = Reach(component, system, clock)
+    for thread in reach.threads:
+        if thread.name in reach.published:
+            for rule in (*RULES, eventless_steps_end):
+                yield from rule(reach, thread)
+    yield from invariants_hold(reach, system)
+
+
+def _limit(component: Component, how_far: str) -> Diagnostic:
+    message = f"the behaviour of {component.name} is not checked to the end: {how_far}"
+    hint = "what is not reported may still be wrong; smaller regions are checked faster"
+    return warning("RV-1110", component.origin, message, hint=hint)

@@ -1,0 +1,281 @@
+"""Rules of one region's control: what is never entered or fired, what gets stuck."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import networkx
+import z3
+
+from gen.diagnostics import Diagnostic, error, warning
+from gen.statechart import OnEvent, Region, State, Transition
+from gen.terms import Origin
+
+from . import logic
+from .logic import Term
+from .reach import Edge, Reach, Thread
+from .words import label, reached, trace, valuation, where
+
+Rule = Callable[[Reach, Thread], Iterator[Diagnostic]]
+
+
+def _active(thread: Thread) -> set[str]:
+    """The states that some node has."""
+    return {name for node in thread.nodes for name in node.configuration.active}
+
+
+def _fired(thread: Thread) -> set[str]:
+    """The transitions and segments that some step fires."""
+    return {name for edge in thread.edges for name in edge.outcome.fired}
+
+
+def _model(reach: Reach, thread: Thread, edge: Edge, condition: Term) -> Term | None:
+    """Data with which a step is made and a condition holds besides."""
+    solver = logic.solver()
+    solver.add(*reach.constants_over(reach.symbol), *reach.of_others(thread))
+    solver.add(*reach.of_node(thread, edge.before.cells), edge.outcome.condition, condition)
+    return solver.model() if solver.check() == z3.sat else None
+
+
+def _transition(region: Region, name: str) -> Transition:
+    return next(t for t in region.transitions if t.name == name)
+
+
+# --- Never entered, never fired ------------------------------------------------------
+
+
+def _lost(thread: Thread) -> list[State]:
+    """The states that are never entered, without those inside others."""
+    active = _active(thread)
+    states = [s for s in thread.tree.region.states if s.name not in active]
+    return [s for s in states if s.parent is None or s.parent in active]
+
+
+def states_are_entered(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+    """Some data lead into each state."""
+    tree, fired = thread.tree, _fired(thread)
+    for state in _lost(thread):
+        leading = [
+            t
+            for t in tree.region.transitions
+            if state.name in tree.chains[t.target] and state.name not in tree.chains[t.source]
+        ]
+        notes = [(t.origin, f"{t.name} leads to it, and never fires") for t in leading]
+        message = f"the state {state.name} of {thread.name} is never entered, whatever the data"
+        hint = "correct the guards on the way to it, or remove it"
+        notes = [note for note, t in zip(notes, leading, strict=True) if t.name not in fired]
+        yield error("RV-1101", state.origin, message, notes=notes, hint=hint)
+
+
+def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+    """Some data let each transition fire, and no earlier one always comes before it."""
+    tree, active, fired = thread.tree, _active(thread), _fired(thread)
+    lost = {state.name for state in _lost(thread)}
+    shut_out = _rivals(reach, thread)
+    for transition in tree.region.transitions:
+        if (
+            transition.name in fired
+            or transition.otherwise
+            or lost & {*tree.chains[transition.target]}
+        ):
+            continue
+        if transition.source in tree.kinds:
+            heard = any(t.name in fired for t in tree.incoming[transition.source])
+        else:
+            heard = transition.source in active
+        trigger = transition.trigger
+        if not heard or (isinstance(trigger, OnEvent) and trigger.event not in reach.events):
+            continue
+        found = [(f, *rest) for (f, second), rest in shut_out.items() if second == transition.name]
+        if found:
+            names = " and ".join(first for first, _, _ in found)
+            message = f"{transition.name} never fires: {names} always comes before it"
+            notes = [
+                (_transition(tree.region, first).origin, f"{first} is earlier in the model")
+                for first, _, _ in found
+            ]
+            hint = f"change the order or the guards, or remove {transition.name}"
+            yield error("RV-1102", transition.origin, message, notes=notes, hint=hint)
+        else:
+            what = "its guard never holds" if transition.guard is not None else "nothing lets it"
+            message = f"{transition.name} never fires: {what} in {transition.source}"
+            if transition.source not in tree.kinds and not _waits(thread, transition.source):
+                message = (
+                    f"{transition.name} never fires: {transition.source} is left at once, "
+                    "as it is complete when entered"
+                )
+            hint = "correct its guard, or remove it"
+            yield error("RV-1102", transition.origin, message, hint=hint)
+
+
+def _waits(thread: Thread, state: str) -> bool:
+    """Whether a region ever takes anything but a completion in a state."""
+    return any(
+        state in node.configuration.active and not node.configuration.pending
+        for node in thread.nodes
+    )
+
+
+def _rivals(reach: Reach, thread: Thread) -> dict[tuple[str, str], tuple[Edge, str]]:
+    """The transitions that can both fire, with the nearest step and data that show it."""
+    found: dict[tuple[str, str], tuple[Edge, str]] = {}
+    for edge in thread.edges:
+        for rival in edge.outcome.rivals:
+            pair = (rival.first, rival.second)
+            if pair in found:
+                continue
+            model = _model(reach, thread, edge, rival.condition)
+            if model is not None:
+                data = valuation(reach, model, (edge.outcome.condition, rival.condition))
+                found[pair] = (edge, data)
+    return found
+
+
+def guards_exclude_each_other(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+    """Of transitions with one source and trigger, at most one is enabled; else the first wins."""
+    region, fired = thread.tree.region, _fired(thread)
+    for (first, second), (edge, data) in _rivals(reach, thread).items():
+        one, other = _transition(region, first), _transition(region, second)
+        if second not in fired:
+            continue
+        with_data = f" with {data}" if data else ""
+        message = (
+            f"{first} and {second} can both fire in {one.source}{with_data}: "
+            f"{first} does, as the first in the model"
+        )
+        notes = [
+            (one.origin, f"{first} is here"),
+            (other.origin, reached(reach, thread, edge)),
+        ]
+        last = other.guard is None
+        hint = (
+            "write `guard: else`" if last else f"let the guard of {second} exclude that of {first}"
+        )
+        yield warning("RV-1103", other.origin, message, notes=notes, hint=hint)
+
+
+# --- Stuck ---------------------------------------------------------------------------
+
+
+def choices_have_a_way_out(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+    """No data leave a step in a choice without an enabled segment."""
+    told: set[str] = set()
+    for edge in thread.edges:
+        stuck = edge.outcome.stuck
+        if stuck is None or stuck in told:
+            continue
+        told.add(stuck)
+        model = _model(reach, thread, edge, z3.BoolVal(True))
+        data = "" if model is None else valuation(reach, model, (edge.outcome.condition,))
+        pseudo = thread.tree.region.pseudostate(stuck)
+        assert pseudo is not None
+        message = f"{thread.name} may get stuck in {stuck}: no segment leaves it"
+        message += f" with {data}" if data else ""
+        step = (
+            f"{where(thread.tree, edge.before.configuration)} -{label(thread.tree, edge.outcome)}->"
+        )
+        notes = [
+            (pseudo.origin, reached(reach, thread, edge)),
+            (_transition(thread.tree.region, edge.outcome.fired[0]).origin, f"then {step} {stuck}"),
+        ]
+        hint = "add a segment with `guard: else`"
+        yield error(
+            "RV-1104",
+            pseudo.origin,
+            message,
+            notes=notes if edge.outcome.fired else notes[:1],
+            hint=hint,
+        )
+
+
+# --- Events that are not expected ------------------------------------------------------
+
+
+def events_are_expected(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+    """A warning for a state that alone among its siblings ignores an event.
+
+    Only where all others, and at least three, handle or defer it: a chart that
+    ignores an event in several states means to.
+    """
+    tree = thread.tree
+    for slot in dict.fromkeys(tree.slots[name] for name in tree.states):
+        group = [s for s in tree.states.values() if tree.slots[s.name] == slot and not s.final]
+        for event in tree.region.events():
+            if event not in reach.events or any(
+                _handles(thread, name, event) for name in tree.chains[group[0].name][1:]
+            ):
+                continue
+            silent = [s for s in group if not _expected(thread, s.name, event)]
+            if len(silent) != 1 or len(group) < 4 or not _waits(thread, silent[0].name):
+                continue
+            others = [s.name for s in group if s is not silent[0]]
+            message = f"{silent[0].name} ignores {event}, which {_listed(others)} expect"
+            hint = (
+                f"add a transition, `defer: [{event}]`, or "
+                f"`{{from: {silent[0].name}, on: {event}}}` to say that it is meant"
+            )
+            yield warning("RV-1105", silent[0].origin, message, hint=hint)
+
+
+def _handles(thread: Thread, state: str, event: str) -> bool:
+    """Whether a state itself handles or defers an event."""
+    leaving = thread.tree.outgoing[state]
+    return event in thread.tree.states[state].defers or any(
+        t.trigger == OnEvent(event) for t in leaving
+    )
+
+
+def _expected(thread: Thread, state: str, event: str) -> bool:
+    """Whether a state, or something inside it, handles or defers an event."""
+    return any(
+        _handles(thread, name, event)
+        for name in thread.tree.states
+        if state in thread.tree.chains[name]
+    )
+
+
+def _listed(names: list[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+# --- The safe state --------------------------------------------------------------------
+
+
+def safe_state_is_near(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
+    """From each node some way leads to the safe state, guards considered."""
+    tree, safe = thread.tree, thread.tree.region.safe_state
+    if safe is None:
+        return
+    graph: networkx.DiGraph[object] = networkx.DiGraph()
+    graph.add_edges_from((edge.after, edge.before) for edge in thread.edges)
+    goals = [node for node in thread.nodes if safe in node.configuration.active]
+    graph.add_edges_from((safe, goal) for goal in goals)
+    near = networkx.descendants(graph, safe) if goals else set()
+    for node, edge in thread.nodes.items():
+        if node in near or edge is None:
+            continue
+        at = where(tree, node.configuration)
+        message = f"no way leads from {at} to {safe}, the safe state of {thread.name}"
+        notes = [
+            (tree.region.state(safe).origin, "the safe state is here"),
+            (_origin(thread, edge), f"it comes there by {trace(tree, reach.way(thread, node))}"),
+        ]
+        hint = f"add a transition to {safe} that no guard shuts out"
+        yield error("RV-1106", _origin(thread, edge), message, notes=notes, hint=hint)
+        return
+
+
+def _origin(thread: Thread, edge: Edge) -> Origin:
+    """The state that a step leads to, or the region."""
+    leaves = [n for n in edge.after.configuration.active if thread.tree.states[n].is_leaf]
+    return thread.tree.states[leaves[0]].origin if leaves else thread.tree.region.origin
+
+
+RULES: tuple[Rule, ...] = (
+    states_are_entered,
+    transitions_fire,
+    guards_exclude_each_other,
+    choices_have_a_way_out,
+    events_are_expected,
+    safe_state_is_near,
+)

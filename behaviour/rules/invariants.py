@@ -1,0 +1,238 @@
+"""Rules of declared invariants: proved, violated with a trace, or not inductive.
+
+An invariant is proved when the reachable nodes of the threads exclude it, or when
+it holds at the start and no step of any thread breaks it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import z3
+
+from gen.diagnostics import Diagnostic, error, warning
+from gen.model import Invariant, System
+from gen.terms import Origin
+
+from . import logic
+from .logic import Term, Variable
+from .reach import Edge, OutOfTime, Reach, Thread
+from .schedule import PORTS, schedules, together
+from .search import Search, Violation
+from .stepping import Configuration
+from .words import label, valuation, where
+
+Pairs = Sequence[tuple[Term, Term]]
+"""What stands for what in a substitution."""
+
+
+def invariants_hold(reach: Reach, system: System) -> Iterator[Diagnostic]:
+    """Each declared invariant holds in every reachable situation."""
+    for invariant in reach.component.invariants:
+        bad = logic.term(invariant.condition, reach.symbol)
+        if _is_excluded(reach, bad):
+            continue
+        broken = _breaking_step(reach, system, bad)
+        if broken is None:
+            continue
+        searches = [
+            Search(reach, system, instance, rows, bad)
+            for instance, rows in schedules(system, reach.component)
+        ]
+        try:
+            violation = next((v for v in map(Search.violation, searches) if v), None)
+        except OutOfTime:
+            yield _not_inductive(invariant, broken, sum(search.looked for search in searches))
+            raise
+        if violation is None:
+            yield _not_inductive(invariant, broken, sum(search.looked for search in searches))
+        else:
+            yield _violated(reach, invariant, violation)
+
+
+# --- Proof ---------------------------------------------------------------------------
+
+
+def _is_excluded(reach: Reach, bad: Term) -> bool:
+    """Whether no combination of reachable nodes is bad."""
+    solver = logic.solver()
+    solver.add(*reach.constants_over(reach.symbol), bad)
+    solver.add(*(_somewhere(reach, thread) for thread in reach.threads))
+    solver.add(*_written_by_users(reach))
+    return bool(solver.check() == z3.unsat)
+
+
+def _somewhere(reach: Reach, thread: Thread) -> Term:
+    """That a thread is in one of its nodes."""
+    cases: dict[str, Term] = {}
+    for node in thread.nodes:
+        case = _states(reach, thread, node.configuration)
+        made = z3.And([*case, *reach.of_node(thread, node.cells)])
+        cases.setdefault(made.sexpr(), made)
+    return z3.Or(list(cases.values()))
+
+
+def _states(reach: Reach, thread: Thread, at: Configuration) -> list[Term]:
+    """What a thread publishes in a configuration, as far as anything asks for it."""
+    active = thread.tree.default if at == Configuration() else at.active
+    asked = [n for n in reach.symbols if n[0] == "in" and n[1] == thread.name]
+    return [
+        reach.symbol(name) if name[2] in active else z3.Not(reach.symbol(name)) for name in asked
+    ]
+
+
+def _written_by_users(reach: Reach) -> list[Term]:
+    owned = {name for thread in reach.threads for name in thread.own}
+    return [
+        z3.Or([reach.in_cell(name, reach.symbol(name), cell) for cell in sorted(cells)])
+        for name, cells in reach.values.items()
+        if name not in owned
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """A step that breaks an invariant, where it stands, and data with which it does."""
+
+    step: str
+    origin: Origin
+    data: str
+
+
+def _breaking_step(reach: Reach, system: System, bad: Term) -> Broken | None:
+    """The first step from a situation that keeps the invariant to one that does not."""
+    if _possible(reach, [_substituted(bad, _start(reach))]) is not None:
+        return Broken(f"the start of {reach.component.name}", reach.component.origin, "")
+    nodes = {t.name: _somewhere(reach, t) for t in reach.threads}
+    before = [z3.Not(bad), *_written_by_users(reach)]
+    for writer, origin, written in _inputs(reach):
+        pairs = [(reach.symbol(n), logic.symbol(f"new {n}", reach.types[n])) for n in written]
+        after = _substituted(bad, pairs)
+        if after.eq(bad):
+            continue
+        typed = [
+            logic.within(new, reach.types[n]) for n, (_, new) in zip(written, pairs, strict=True)
+        ]
+        model = _possible(reach, [*before, *nodes.values(), *typed, after])
+        if model is not None:
+            return Broken(
+                f"{writer}, which may write anything", origin, valuation(reach, model, [bad])
+            )
+    for thread in reach.threads:
+        others = [term for name, term in nodes.items() if name != thread.name]
+        stale = _stale(reach, system, thread)
+        old = [*reach.constants_over(reach.symbol), *reach.of_others(thread)]
+        given = [*before, *others, *(_substituted(term, stale) for term in old)]
+        for edge in _distinct(thread):
+            reach.clock.count()
+            after = _substituted(bad, _after(reach, thread, edge, stale))
+            condition = _substituted(edge.outcome.condition, stale)
+            here = _states(reach, thread, edge.before.configuration)
+            here += reach.of_node(thread, edge.before.cells)
+            model = _possible(reach, [*given, *here, condition, after])
+            if model is not None:
+                data = valuation(reach, model, (bad, edge.outcome.condition))
+                return Broken(_step(thread, edge), _origin(thread, edge), data)
+    return None
+
+
+def _possible(reach: Reach, terms: Sequence[Term]) -> Term | None:
+    """A model of some terms; None when there is none."""
+    solver = logic.solver()
+    solver.add(*reach.constants_over(reach.symbol), *terms)
+    answer = solver.check()
+    if answer == z3.unsat:
+        return None
+    return solver.model() if answer == z3.sat else z3.Model(z3.main_ctx())
+
+
+def _substituted(term: Term, pairs: Pairs) -> Term:
+    return z3.simplify(z3.substitute(term, *pairs))
+
+
+def _start(reach: Reach) -> Pairs:
+    """Every variable as it is before anything has run."""
+    trees = {thread.name: thread.tree for thread in reach.threads}
+    pairs = [
+        (reach.symbol(n), z3.BoolVal(n[2] in trees[n[1]].default))
+        for n in reach.symbols
+        if n[0] == "in"
+    ]
+    return [*pairs, *((reach.symbol(name), value) for name, value in reach.initial.items())]
+
+
+def _inputs(reach: Reach) -> Iterator[tuple[str, Origin, list[Variable]]]:
+    """What writes without a flow: each port's handler, each body of the user's."""
+    for port in reach.component.inputs():
+        names = [n for n in reach.types if n[0] in ("port", "port state") and n[1] == port.name]
+        yield f"the port {port.name}", port.origin, names
+    for activity in reach.component.activities:
+        if activity.flow is None:
+            names = [n for n in reach.types if n[0] == "data" and n[1] in activity.writes]
+            yield f"the body of {activity.name}", activity.origin, names
+
+
+def _distinct(thread: Thread) -> Iterator[Edge]:
+    """One edge for each step from each node."""
+    yield from {(id(e.outcome), e.before): e for e in reversed(thread.edges)}.values()
+
+
+def _stale(reach: Reach, system: System, thread: Thread) -> Pairs:
+    """Copies of what a thread may have read before another processor wrote it anew."""
+    component = reach.component
+    rows = {r.name: r for r in component.runnables()}
+    beside = {name for name in (*rows, PORTS) if together(system, component, thread.name, name)}
+    old = []
+    for name, type_ in reach.types.items():
+        if name[0] == "in" and name not in reach.symbols:
+            continue
+        writers = [r.name for r in rows.values() if name[1] in r.writes or name[1] == r.name]
+        writers += [PORTS] if name[0] in ("port", "port state") else []
+        if any(writer not in beside for writer in writers):
+            old.append((reach.symbol(name), logic.symbol(f"old {name}", type_)))
+    return old
+
+
+def _after(reach: Reach, thread: Thread, edge: Edge, stale: Pairs) -> Pairs:
+    """What a step changes."""
+    active = edge.after.configuration.active
+    states = [
+        (reach.symbol(name), z3.BoolVal(name[2] in active))
+        for name in reach.symbols
+        if name[0] == "in" and name[1] == thread.name
+    ]
+    data = [(reach.symbol(n), _substituted(value, stale)) for n, value in edge.outcome.updates]
+    return [*states, *data]
+
+
+# --- Words ---------------------------------------------------------------------------
+
+
+def _step(thread: Thread, edge: Edge) -> str:
+    at, to = (where(thread.tree, n.configuration) for n in (edge.before, edge.after))
+    return f"{thread.name}: {at} -{label(thread.tree, edge.outcome)}-> {to}"
+
+
+def _origin(thread: Thread, edge: Edge) -> Origin:
+    """The transition that a step begins with, or the region."""
+    fired = edge.outcome.fired[:1]
+    found = (t.origin for t in thread.tree.region.transitions if t.name in fired)
+    return next(found, thread.tree.region.origin)
+
+
+def _violated(reach: Reach, invariant: Invariant, found: Violation) -> Diagnostic:
+    message = f"{invariant.name} of {reach.component.name} happens: {found.trace}"
+    notes = [(invariant.origin, f"then {found.data}")] if found.data else []
+    return error("RV-1108", invariant.origin, message, notes=notes)
+
+
+def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnostic:
+    message = f"{invariant.name} cannot be excluded: {broken.step} may lead to it"
+    data = f"when {broken.data}" if broken.data else "whatever the data"
+    notes = [(broken.origin, f"it does so {data}")]
+    hint = (
+        f"no way from the start to it was found among {looked} situations; exclude it by a guard, "
+        "or say more in the condition of `never`"
+    )
+    return warning("RV-1109", invariant.origin, message, notes=notes, hint=hint)

@@ -1,0 +1,596 @@
+"""What the regions of a component can come to, under every interleaving.
+
+Each region is looked at alone, against all that the others may do: the states
+they publish, the data they write, the events they raise. That is repeated until
+nothing new comes up. A region sees at each step any combination of what the
+others have ever published, so what is not found cannot happen, however the
+tasks interrupt one another. Data are told apart by *cells*: the literals of an
+enumeration, and for integers the ranges between the numbers that the model
+compares them with.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import z3
+
+from gen.model import Activity, Component, System
+from gen.statechart import (
+    DONE,
+    After,
+    Every,
+    Initial,
+    Overflow,
+    Region,
+    State,
+    Transition,
+    TransitionKind,
+    When,
+)
+from gen.terms import (
+    BOOLEAN,
+    EnumerationType,
+    Expression,
+    If,
+    InState,
+    IntegerType,
+    Ns,
+    Reading,
+    ScalarType,
+    Set,
+)
+
+from . import logic
+from .logic import Term, Variable
+from .schedule import PORTS
+from .stepping import Configuration, Outcome, outcomes
+from .tree import CONDITIONS, START, Occurrence, Tree
+
+Cell = tuple[int, int]
+"""First and last value; Booleans count 0 and 1."""
+Cells = tuple[int, ...]
+"""For each variable that a region writes and tells apart, the cell that it is in."""
+
+MOST_CELLS = 12
+"""A variable with more is not told apart."""
+MOST_NODES = 400
+"""A region with more nodes is looked at without its data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A situation of one region: its control, and the cells of its own data."""
+
+    configuration: Configuration
+    cells: Cells
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A step from one node to another."""
+
+    before: Node
+    outcome: Outcome
+    after: Node
+
+
+class OutOfTime(Exception):  # noqa: N818
+    """The time for the check is over."""
+
+
+@dataclass
+class Clock:
+    """How long the whole check may take, and how far it has got."""
+
+    seconds: float
+    started: float = field(default_factory=time.monotonic)
+    situations: int = 0
+
+    def count(self) -> None:
+        """One situation more; `OutOfTime` when there is no time for it."""
+        self.situations += 1
+        if time.monotonic() - self.started > self.seconds:
+            raise OutOfTime
+
+
+@dataclass
+class Thread:
+    """A region, or an activity with a flow (a region of one state), and what it was seen to do."""
+
+    tree: Tree
+    own: tuple[Variable, ...]
+    nodes: dict[Node, Edge | None] = field(default_factory=dict)
+    """Each with the edge that leads to it on a shortest way."""
+    edges: list[Edge] = field(default_factory=list)
+    steps: dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]] = field(default_factory=dict)
+    known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """The name of the region or activity."""
+        return self.tree.region.name
+
+
+class Reach:
+    """The reachable nodes of every thread of a component."""
+
+    def __init__(self, component: Component, system: System, clock: Clock) -> None:
+        self.component = component
+        self.clock = clock
+        self.types = logic.readable(component)
+        self.symbols: dict[Variable, Term] = {}
+        self.constants = _parameters(component, system)
+        self.initial = {
+            name: value
+            for data in component.data
+            for name, value in logic.scalars(data.name, data.type, data.initial).items()
+        }
+        self.cells = _partition(component, self.types, self.initial)
+        self.cell_terms = {
+            (name, cell): self.in_cell(name, self.symbol(name), cell)
+            for name, cells in self.cells.items()
+            for cell in range(len(cells))
+        }
+        self.threads = self._threads()
+        self.events = {event for event, _ in external_events(component, system)}
+        regions = [t.tree for t in self.threads if t.name in self.regions()]
+        self.published = {tree.region.name: {tree.default} for tree in regions}
+        self.values: dict[Variable, set[int]] = {
+            name: {self.cell_of(name, self.initial[name])} for name in self.cells
+        }
+        values = (a.value for a in actions(component) if isinstance(a, Set))
+        for name in logic.tested((*expressions(component), *values)):
+            self.symbol(name)
+        self._user_bodies()
+        self.plain = logic.solver()
+        self.plain.add(*self.constants_over(self.symbol))
+        self._run()
+
+    # --- set-up
+
+    def _threads(self) -> list[Thread]:
+        regions = [Tree(r, frozenset(self._working(r.name))) for r in self.component.regions]
+        flows = [Tree(_as_region(a)) for a in self.component.activities if a.flow is not None]
+        made = []
+        for tree in (*regions, *flows):
+            own = (v for v in self.cells if v[1] in tree.region.writes)
+            made.append(Thread(tree, tuple(own)))
+        return made
+
+    def _working(self, region: str) -> Iterator[str]:
+        """The states of a region with a do activity."""
+        for activity in self.component.activities:
+            if activity.while_in is not None and activity.while_in.region == region:
+                yield activity.while_in.state
+
+    def _user_bodies(self) -> None:
+        """A body of the user's may write anything in its types."""
+        for activity in self.component.activities:
+            for name, cells in self.cells.items():
+                if activity.flow is None and name[1] in activity.writes:
+                    self.values[name] = set(range(len(cells)))
+
+    def regions(self) -> set[str]:
+        """The names of the regions, which publish where they are."""
+        return {region.name for region in self.component.regions}
+
+    # --- terms
+
+    def symbol(self, name: Variable) -> Term:
+        """The unknown that stands for a variable as a step reads it."""
+        if name not in self.symbols:
+            self.symbols[name] = logic.symbol(str(name), self.types[name])
+        return self.symbols[name]
+
+    def constants_over(self, read: logic.Read) -> list[Term]:
+        """That variables lie in their types, and parameters are those of an instance."""
+        typed = [
+            logic.within(read(name), type_)
+            for name, type_ in self.types.items()
+            if type_ != BOOLEAN
+        ]
+        sets = [z3.And([read(n) == v for n, v in one.items()]) for one in self.constants.values()]
+        return [*typed, z3.Or(sets)] if sets else typed
+
+    def cell_of(self, name: Variable, value: Term) -> int:
+        """The cell that a constant is in."""
+        number = int(z3.is_true(value)) if self.types[name] == BOOLEAN else value.as_long()
+        return next(i for i, (low, high) in enumerate(self.cells[name]) if low <= number <= high)
+
+    def in_cell(self, name: Variable, value: Term, cell: int) -> Term:
+        """That a term is in a cell of a variable."""
+        low, high = self.cells[name][cell]
+        if self.types[name] == BOOLEAN:
+            return value if low else z3.Not(value)
+        return z3.And(value >= low, value <= high)
+
+    def of_node(self, thread: Thread, cells: Cells) -> list[Term]:
+        """What a node says about the data of its thread."""
+        return [self.cell_terms[pair] for pair in zip(thread.own, cells, strict=True)]
+
+    def of_others(self, thread: Thread) -> list[Term]:
+        """What is known about all that others write and publish."""
+        found = [
+            z3.Or([self.in_cell(name, self.symbol(name), cell) for cell in sorted(cells)])
+            for name, cells in self.values.items()
+            if name not in thread.own and len(cells) < len(self.cells[name])
+        ]
+        for region, configurations in self.published.items():
+            if region != thread.name:
+                found.append(self.is_published(region, sorted(configurations)))
+        return found
+
+    def _seen_of_others(self, thread: Thread) -> object:
+        """Tells apart what is known of others at different times: it only ever grows."""
+        values = (len(cells) for name, cells in self.values.items() if name not in thread.own)
+        states = (len(found) for name, found in self.published.items() if name != thread.name)
+        return (*values, *states)
+
+    def is_published(self, region: str, configurations: Sequence[tuple[str, ...]]) -> Term:
+        """That a region has published one of these sets of active states."""
+        asked = [name for name in self.symbols if name[:2] == ("in", region)]
+        cases = {tuple(name[2] in active for name in asked) for active in configurations}
+        return z3.Or(
+            [
+                z3.And(
+                    [
+                        self.symbol(name) if holds else z3.Not(self.symbol(name))
+                        for name, holds in zip(asked, case, strict=True)
+                    ]
+                )
+                for case in sorted(cases)
+            ]
+        )
+
+    # --- the search
+
+    def _run(self) -> None:
+        """Look at each thread again until none shows the others anything new."""
+        while True:
+            before = self._shown()
+            for thread in self.threads:
+                try:
+                    self._explore(thread)
+                except _TooMany:
+                    thread.own = ()
+                    thread.known.clear()
+                    self._explore(thread)
+            if self._shown() == before:
+                return
+
+    def _shown(self) -> object:
+        return (
+            {name: len(cells) for name, cells in self.values.items()},
+            {name: len(found) for name, found in self.published.items()},
+            len(self.events),
+        )
+
+    def _explore(self, thread: Thread) -> None:
+        """Every node of a thread, nearest first."""
+        solver = logic.solver()
+        others = self.of_others(thread)
+        solver.add(*self.constants_over(self.symbol), *others)
+        context = self._seen_of_others(thread)
+        start = Node(
+            Configuration(), tuple(self.cell_of(name, self.initial[name]) for name in thread.own)
+        )
+        thread.nodes = {start: None}
+        thread.edges = []
+        waiting = deque([start])
+        while waiting:
+            node = waiting.popleft()
+            self.clock.count()
+            for occurrence in self.occurrences(thread, node.configuration):
+                for outcome in self.steps(thread, node.configuration, occurrence):
+                    for cells in self._successors(thread, node.cells, outcome, solver, context):
+                        after = Node(outcome.after, cells)
+                        edge = Edge(node, outcome, after)
+                        thread.edges.append(edge)
+                        self._show(thread, edge)
+                        if after not in thread.nodes:
+                            thread.nodes[after] = edge
+                            waiting.append(after)
+            if thread.own and len(thread.nodes) > MOST_NODES:
+                raise _TooMany
+
+    def _show(self, thread: Thread, edge: Edge) -> None:
+        """What others may see of a step."""
+        after = edge.after
+        if thread.name in self.published:
+            self.published[thread.name].add(after.configuration.active)
+        for name, cell in zip(thread.own, after.cells, strict=True):
+            self.values[name].add(cell)
+        for name in self.cells:
+            if name[1] in thread.tree.region.writes and name not in thread.own:
+                self.values[name] = set(range(len(self.cells[name])))
+        for event, _ in edge.outcome.raised:
+            self.events.add(done_of(self.component, thread.name) if event == DONE else event)
+
+    def occurrences(self, thread: Thread, at: Configuration) -> Iterator[Occurrence]:
+        """What a step may be made for in a configuration."""
+        tree = thread.tree
+        if at.stopped:
+            return
+        if at == Configuration():
+            yield START
+            return
+        for name in at.active:
+            done = f"{thread.name}.{name}.{DONE}"
+            if name in tree.working and name not in at.done and done in self.events:
+                yield Occurrence("done", name)
+        if at.pending:
+            yield Occurrence("completion", at.pending[0])
+            return
+        triggers = [t for name in at.active for t in tree.outgoing[name]]
+        for transition in triggers:
+            if isinstance(transition.trigger, After | Every):
+                yield Occurrence("time", transition.name)
+        for event in tree.region.events():
+            if event in self.events:
+                yield Occurrence("event", event)
+        if any(isinstance(t.trigger, When) for t in triggers):
+            yield CONDITIONS
+
+    def steps(
+        self, thread: Thread, at: Configuration, occurrence: Occurrence
+    ) -> tuple[Outcome, ...]:
+        """The outcomes of a step, data aside."""
+        key = (at, occurrence)
+        if key not in thread.steps:
+            made = outcomes(thread.tree, at, occurrence, self.symbol, self.plain)
+            thread.steps[key] = made
+        return thread.steps[key]
+
+    def _successors(
+        self, thread: Thread, cells: Cells, outcome: Outcome, solver: Term, context: object
+    ) -> tuple[Cells, ...]:
+        """The cells after an outcome; none where it cannot come about."""
+        key = (outcome, cells, context)
+        if key not in thread.known:
+            thread.known[key] = tuple(self._computed(thread, cells, outcome, solver))
+        return thread.known[key]
+
+    def _computed(
+        self, thread: Thread, cells: Cells, outcome: Outcome, solver: Term
+    ) -> Iterator[Cells]:
+        updates = {n: v for n, v in outcome.updates if n in thread.own}
+        fixed = list(cells)
+        open_: list[tuple[int, Variable, Term]] = []
+        for index, name in enumerate(thread.own):
+            if name in updates and z3.is_const(updates[name]) and _is_value(updates[name]):
+                fixed[index] = self.cell_of(name, updates[name])
+            elif name in updates:
+                open_.append((index, name, updates[name]))
+        if not open_ and z3.is_true(outcome.condition):
+            yield tuple(fixed)
+            return
+        solver.push()
+        solver.add(*self.of_node(thread, cells), outcome.condition)
+        while (answer := solver.check()) != z3.unsat:
+            if answer == z3.unknown:
+                yield from self._all(fixed, open_)
+                break
+            model = solver.model()
+            here = []
+            for index, name, value in open_:
+                fixed[index] = self.cell_of(name, model.eval(value, model_completion=True))
+                here.append(self.in_cell(name, value, fixed[index]))
+            yield tuple(fixed)
+            if not open_:
+                break
+            solver.add(z3.Not(z3.And(here)))
+        solver.pop()
+
+    def _all(self, fixed: list[int], open_: list[tuple[int, Variable, Term]]) -> Iterator[Cells]:
+        """Every combination of cells, where the solver gave up."""
+        if not open_:
+            yield tuple(fixed)
+            return
+        (index, name, _), *rest = open_
+        for cell in range(len(self.cells[name])):
+            yield from self._all([*fixed[:index], cell, *fixed[index + 1 :]], rest)
+
+    # --- what was found
+
+    def thread(self, name: str) -> Thread:
+        """The thread of a region or activity."""
+        return next(t for t in self.threads if t.name == name)
+
+    def parameters_of(self, instance: str) -> dict[Variable, Term]:
+        """The parameters of an instance."""
+        return self.constants.get(instance, {})
+
+    def completes(self, thread: Thread) -> Iterator[tuple[str, str]]:
+        """The region and state that an activity may complete."""
+        for activity in self.component.activities:
+            if activity.name == thread.name and activity.while_in and DONE in activity.raises:
+                yield activity.while_in.region, activity.while_in.state
+
+    def way(self, thread: Thread, node: Node) -> list[Edge]:
+        """The shortest way to a node."""
+        way: list[Edge] = []
+        edge = thread.nodes[node]
+        while edge is not None:
+            way.append(edge)
+            edge = thread.nodes[edge.before]
+        return way[::-1]
+
+
+class _TooMany(Exception):  # noqa: N818
+    """More nodes than a region may have with its data."""
+
+
+def _is_value(value: Term) -> bool:
+    return bool(z3.is_int_value(value) or z3.is_true(value) or z3.is_false(value))
+
+
+def _as_region(activity: Activity) -> Region:
+    """An activity's flow as the internal transition of a region of one state."""
+    here = activity.origin
+    condition = activity.while_in
+    guard = None if condition is None else InState(condition.region, condition.state)
+    state = State("working", here, None, "", (), (), ())
+    work = Transition(
+        "run",
+        here,
+        "working",
+        "working",
+        TransitionKind.INTERNAL,
+        Every(Ns(0), 1),
+        guard,
+        activity.flow or (),
+    )
+    return Region(
+        name=activity.name,
+        origin=here,
+        timing=activity.timing,
+        queue_depth=1,
+        overflow=Overflow.REJECT_NEWEST,
+        on_overflow=None,
+        steps_per_execution=1,
+        initial=Initial("working"),
+        safe_state=None,
+        states=(state,),
+        transitions=(work,),
+        reads=activity.reads,
+        writes=activity.writes,
+        sends=activity.sends,
+        raises=activity.raises,
+    )
+
+
+def done_of(component: Component, activity: str) -> str:
+    """The name of the completion that an activity raises."""
+    found = next(a for a in component.activities if a.name == activity)
+    assert found.while_in is not None
+    return f"{found.while_in.region}.{found.while_in.state}.{DONE}"
+
+
+def external_events(component: Component, system: System) -> Iterator[tuple[str, str | None]]:
+    """What may come from outside, each with the row that raises it; None: at any time.
+
+    An event that nothing raises is among them: that it never comes is said elsewhere.
+    """
+    instances = {i.name for i in system.instances if i.component.name == component.name}
+    for port in component.ports:
+        yield from ((e, PORTS) for e in (port.on_arrival, port.on_stale, port.on_overflow) if e)
+    for activity in component.activities:
+        if activity.flow is None:
+            for event in activity.raises:
+                named = done_of(component, activity.name) if event == DONE else event
+                yield named, activity.name
+    yield from ((r.on_overflow, None) for r in component.regions if r.on_overflow)
+    outside = [pair for processor in system.processors for pair in processor.on_deadline_miss]
+    yield from ((e, None) for owner, e in (*outside, *system.shutdown.raises) if owner in instances)
+    raised = {e for item in component.runnables() for e in item.raises}
+    raised |= {e for port in component.ports for e in (port.on_arrival, port.on_stale) if e}
+    yield from ((event.name, None) for event in component.events if event.name not in raised)
+
+
+def _parameters(component: Component, system: System) -> dict[str, dict[Variable, Term]]:
+    """The parameters of each instance that has any."""
+    types = {p.name: p.type for p in component.parameters}
+    return {
+        instance.name: {
+            logic.variable(Reading.PARAMETER, name, None): logic.constant(value, types[name])
+            for name, value in instance.parameters
+        }
+        for instance in system.instances
+        if instance.component.name == component.name and instance.parameters
+    }
+
+
+# --- Cells -------------------------------------------------------------------------
+
+
+def expressions(component: Component) -> Iterator[Expression]:
+    """Every expression that decides something, those in flows included."""
+    yield from (invariant.condition for invariant in component.invariants)
+    for region in component.regions:
+        for transition in region.transitions:
+            if isinstance(transition.trigger, When):
+                yield transition.trigger.condition
+            if transition.guard is not None:
+                yield transition.guard
+    for action in actions(component):
+        if isinstance(action, If):
+            yield action.condition
+
+
+def actions(component: Component) -> Iterator[object]:
+    """Every action of a component's flows."""
+    for flow in flows(component):
+        yield from every(flow)
+
+
+def flows(component: Component) -> Iterator[Sequence[object]]:
+    """Every flow of a component."""
+    for region in component.regions:
+        yield region.initial.effect
+        for state in region.states:
+            yield from (state.entry, state.exit)
+            yield from (nested.initial.effect for nested in state.regions)
+        yield from (transition.effect for transition in region.transitions)
+    yield from (activity.flow for activity in component.activities if activity.flow is not None)
+
+
+def every(flow: Iterable[object]) -> Iterator[object]:
+    """The actions of a flow, those inside others too."""
+    for action in flow:
+        yield action
+        if isinstance(action, If):
+            yield from every((*action.then, *action.otherwise))
+
+
+def _partition(
+    component: Component, types: dict[Variable, ScalarType], initial: dict[Variable, Term]
+) -> dict[Variable, tuple[Cell, ...]]:
+    """The cells of each data item that can be told apart."""
+    deciding = _deciding(component)
+    cuts: dict[Variable, set[int]] = {name: set() for name in initial if name in deciding}
+    for expression in expressions(component):
+        for name, number in logic.landmarks(expression):
+            if name in cuts:
+                cuts[name] |= {number, number + 1}
+    found = {}
+    for name in cuts:
+        cells = _cells(types[name], cuts[name], initial[name])
+        if len(cells) <= MOST_CELLS:
+            found[name] = cells
+    return found
+
+
+def _deciding(component: Component) -> set[Variable]:
+    """The variables that decisions depend on, also through what others are set to."""
+    found = set(_variables(expressions(component)))
+    sets = [
+        (logic.variable(Reading.DATA, action.data, action.field), action)
+        for action in actions(component)
+        if isinstance(action, Set)
+    ]
+    while True:
+        more = {v for name, a in sets if name in found for v in _variables([a.value])} - found
+        if not more:
+            return found
+        found |= more
+
+
+def _variables(terms: Iterable[Expression]) -> Iterator[Variable]:
+    for expression in terms:
+        for name in logic.names(expression):
+            yield logic.variable(name.kind, name.name, name.field)
+
+
+def _cells(type_: ScalarType, cuts: set[int], initial: Term) -> tuple[Cell, ...]:
+    if isinstance(type_, EnumerationType):
+        return tuple((i, i) for i in range(len(type_.literals)))
+    assert isinstance(type_, IntegerType)
+    start = initial.as_long()
+    firsts = sorted(
+        {type_.first} | {n for n in {*cuts, start, start + 1} if type_.first < n <= type_.last}
+    )
+    return tuple(zip(firsts, [*(n - 1 for n in firsts[1:]), type_.last], strict=True))

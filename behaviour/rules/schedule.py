@@ -1,0 +1,75 @@
+"""When the rows of an instance run: the k-th execution of a row, and what comes before it.
+
+Every execution is taken to need no time, so that it happens at its release: by
+priority where several are released at once, in table order in one processor. A
+real program may run so, which makes a trace that fits in here a feasible one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import z3
+
+from gen.model import Component, System, Work
+
+from .logic import Term
+
+PORTS = "ports"
+"""The row of the port region."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row's first release, its period in ns, and its turn among those released at once."""
+
+    first: int
+    period: int
+    turn: int
+
+    def executions_before(self, moment: Term, turn: int) -> Term:
+        """How many executions come before a moment, in which it is the turn of another row."""
+        passed = moment - self.first + (0 if self.turn < turn else -1)
+        return z3.If(passed < 0, 0, passed / self.period + 1)
+
+    def moment(self, execution: Term) -> Term:
+        """When an execution happens; the first has number 0."""
+        return self.first + execution * self.period
+
+
+Rows = dict[str, Row]
+
+
+def schedules(system: System, component: Component) -> Iterator[tuple[str, Rows]]:
+    """The rows of each instance that is allocated, by its name."""
+    for instance in system.instances:
+        if instance.component.name != component.name:
+            continue
+        slots = [
+            (-processor.priority, index, processor, slot)
+            for processor in system.processors
+            for index, slot in enumerate(processor.slots)
+            if slot.owner == instance.name and slot.work is not Work.BUS_RECEIVE
+        ]
+        rows = {
+            slot.name: Row(
+                processor.offset + slot.phase * processor.period,
+                slot.divisor * processor.period,
+                turn,
+            )
+            for turn, (_, _, processor, slot) in enumerate(sorted(slots, key=lambda s: s[:2]))
+        }
+        yield instance.name, rows
+
+
+def together(system: System, component: Component, one: str, other: str) -> bool:
+    """Whether two rows are in one table in every instance, so that neither interrupts the other."""
+    for instance in system.instances:
+        if instance.component.name != component.name:
+            continue
+        names = {f"{instance.name}.{row}" for row in (one, other)}
+        tables = [{slot.element for slot in p.slots} for p in system.processors]
+        if not any(names <= table for table in tables):
+            return False
+    return True

@@ -1,0 +1,509 @@
+"""One step of a region, with data as terms: what can come of it, and when.
+
+A `Step` follows docs/semantics.md like an interpreter does. Where it has to know
+whether a condition holds, it asks; `outcomes` runs it once for each series of
+answers that some data allow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import z3
+
+from gen.statechart import PseudoKind, Transition, TransitionKind, When
+from gen.terms import Expression, Flow, If, Raise, Reading, Set
+
+from .logic import Read, Term, Variable, term, variable
+from .tree import TOP, Occurrence, Slot, Tree
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """Where the control of a region is; all but ``history`` in tree order."""
+
+    active: tuple[str, ...] = ()
+    completed: tuple[str, ...] = ()
+    """Active states whose completion has come."""
+    pending: tuple[str, ...] = ()
+    """Those whose completion has not had its step."""
+    done: tuple[str, ...] = ()
+    """Active states whose do activity has said so."""
+    history: tuple[tuple[Slot, str], ...] = ()
+    stopped: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rival:
+    """A transition that was not looked at, as one with the same trigger came before it."""
+
+    first: str
+    second: str
+    condition: Term
+    """When the second could have fired as well."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What one step may come to: the condition on what it reads, and what it does."""
+
+    occurrence: Occurrence
+    before: Configuration
+    condition: Term
+    after: Configuration
+    updates: tuple[tuple[Variable, Term], ...]
+    raised: tuple[tuple[str, tuple[tuple[str | None, Term], ...]], ...]
+    fired: tuple[str, ...]
+    """Transitions and segments, in the order fired."""
+    stuck: str | None
+    """The pseudostate that no enabled segment leaves."""
+    deferred: bool
+    rivals: tuple[Rival, ...]
+    entered: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Deferral:
+    """A state keeps the event for later."""
+
+    state: str
+
+
+Path = tuple[Transition, ...]
+"""A compound transition: through junctions, to a vertex that is none."""
+
+
+class Stuck(Exception):  # noqa: N818
+    """A pseudostate that no enabled segment leaves."""
+
+
+@dataclass
+class Step:
+    """One step that is being made."""
+
+    tree: Tree
+    before: Configuration
+    occurrence: Occurrence
+    symbols: Read
+    decide: Callable[[Term], bool]
+    active: set[str] = field(init=False)
+    history: dict[Slot, str] = field(init=False)
+    store: dict[Variable, Term] = field(default_factory=dict)
+    raised: list[tuple[str, tuple[tuple[str | None, Term], ...]]] = field(default_factory=list)
+    fired: list[str] = field(default_factory=list)
+    entered: set[str] = field(default_factory=set)
+    left: set[str] = field(default_factory=set)
+    arrivals: list[str] = field(default_factory=list)
+    rivals: list[Rival] = field(default_factory=list)
+    stopped: bool = False
+    deferred: bool = False
+
+    def __post_init__(self) -> None:
+        self.active = set(self.before.active)
+        self.history = dict(self.before.history)
+
+    def run(self) -> str | None:
+        """Make the step; the pseudostate where it gets stuck, if any."""
+        try:
+            if self.occurrence.kind == "start":
+                self.initial(TOP)
+                self.settle()
+            elif self.occurrence.kind != "done":
+                self.fire_all(self.select())
+        except Stuck as found:
+            return str(found)
+        return None
+
+    # --- data
+
+    def read(self, name: Variable) -> Term:
+        """The value that a variable has now."""
+        return self.store[name] if name in self.store else self.symbols(name)
+
+    def holds(self, expression: Expression | None) -> bool:
+        """Whether a condition holds now; no condition holds."""
+        return expression is None or self.decide(term(expression, self.read))
+
+    def perform(self, flow: Flow) -> None:
+        """Run a flow."""
+        for action in flow:
+            match action:
+                case Set(_, data, member, value):
+                    self.store[variable(Reading.DATA, data, member)] = term(value, self.read)
+                case Raise(_, event, values):
+                    carried = tuple((f, term(value, self.read)) for f, value in values)
+                    self.raised.append((event, carried))
+                case If() if raises(action):
+                    self.perform(action.then if self.holds(action.condition) else action.otherwise)
+                case If():
+                    self.merge(action)
+
+    def merge(self, action: If) -> None:
+        """Run both branches, and take from each what it sets where it is taken."""
+        condition = term(action.condition, self.read)
+        before = self.store
+        self.store = dict(before)
+        self.perform(action.then)
+        then, self.store = self.store, dict(before)
+        self.perform(action.otherwise)
+        otherwise, self.store = self.store, dict(before)
+        for name in {**then, **otherwise}:
+            values = (side.get(name, self.read(name)) for side in (then, otherwise))
+            self.store[name] = z3.simplify(z3.If(condition, *values))
+
+    # --- selection
+
+    def select(self) -> list[Path]:
+        """What each lane selects, in lane order; nothing when the event is deferred."""
+        chosen: list[Path] = []
+        busy: set[str] = set()
+        for lane in self.tree.lanes:
+            chain = [n for n in self.tree.states if n in self.active]
+            chain = [n for n in reversed(chain) if self.tree.lane_of[n] == lane]
+            if any(name in busy for name in chain):
+                continue
+            found = self.select_in(chain)
+            if isinstance(found, Deferral):
+                self.deferred = True
+            elif found is not None:
+                chosen.append(found)
+            if found is not None and lane.owner is not None:
+                busy |= set(self.tree.chains[lane.owner])
+        return [] if self.deferred else chosen
+
+    def select_in(self, chain: Sequence[str]) -> Path | Deferral | None:
+        """The first enabled transition of the states of a lane, innermost first."""
+        for name in chain:
+            path = self.first_of(self.tree.triggered(name, self.occurrence))
+            if path is not None:
+                return path
+            if self.occurrence.kind == "event" and (
+                self.occurrence.subject in self.tree.states[name].defers
+            ):
+                return Deferral(name)
+        return None
+
+    def through(self, transition: Transition) -> Path | None:
+        """The compound transition that begins with this one; None when it is disabled."""
+        if isinstance(transition.trigger, When) and not self.holds(transition.trigger.condition):
+            return None
+        if not self.holds(transition.guard):
+            return None
+        kind = self.tree.kinds.get(transition.target)
+        if kind is PseudoKind.JUNCTION:
+            rest = self.way_out(transition.target)
+            return None if rest is None else (transition, *rest)
+        if kind is PseudoKind.JOIN:
+            return self.joined(transition.target)
+        return (transition,)
+
+    def way_out(self, vertex: str) -> Path | None:
+        """The first enabled path out of a pseudostate."""
+        return self.first_of(self.tree.outgoing[vertex])
+
+    def first_of(self, transitions: Sequence[Transition]) -> Path | None:
+        """The first enabled path that begins with one of these."""
+        for index, transition in enumerate(transitions):
+            path = self.through(transition)
+            if path is not None:
+                for other in transitions[index + 1 :]:
+                    if other.trigger == transition.trigger and not other.otherwise:
+                        guard = other.guard
+                        can = z3.BoolVal(True) if guard is None else term(guard, self.read)
+                        self.rivals.append(Rival(transition.name, other.name, can))
+                return path
+        return None
+
+    def joined(self, join: str) -> Path | None:
+        """The segments of a join, when every source has completed."""
+        incoming = self.tree.incoming[join]
+        if any(t.source not in self.before.completed for t in incoming):
+            return None
+        rest = self.way_out(join)
+        return None if rest is None else (*incoming, *rest)
+
+    # --- firing
+
+    def fire_all(self, paths: Sequence[Path]) -> None:
+        """Fire what was selected; what an earlier firing conflicts with is dropped."""
+        made: list[Path] = []
+        for path in paths:
+            clash = any(self.conflict(path, one) or self.conflict(one, path) for one in made)
+            if not clash and self.source(path) in self.active:
+                made.append(path)
+                self.fire(path)
+                self.settle()
+                if self.stopped:
+                    return
+
+    def conflict(self, one: Path, other: Path) -> bool:
+        """Whether the first leaves a state that the source of the other is inside."""
+        if one[0].kind is TransitionKind.INTERNAL:
+            return False
+        boundary = self.boundary(one)
+        chain = self.tree.chains[self.source(other)]
+        return any(self.tree.slots[name] == boundary for name in chain)
+
+    def source(self, path: Path) -> str:
+        """Where a compound transition starts: for a join, the state around its sources."""
+        if self.tree.kinds.get(path[0].target) is PseudoKind.JOIN:
+            sources = tuple(t.source for t in self.tree.incoming[path[0].target])
+            return self.tree.around_all(sources)
+        return path[0].source
+
+    def goal(self, path: Path) -> str:
+        """Where it leads: for a fork, the orthogonal state."""
+        target = path[-1].target
+        if self.tree.kinds.get(target) is PseudoKind.FORK:
+            targets = tuple(t.target for t in self.tree.outgoing[target])
+            return self.tree.around_all(targets)
+        return target
+
+    def boundary(self, path: Path) -> Slot:
+        """The region whose active child a transition leaves."""
+        source, goal = self.source(path), self.goal(path)
+        if path[0].kind is TransitionKind.LOCAL and source in self.tree.chains[goal][1:]:
+            chain = self.tree.chains[goal]
+            return self.tree.slots[chain[chain.index(source) - 1]]
+        return self.tree.common(source, goal)
+
+    def fire(self, path: Path) -> None:
+        """Fire a compound transition: exits, effects, entries."""
+        if path[0].kind is TransitionKind.INTERNAL:
+            self.effect(path[0])
+            return
+        boundary, goal = self.boundary(path), self.goal(path)
+        self.leave(boundary)
+        for transition in path:
+            self.effect(transition)
+        target = path[-1].target
+        self.enter(self.tree.path(goal, boundary), target if target != goal else None)
+
+    def effect(self, transition: Transition) -> None:
+        """Run a transition's effect."""
+        self.fired.append(transition.name)
+        self.perform(transition.effect)
+
+    def settle(self) -> None:
+        """Go on from each pseudostate reached, the first in model order first."""
+        while self.arrivals and not self.stopped:
+            vertex = next(self.passing(TOP))
+            self.arrivals.remove(vertex)
+            kind = self.tree.kinds[vertex]
+            if kind is PseudoKind.TERMINATE:
+                self.stopped = True
+            elif kind in (PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY):
+                self.restore(vertex, deep=kind is PseudoKind.DEEP_HISTORY)
+            else:
+                path = self.way_out(vertex)
+                if path is None:
+                    raise Stuck(vertex)
+                self.fire(path)
+
+    def passing(self, slot: Slot) -> Iterator[str]:
+        """The pseudostates that have been reached inside a region, in model order."""
+        yield from (name for name in self.arrivals if self.tree.slots[name] == slot)
+        for name in self.tree.states:
+            if name in self.active and self.tree.slots[name] == slot:
+                for nested in self.tree.states[name].regions:
+                    yield from self.passing((name, nested.name))
+
+    # --- exits and entries
+
+    def leave(self, slot: Slot) -> None:
+        """Leave the active child of a region, inner before outer."""
+        self.arrivals = [name for name in self.arrivals if self.tree.slots[name] != slot]
+        for name in [n for n in self.tree.states if n in self.active]:
+            if self.tree.slots[name] == slot:
+                for nested in self.tree.states[name].regions:
+                    self.leave((name, nested.name))
+                self.remember(name)
+                self.perform(self.tree.states[name].exit)
+                self.active.discard(name)
+                self.left.add(name)
+
+    def remember(self, name: str) -> None:
+        """Keep the last leaf of each region around, for histories."""
+        state = self.tree.states[name]
+        if len(state.regions) == 1:
+            return
+        own = self.tree.slots[name]
+        for slot in self.tree.lane_slots(name):
+            if slot in self.tree.remembered:
+                self.history[slot] = state.parent if state.final and state.parent else name
+        if state.final:
+            self.history.pop(own, None)
+
+    def enter(self, path: Sequence[str], fork: str | None = None) -> None:
+        """Enter the states of a path, the last vertex with what it (or a fork) leads to."""
+        first, *rest = path
+        if first in self.tree.kinds:
+            self.arrivals.append(first)
+            return
+        self.step_into(first)
+        segments = {}
+        if fork is not None and not rest:
+            segments = {self.tree.below(first, t.target): t for t in self.tree.outgoing[fork]}
+        for nested in self.tree.states[first].regions:
+            slot = (first, nested.name)
+            if rest and self.tree.slots[rest[0]] == slot:
+                self.enter(rest, fork)
+            elif slot in segments:
+                self.effect(segments[slot])
+                self.enter(self.tree.path(segments[slot].target, slot))
+            else:
+                self.initial(slot)
+
+    def step_into(self, name: str) -> None:
+        """Enter one state."""
+        self.active.add(name)
+        self.entered.add(name)
+        self.perform(self.tree.states[name].entry)
+
+    def initial(self, slot: Slot) -> None:
+        """Enter a region by default."""
+        initial = self.tree.region.initial if slot == TOP else self.tree.nested[slot].initial
+        self.perform(initial.effect)
+        self.enter(self.tree.path(initial.target, slot))
+
+    def restore(self, vertex: str, *, deep: bool) -> None:
+        """Enter what a history remembers, or by its default."""
+        slot = self.tree.slots[vertex]
+        last = self.history.get(slot)
+        if last is None:
+            path = self.way_out(vertex)
+            if path is not None:
+                self.fire(path)
+            else:
+                self.initial(slot)
+        elif deep:
+            self.enter_deep(self.tree.path(last, slot))
+        else:
+            self.enter(self.tree.path(last, slot)[:1])
+
+    def enter_deep(self, path: Sequence[str]) -> None:
+        """Enter a path, and the regions beside and below it as they were last."""
+        first, *rest = path
+        self.step_into(first)
+        for nested in self.tree.states[first].regions:
+            slot = (first, nested.name)
+            last = self.history.get(slot) if self.tree.states[first].is_orthogonal else None
+            if rest and self.tree.slots[rest[0]] == slot:
+                self.enter_deep(rest)
+            elif last is not None:
+                self.enter_deep(self.tree.path(last, slot))
+            else:
+                self.initial(slot)
+
+    # --- the end
+
+    def configuration(self) -> Configuration:
+        """Where the step has led, with the completions that it has made."""
+        tree = self.tree
+        if self.stopped:
+            return Configuration(tuple(n for n in tree.states if n in self.active), stopped=True)
+        fresh = self.left | self.entered
+        done = {name for name in self.before.done if name not in fresh}
+        completed = {name for name in self.before.completed if name not in fresh}
+        pending = [name for name in self.before.pending if name not in fresh]
+        if self.occurrence.kind == "done":
+            done.add(self.occurrence.subject)
+        if self.occurrence.kind == "completion" and self.occurrence.subject in pending:
+            pending.remove(self.occurrence.subject)
+        for name in tree.states:
+            if name in self.active and name in tree.completing and name not in completed:
+                if name in tree.working and name not in done:
+                    continue
+                if self.is_finished(name):
+                    completed.add(name)
+                    pending.append(name)
+        return Configuration(
+            tuple(n for n in tree.states if n in self.active),
+            tuple(n for n in tree.states if n in completed),
+            tuple(n for n in tree.states if n in pending),
+            tuple(n for n in tree.states if n in done and n in tree.completing),
+            tuple(sorted(self.history.items(), key=str)),
+        )
+
+    def is_finished(self, name: str) -> bool:
+        """Whether every region of a state is in a final state of its own."""
+        return all(
+            any(
+                child in self.active and self.tree.states[child].final
+                for child in self.active
+                if self.tree.slots[child] == (name, nested.name)
+            )
+            for nested in self.tree.states[name].regions
+        )
+
+
+def raises(action: If) -> bool:
+    """Whether one of the branches raises an event."""
+    return any(
+        isinstance(inner, Raise) or (isinstance(inner, If) and raises(inner))
+        for inner in (*action.then, *action.otherwise)
+    )
+
+
+MOST_WAYS = 512
+"""Outcomes of one step at most; a region with more is not looked into further."""
+
+
+class TooManyWays(Exception):  # noqa: N818
+    """One step has more than `MOST_WAYS` outcomes."""
+
+
+def outcomes(
+    tree: Tree, before: Configuration, occurrence: Occurrence, symbols: Read, solver: Term
+) -> tuple[Outcome, ...]:
+    """Every outcome of a step that some data allow, in order of the first answer `yes`."""
+    found: list[Outcome] = []
+    waiting: list[list[bool]] = [[]]
+    while waiting:
+        answers = waiting.pop()
+        asked: list[Term] = []
+
+        def decide(
+            condition: Term, answers: list[bool] = answers, asked: list[Term] = asked
+        ) -> bool:
+            if z3.is_true(condition) or z3.is_false(condition):
+                return bool(z3.is_true(condition))
+            if len(asked) == len(answers):
+                can = [_possible(solver, asked, one) for one in (condition, z3.Not(condition))]
+                if all(can):
+                    waiting.append([*answers, False])
+                answers.append(can[0])
+            answer = answers[len(asked)]
+            asked.append(condition if answer else z3.Not(condition))
+            return answer
+
+        step = Step(tree, before, occurrence, symbols, decide)
+        stuck = step.run()
+        found.append(
+            Outcome(
+                occurrence,
+                before,
+                z3.And(asked) if asked else z3.BoolVal(True),
+                step.configuration() if stuck is None else before,
+                tuple(sorted(step.store.items(), key=lambda item: str(item[0]))),
+                tuple(step.raised),
+                tuple(step.fired),
+                stuck,
+                step.deferred,
+                tuple(step.rivals),
+                frozenset(step.entered),
+            )
+        )
+        if len(found) > MOST_WAYS:
+            raise TooManyWays
+    return tuple(found)
+
+
+def _possible(solver: Term, path: Sequence[Term], condition: Term) -> bool:
+    """Whether some data meet all these conditions; when in doubt, yes."""
+    solver.push()
+    solver.add(*path, condition)
+    answer = solver.check()
+    solver.pop()
+    return bool(answer != z3.unsat)

@@ -1,0 +1,213 @@
+"""A region's tree with its look-ups made once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from gen.statechart import (
+    After,
+    Completion,
+    Every,
+    Lane,
+    NestedRegion,
+    OnEvent,
+    PseudoKind,
+    Pseudostate,
+    Region,
+    Segment,
+    State,
+    Transition,
+    TransitionKind,
+    When,
+)
+
+Slot = tuple[str | None, str]
+"""A region inside the chart: the state that has it, and its name; (None, "") is all of it."""
+
+TOP: Slot = (None, "")
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """What a step is made for: ``kind`` and the state, transition or event."""
+
+    kind: str
+    """``start``, ``completion``, ``time``, ``event``, ``conditions`` or ``done``."""
+    subject: str = ""
+
+
+START = Occurrence("start")
+CONDITIONS = Occurrence("conditions")
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A region; ``working`` are the states with a do activity."""
+
+    region: Region
+    working: frozenset[str] = field(default_factory=frozenset)
+
+    @cached_property
+    def states(self) -> dict[str, State]:
+        """The states by name, in tree order."""
+        return {state.name: state for state in self.region.states}
+
+    @cached_property
+    def kinds(self) -> dict[str, PseudoKind]:
+        """The kind of each pseudostate."""
+        return {pseudo.name: pseudo.kind for pseudo in self.region.pseudostates}
+
+    @cached_property
+    def slots(self) -> dict[str, Slot]:
+        """Where each vertex stands."""
+        vertices: tuple[State | Pseudostate, ...] = (*self.region.states, *self.region.pseudostates)
+        return {v.name: (v.parent, v.region if v.parent is not None else "") for v in vertices}
+
+    @cached_property
+    def chains(self) -> dict[str, tuple[str, ...]]:
+        """Each vertex and its enclosing states, innermost first."""
+        found: dict[str, tuple[str, ...]] = {}
+        for name in self.slots:
+            chain, at = [], self.slots[name][0]
+            while at is not None:
+                chain.append(at)
+                at = self.slots[at][0]
+            found[name] = (name, *chain)
+        return found
+
+    @cached_property
+    def order(self) -> dict[str, int]:
+        """The position of each state in tree order."""
+        return {name: index for index, name in enumerate(self.states)}
+
+    @cached_property
+    def nested(self) -> dict[Slot, NestedRegion]:
+        """The regions of the states."""
+        return {(s.name, r.name): r for s in self.region.states for r in s.regions}
+
+    @cached_property
+    def lanes(self) -> tuple[Lane, ...]:
+        """The lanes, inner before outer."""
+        return self.region.lanes()
+
+    @cached_property
+    def lane_of(self) -> dict[str, Lane]:
+        """The lane that each state stands in."""
+        return {name: self.region.lane(name) for name in self.states}
+
+    @cached_property
+    def outgoing(self) -> dict[str, tuple[Transition, ...]]:
+        """What leaves each vertex, in model order, ``else`` last."""
+        return {name: self.region.outgoing(name) for name in self.slots}
+
+    @cached_property
+    def incoming(self) -> dict[str, tuple[Transition, ...]]:
+        """What leads directly to each vertex."""
+        return {
+            name: tuple(
+                t
+                for t in self.region.transitions
+                if t.target == name and t.kind is not TransitionKind.INTERNAL
+            )
+            for name in self.slots
+        }
+
+    @cached_property
+    def completing(self) -> frozenset[str]:
+        """The states whose completion matters."""
+        return frozenset(
+            t.source for t in self.region.transitions if isinstance(t.trigger, Completion)
+        )
+
+    @cached_property
+    def remembered(self) -> frozenset[Slot]:
+        """The regions whose last leaf some history reads."""
+        found: set[Slot] = set()
+        for pseudo in self.region.pseudostates:
+            if pseudo.kind is PseudoKind.HISTORY:
+                found.add(self.slots[pseudo.name])
+            elif pseudo.kind is PseudoKind.DEEP_HISTORY:
+                around = self.slots[pseudo.name]
+                found |= {around, *(s for s in self.nested if self.inside(s, around))}
+        return frozenset(found)
+
+    def lane_slots(self, vertex: str) -> Iterator[Slot]:
+        """The regions that a vertex is in, as far as that of an orthogonal state around it."""
+        for name in self.chains[vertex]:
+            yield self.slots[name]
+            owner = self.slots[name][0]
+            if owner is not None and self.states[owner].is_orthogonal:
+                return
+
+    @cached_property
+    def default(self) -> tuple[str, ...]:
+        """What a region publishes before its first execution: the states entered by default."""
+        found: set[str] = set()
+        waiting: list[Slot] = [TOP]
+        while waiting:
+            slot = waiting.pop()
+            initial = self.region.initial if slot == TOP else self.nested[slot].initial
+            path = [n for n in self.path(initial.target, slot) if n in self.states]
+            found.update(path)
+            inside = {self.slots[name] for name in path}
+            waiting += [s for s in self.nested if s[0] in path and s not in inside]
+        return tuple(name for name in self.states if name in found)
+
+    def inside(self, slot: Slot, around: Slot) -> bool:
+        """Whether the owner of a region stands in another."""
+        owner = slot[0]
+        return owner is not None and any(self.slots[s] == around for s in self.chains[owner])
+
+    def path(self, vertex: str, boundary: Slot) -> tuple[str, ...]:
+        """The vertices from inside a region down to one in it, outer first."""
+        chain: list[str] = []
+        for name in self.chains[vertex]:
+            chain.append(name)
+            if self.slots[name] == boundary:
+                return tuple(reversed(chain))
+        raise ValueError(f"{vertex} is not in {boundary}")
+
+    def below(self, state: str, vertex: str) -> Slot:
+        """The region of a state that a vertex inside it stands in, at any depth."""
+        return next(self.slots[n] for n in self.chains[vertex] if self.slots[n][0] == state)
+
+    def common(self, source: str, target: str) -> Slot:
+        """The innermost region that both stand in: what an external transition leaves is in it."""
+        around = {self.slots[name] for name in self.chains[target]}
+        return next(self.slots[n] for n in self.chains[source] if self.slots[n] in around)
+
+    def siblings(self, vertex: str) -> tuple[State, ...]:
+        """The states of the region that a vertex stands in."""
+        return tuple(s for s in self.region.states if self.slots[s.name] == self.slots[vertex])
+
+    def around_all(self, vertices: tuple[str, ...]) -> str:
+        """The innermost state around all of them."""
+        first, *others = vertices
+        return next(
+            s for s in self.chains[first][1:] if all(s in self.chains[o][1:] for o in others)
+        )
+
+    def source_of(self, transition: str) -> str:
+        """Where a transition starts."""
+        return next(t.source for t in self.region.transitions if t.name == transition)
+
+    def triggered(self, state: str, occurrence: Occurrence) -> tuple[Transition, ...]:
+        """The transitions of a state that an occurrence triggers, guards aside."""
+        return tuple(t for t in self.outgoing[state] if occurs(t, occurrence))
+
+
+def occurs(transition: Transition, occurrence: Occurrence) -> bool:
+    """Whether an occurrence triggers a transition, guards and conditions aside."""
+    match transition.trigger:
+        case OnEvent(event):
+            return occurrence.kind == "event" and occurrence.subject == event
+        case After() | Every():
+            return occurrence.kind == "time" and occurrence.subject == transition.name
+        case When():
+            return occurrence.kind == "conditions"
+        case Completion():
+            return occurrence.kind == "completion" and occurrence.subject == transition.source
+        case Segment():
+            return False

@@ -1,0 +1,90 @@
+"""Traces and valuations as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import z3
+
+from gen.quantities import shown
+from gen.statechart import After, Every
+
+from . import logic
+from .logic import Term, Variable
+from .reach import Edge, Reach, Thread
+from .stepping import Configuration, Outcome
+from .tree import Tree
+
+LONGEST = 12
+"""Steps of a trace that are shown; of a longer one, the last of them."""
+
+
+def where(tree: Tree, configuration: Configuration) -> str:
+    """The active leaves of a configuration."""
+    if configuration.stopped:
+        return "the end"
+    leaves = [n for n in configuration.active if tree.states[n].is_leaf]
+    return " + ".join(leaves) if leaves else "the start"
+
+
+def label(tree: Tree, outcome: Outcome) -> str:
+    """What a step is made for: an event, a time, or the transition that nothing triggers."""
+    kind, subject = outcome.occurrence.kind, outcome.occurrence.subject
+    if kind == "event":
+        return subject
+    if kind == "time":
+        trigger = next(t.trigger for t in tree.region.transitions if t.name == subject)
+        assert isinstance(trigger, After | Every)
+        word = "after" if isinstance(trigger, After) else "every"
+        return f"{word} {shown(trigger.delay)}"
+    if kind == "done":
+        return "done"
+    return ", ".join(outcome.fired[:1]) or "completion"
+
+
+def trace(tree: Tree, steps: Sequence[Edge]) -> str:
+    """A way of a region: ``Idle -go-> Moving -done-> Idle``."""
+    if not steps:
+        return "the start"
+    first = steps[0]
+    text = "" if not first.before.configuration.active else where(tree, first.before.configuration)
+    if len(steps) > LONGEST:
+        text = "..."
+    done = False
+    for edge in steps[-LONGEST:]:
+        if edge.outcome.occurrence.kind == "done":
+            done = True
+            continue
+        target = where(tree, edge.after.configuration)
+        word = "done" if done else label(tree, edge.outcome)
+        text = target if not text else f"{text} -{word}-> {target}"
+        done = False
+    return text
+
+
+def variables(term: Term, symbols: dict[Variable, Term]) -> list[Variable]:
+    """The variables that a term speaks of, in the order declared."""
+    used = logic.unknowns([term])
+    return [name for name in symbols if str(name) in used]
+
+
+def valuation(reach: Reach, model: Term, terms: Iterable[Term]) -> str:
+    """What the variables of some terms are in a model: ``speed = 11, in(Motion.Moving)``."""
+    shown_: list[str] = []
+    conjunction = z3.And([*terms, z3.BoolVal(True)])
+    for name in sorted(variables(conjunction, reach.symbols), key=list(reach.types).index):
+        value = model.eval(reach.symbols[name], model_completion=True)
+        said = logic.said(value, reach.types[name])
+        if name[0] == "in":
+            shown_.append(str(name) if z3.is_true(value) else f"not {name}")
+        elif name[0] == "port state":
+            shown_.append(f"{said}({name[1]})")
+        else:
+            shown_.append(f"{name} = {said}")
+    return ", ".join(shown_)
+
+
+def reached(reach: Reach, thread: Thread, edge: Edge) -> str:
+    """The shortest way to where a step begins, as a note."""
+    way = reach.way(thread, edge.before)
+    return f"it comes there by {trace(thread.tree, way)}"

@@ -1,0 +1,1 @@
+"""Pictures of a system as text: Graphviz DOT, PlantUML and Mermaid."""

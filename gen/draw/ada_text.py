@@ -1,0 +1,187 @@
+"""The declared form of a chart, read from generated Ada text.
+
+Of the specs of a component and of one of its regions this reads the types of the
+states and the functions `Enabled` and `Target`, and nothing else: what the proof
+rests on. Guards stay text.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from lark import Lark, Token, Transformer, v_args
+from lark.exceptions import LarkError
+from lark.tree import Meta
+
+GRAMMAR = r"""
+enumeration: "type" NAME "is" "(" NAME ("," NAME)* ")"
+composite: "subtype" NAME "is" NAME "range" NAME ".." NAME
+lane: NAME ":" NAME ":=" NAME
+conditions: _HEAD _profile "(" "case" NAME "is" condition ("," condition)* ")"
+moves: _HEAD _profile "(" "case" NAME "is" move ("," move)* ")"
+
+_HEAD: /function\s+\w+/
+_profile: "(" _parameter (";" _parameter)* ")" "return" NAME "is"
+_parameter: NAME ":" NAME
+condition: "when" NAME _ARROW conjunct (_AND_THEN conjunct)*
+move: "when" NAME _ARROW (conjunct | configuration)
+configuration: "(" leaf ("," leaf)* ")"
+leaf: NAME _ARROW conjunct
+conjunct: _piece+
+_piece: NAME | NUMBER | SIGN | _group
+_group: "(" (_piece | "," | _AND_THEN)* ")"
+
+_ARROW.2: "=>"
+_AND_THEN.2: /and\s+then\b/
+SIGN: "/=" | "<=" | ">=" | ".." | "=" | "<" | ">" | "+" | "-" | "*" | "/" | "|" | "'"
+NUMBER: /[0-9][0-9_]*/
+NAME: /[A-Za-z]\w*(\.[A-Za-z]\w*)*/
+%ignore /\s+/
+"""
+
+Leaves = dict[str, str]
+"""A leaf, or a call that gives one, for each component of a configuration."""
+
+
+class NotDeclaredError(ValueError):
+    """The text is not that of a generated region; the message says what is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Composite:
+    """A composite state: the range of leaves of ``outer``, a composite or a lane's type."""
+
+    name: str
+    outer: str
+    first: str
+    last: str
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """A component of the configuration: the type of its leaves, the leaf it starts with."""
+
+    component: str
+    type: str
+    default: str
+
+
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """The declared form: the states, and for each transition its conditions and its move.
+
+    A move is one leaf or call where a chart has one lane only.
+    """
+
+    title: str
+    leaves: dict[str, tuple[str, ...]]
+    composites: tuple[Composite, ...]
+    lanes: tuple[Lane, ...]
+    conditions: dict[str, tuple[str, ...]]
+    moves: dict[str, str | Leaves]
+
+
+@v_args(meta=True)
+class _Reader(Transformer[Token, object]):
+    """Builds what each declaration says; conjuncts are slices of the text."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.text = text
+
+    def conjunct(self, meta: Meta, _: Sequence[object]) -> str:
+        """One condition or value, as written."""
+        return " ".join(self.text[meta.start_pos : meta.end_pos].split())
+
+    def enumeration(self, _: Meta, names: Sequence[Token]) -> tuple[str, tuple[str, ...]]:
+        """A type and its literals."""
+        return str(names[0]), tuple(map(str, names[1:]))
+
+    def composite(self, _: Meta, names: Sequence[Token]) -> Composite:
+        """A range of leaves."""
+        return Composite(*map(str, names))
+
+    def lane(self, _: Meta, names: Sequence[Token]) -> Lane:
+        """A component of a configuration."""
+        return Lane(*map(str, names))
+
+    def condition(self, _: Meta, parts: Sequence[str]) -> tuple[str, tuple[str, ...]]:
+        """A transition and its conjuncts."""
+        return str(parts[0]), tuple(parts[1:])
+
+    def leaf(self, _: Meta, parts: Sequence[str]) -> tuple[str, str]:
+        """A component and its leaf."""
+        return str(parts[0]), parts[1]
+
+    def configuration(self, _: Meta, parts: Sequence[tuple[str, str]]) -> Leaves:
+        """A leaf for each component."""
+        return dict(parts)
+
+    def move(self, _: Meta, parts: Sequence[object]) -> tuple[str, object]:
+        """A transition and where it leads."""
+        return str(parts[0]), parts[1]
+
+    def conditions(self, _: Meta, parts: Sequence[object]) -> dict[str, object]:
+        """`Enabled`."""
+        return dict(part for part in parts if isinstance(part, tuple))
+
+    moves = conditions
+
+
+_ENUMERATION = re.compile(r"type \w+ is \(")
+_COMPOSITE = re.compile(r"subtype \w+ is \w+ range")
+_LANE = re.compile(r"\w+ : \w+ := \w+$")
+_RECORD = re.compile(r"type \w+ is record ")
+_PARSER = Lark(
+    GRAMMAR,
+    parser="lalr",
+    start=["enumeration", "composite", "lane", "conditions", "moves"],
+    propagate_positions=True,
+)
+
+
+def declared(spec: str, component: str) -> Declared:
+    """The declared form in the specs of a region and of its component."""
+    spec, component = _plain(spec), _plain(component)
+    package = re.search(r"\bpackage ([\w.]+) with", spec)
+    enabled = re.search(r"\bfunction Enabled .*", spec)
+    target = re.search(r"\bfunction Target .*", spec)
+    states = re.search(r": (\w+_States)\.", spec)
+    inside = states and re.search(rf"\bpackage {states[1]} is (.*) end {states[1]};", component)
+    if not (package and enabled and target and inside):
+        raise NotDeclaredError("no functions Enabled and Target over the states of a region")
+    parts = [_RECORD.sub("", part) for part in _declarations(inside[1])]
+    return Declared(
+        ".".join(package[1].split(".")[-2:]),
+        dict(_read("enumeration", part) for part in parts if _ENUMERATION.match(part)),
+        tuple(_read("composite", part) for part in parts if _COMPOSITE.match(part)),
+        tuple(_read("lane", part) for part in parts if _LANE.match(part)),
+        _read("conditions", next(_declarations(enabled[0]))),
+        _read("moves", next(_declarations(target[0]))),
+    )
+
+
+def _plain(text: str) -> str:
+    """Ada text without comments and line breaks."""
+    return " ".join(re.sub(r"--[^\n]*", "", text).split())
+
+
+def _declarations(text: str) -> Iterator[str]:
+    """The parts of a text that semicolons end, those in parentheses aside."""
+    depth = start = 0
+    for index, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if character == ";" and depth == 0:
+            yield text[start:index].strip()
+            start = index + 1
+
+
+def _read(kind: str, text: str) -> Any:
+    """What a declaration of that kind says."""
+    try:
+        return _Reader(text).transform(_PARSER.parse(text, start=kind))
+    except LarkError as problem:
+        raise NotDeclaredError(f"its {kind} are not of the declared form: {problem}") from problem

@@ -1,0 +1,228 @@
+"""The component structure of a system as a graph for Graphviz.
+
+Each node of the hardware is a cluster with its instances, their ports and
+connections, and with its processors, each a cluster with its table in order.
+A bus is a cluster of its messages. The instances are read from the one with
+the most neighbours outward, buses last; a port stands on the side of what it
+is connected with, so that no wire has to go round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, product, zip_longest
+
+import networkx as nx
+
+from ..model import Bus, Direction, End, Instance, Message, Node, Port, Processor, System
+from ..quantities import BITS_PER_SECOND, shown
+from .dot import (
+    Attributes,
+    Defaults,
+    Edge,
+    Group,
+    Html,
+    Item,
+    cluster,
+    digraph,
+    html,
+)
+from .dot import Node as Drawn
+from .look import FONT, INK, LEFT, PAPER, ROOM, SHADES, SMALL
+
+IN_A_ROW = 2
+"""Processors side by side at most."""
+
+
+def structure_dot(system: System) -> str:
+    """The DOT text of a system's structure."""
+    return digraph(system.name, _Drawing(system).items())
+
+
+class _Drawing:
+    """The statements of one system."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.position = {name: index for index, name in enumerate(_order(system))}
+        self.on_right = {
+            (end.instance, end.port): self.position[end.instance] < self.position[other]
+            for wire in reversed(system.connections)
+            for end, other in (
+                (wire.source, wire.target.instance),
+                (wire.target, wire.source.instance),
+            )
+        }
+        for message in system.messages:
+            for end in (message.source, *message.targets):
+                if end is not None:
+                    self.on_right[end.instance, end.port] = True
+
+    def items(self) -> Iterator[Item]:
+        """The whole graph."""
+        yield Defaults("graph", {
+            "label": Html(html(self.system.name, "b") + LEFT), "labelloc": "t", "labeljust": "l",
+            "rankdir": "LR", "newrank": "true", "fontname": FONT, "fontsize": "13",
+            "nodesep": "0.25", "ranksep": "0.9", "color": INK, "pad": "0.15",
+        })  # fmt: skip
+        yield Defaults("node", {
+            "fontname": FONT, "fontsize": SMALL, "color": INK, "shape": "plain"
+        })  # fmt: skip
+        yield Defaults("edge", {"color": INK, "arrowhead": "vee", "arrowsize": "0.7"})
+        for node in self.system.nodes:
+            yield self._node(node)
+        for bus in self.system.buses:
+            yield self._bus(bus)
+        for node, message in product(self.system.nodes, self.system.messages):
+            yield Edge(_rim(node), _message_name(message), _HIDDEN)
+        for wire in self.system.connections:
+            yield self._wire(wire.source, wire.target)
+        for message in self.system.messages:
+            yield from self._carried(message)
+
+    # --- nodes and buses
+
+    def _node(self, node: Node) -> Group:
+        here = [i for i in self.system.instances if i.node == node.name]
+        items: list[Item] = [
+            Drawn(i.name, {"label": self._instance(i)})
+            for i in sorted(here, key=lambda i: self.position[i.name])
+        ]
+        items.append(Drawn(_rim(node), {"shape": "point", "width": "0.01", "style": "invis"}))
+        items += (Edge(i.name, _rim(node), _HIDDEN) for i in here)
+        processors = [p for p in self.system.processors if p.node == node.name]
+        for processor in processors:
+            look = {"style": "filled", "fillcolor": PAPER}
+            table = Drawn(_table_name(processor), {"label": _table(processor)})
+            items.append(_framed(f"processor {processor.name}", _title(processor), look, [table]))
+        for start in range(0, len(processors), IN_A_ROW):
+            row = [_table_name(p) for p in processors[start : start + IN_A_ROW]]
+            items += (Edge(a, b, _HIDDEN) for a, b in pairwise((*row, _rim(node))))
+        look = {"style": "rounded,filled", "fillcolor": SHADES[0]}
+        return _framed(f"node {node.name}", f"node {html(node.name, 'b')}{LEFT}", look, items)
+
+    def _bus(self, bus: Bus) -> Group:
+        title = f"bus {html(bus.name, 'b')}{LEFT}{_rate(bus.bit_rate)}{LEFT}"
+        messages = [
+            Drawn(_message_name(m), {"label": _message(m)})
+            for m in self.system.messages
+            if m.bus == bus.name
+        ]
+        look = {"style": "filled", "fillcolor": SHADES[1]}
+        return _framed(f"bus {bus.name}", title, look, messages)
+
+    def _instance(self, instance: Instance) -> Html:
+        """Its name, and its ports on both sides."""
+        component = instance.component
+        right = [port for port in component.ports if self._is_right(instance.name, port)]
+        left = [port for port in component.ports if port not in right]
+        name = f"{html(instance.name, 'b')} : {html(component.name)}"
+        rows = f'<tr><td colspan="3" border="0" cellpadding="5">{name}</td></tr>'
+        for pair in zip_longest(left, right):
+            one, other = map(_cell, pair)
+            rows += f'<tr>{one}<td border="0" width="20"></td>{other}</tr>'
+        table = f'<table border="1" cellborder="1" cellspacing="2" bgcolor="{PAPER}"'
+        return Html(f"{table}>{rows}</table>")
+
+    def _is_right(self, instance: str, port: Port) -> bool:
+        return self.on_right.get((instance, port.name), port.direction is Direction.OUT)
+
+    # --- wires
+
+    def _wire(self, source: End, target: End) -> Edge:
+        if self.position[source.instance] <= self.position[target.instance]:
+            return Edge(source.instance, target.instance, {
+                "tailport": self._port(source), "headport": self._port(target),
+            })  # fmt: skip
+        return Edge(target.instance, source.instance, {
+            "tailport": self._port(target), "headport": self._port(source), **_BACKWARD,
+        })  # fmt: skip
+
+    def _carried(self, message: Message) -> Iterator[Edge]:
+        """From the port that sends a message, and to those that receive it."""
+        name = _message_name(message)
+        if message.source is not None:
+            ports = {"tailport": self._port(message.source), "headport": "w"}
+            yield Edge(message.source.instance, name, dict(ports))
+        for target in message.targets:
+            ports = {"tailport": self._port(target), "headport": "w"}
+            yield Edge(target.instance, name, ports | _BACKWARD)
+
+    def _port(self, end: End) -> str:
+        return f"{end.port}:{'e' if self.on_right[end.instance, end.port] else 'w'}"
+
+
+_HIDDEN: Attributes = {"style": "invis"}
+"""Of an edge that only keeps one thing before another."""
+_BACKWARD = {"dir": "back", "arrowtail": "vee"}
+
+
+def _order(system: System) -> list[str]:
+    """The instances, neighbours of earlier ones first; begun with the best connected."""
+    graph: nx.Graph[str] = nx.Graph()
+    graph.add_nodes_from(instance.name for instance in system.instances)
+    graph.add_edges_from((w.source.instance, w.target.instance) for w in system.connections)
+    found: list[str] = []
+    while len(graph):
+        hub = max(graph, key=graph.degree)
+        part = [hub, *(name for _, name in nx.bfs_edges(graph, hub))]
+        found += part
+        graph.remove_nodes_from(part)
+    return found
+
+
+def _framed(name: str, label: str, look: Attributes, items: Sequence[Item]) -> Group:
+    frame: Attributes = {"label": Html(label), "fontsize": "11", "labeljust": "l", "margin": "10"}
+    return Group(cluster(name), (Defaults("graph", frame | look), *items))
+
+
+def _title(processor: Processor) -> str:
+    release = f"every {shown(processor.period)}"
+    if processor.released_by is not None:
+        release = f"on {processor.released_by}, at most {release}"
+    facts = (
+        f'<font point-size="{SMALL}">{html(release)}, priority {processor.priority}{ROOM}</font>'
+    )
+    return f"processor {html(processor.name, 'b')}{LEFT}{facts}{LEFT}"
+
+
+def _rim(node: Node) -> str:
+    """What stands right of all that is in a node, and left of every bus."""
+    return f"rim {node.name}"
+
+
+def _table_name(processor: Processor) -> str:
+    return f"table {processor.name}"
+
+
+def _table(processor: Processor) -> Html:
+    """The rows of a processor in the order in which they run."""
+    rows = "".join(
+        f'<tr><td align="left">{html(slot.element)}{ROOM}</td>'
+        f'<td align="right">{html(shown(slot.timing.period))}</td></tr>'
+        for slot in processor.slots
+    )
+    return Html(f'<table border="0" cellborder="0" cellspacing="0" cellpadding="2">{rows}</table>')
+
+
+def _cell(port: Port | None) -> str:
+    if port is None:
+        return '<td border="0"></td>'
+    return f'<td port="{port.name}" bgcolor="{SHADES[1]}">{html(port.name)}</td>'
+
+
+def _rate(bits: int) -> str:
+    exact = [(size, unit) for unit, size in BITS_PER_SECOND.items() if bits % size == 0]
+    size, unit = max(exact)
+    return f"{bits // size} {unit}"
+
+
+def _message_name(message: Message) -> str:
+    return f"message {message.name}"
+
+
+def _message(message: Message) -> Html:
+    digits = 8 if message.extended else 3
+    facts = f"0x{message.identifier:0{digits}X}, {shown(message.period)}"
+    cell = f'<td bgcolor="{PAPER}">{html(message.name)}<br/>{facts}</td>'
+    return Html(f'<table border="0" cellborder="1" cellspacing="0"><tr>{cell}</tr></table>')

@@ -1,0 +1,74 @@
+"""The component structure of a system as PlantUML and as Mermaid text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..model import Direction, Instance, Message, System
+
+
+def plantuml(system: System) -> str:
+    """A component diagram: nodes with instances and ports, buses, processors as notes."""
+    lines = ["@startuml", f"title {system.name}", "left to right direction"]
+    for node in system.nodes:
+        lines.append(f"node {node.name} {{")
+        for instance in system.instances:
+            if instance.node == node.name:
+                lines += [f"  {line}" for line in _component(instance)]
+        lines.append("}")
+    lines += [f"queue {bus.name}" for bus in system.buses]
+    for wire in system.connections:
+        source, target = wire.source, wire.target
+        lines.append(f"{source.instance}_{source.port} --> {target.instance}_{target.port}")
+    for message in system.messages:
+        if message.source is not None:
+            source = message.source
+            lines.append(f"{source.instance}_{source.port} --> {message.bus} : {_carried(message)}")
+        for target in message.targets:
+            lines.append(f"{message.bus} --> {target.instance}_{target.port} : {_carried(message)}")
+    for processor in system.processors:
+        lines += [f"note as {processor.name}_table", f"  processor {processor.name}"]
+        lines += [*(f"  {slot.element}" for slot in processor.slots), "end note"]
+    return "".join(f"{line}\n" for line in (*lines, "@enduml"))
+
+
+def _component(instance: Instance) -> Iterator[str]:
+    yield f'component "{instance.name} : {instance.component.name}" as {instance.name} {{'
+    for port in instance.component.ports:
+        kind = "portin" if port.direction is Direction.IN else "portout"
+        yield f'  {kind} "{port.name}" as {instance.name}_{port.name}'
+    yield "}"
+
+
+def mermaid(system: System) -> str:
+    """A flow chart: nodes with instances, and with processors and their tables; buses."""
+    lines = ["---", f"title: {system.name}", "---", "flowchart LR"]
+    lines.append("  %% Mermaid has no ports: the ends of an arrow are in its label.")
+    for node in system.nodes:
+        lines.append(f'  subgraph node_{node.name}["node {node.name}"]')
+        for instance in system.instances:
+            if instance.node == node.name:
+                label = f"{instance.name} : {instance.component.name}"
+                lines.append(f'    instance_{instance.name}["{label}"]')
+        for processor in system.processors:
+            if processor.node == node.name:
+                rows = "<br/>".join(slot.element for slot in processor.slots)
+                label = f"processor {processor.name}<br/>{rows}"
+                lines.append(f'    processor_{processor.name}["{label}"]')
+        lines.append("  end")
+    lines += [f'  bus_{bus.name}[("bus {bus.name}")]' for bus in system.buses]
+    for wire in system.connections:
+        source, target = wire.source, wire.target
+        label = f"{source.port} to {target.port}"
+        lines.append(f'  instance_{source.instance} -->|"{label}"| instance_{target.instance}')
+    for message in system.messages:
+        label = _carried(message)
+        if message.source is not None:
+            lines.append(f'  instance_{message.source.instance} -->|"{label}"| bus_{message.bus}')
+        for target in message.targets:
+            lines.append(f'  bus_{message.bus} -->|"{label}"| instance_{target.instance}')
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _carried(message: Message) -> str:
+    return f"{message.name} 0x{message.identifier:X}"

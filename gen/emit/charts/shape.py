@@ -1,0 +1,435 @@
+"""What a region's package consists of: its occurrences, its memory, who reads what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from ... import terms as m
+from ...model import Component, System
+from ...statechart import (
+    After,
+    Completion,
+    Every,
+    Lane,
+    OnEvent,
+    PseudoKind,
+    Region,
+    Segment,
+    Transition,
+    When,
+)
+from ..ada import Arg, Do, Expr, Param, Ref, Stmt, arguments, both, call, chain
+from ..events import carries, event_value
+from ..naming import ada_case, region_package
+from ..terms import (
+    Scope,
+    asks_event,
+    expressions_in,
+    flow_names,
+    flow_operators,
+    names_in,
+    operators_in,
+    raise_in_list,
+)
+from .compound import PASSED, TOP, Firing, Kind, Place, Step
+from .places import Places, flat
+
+START = "Initial_Entry"
+PASSING = "Passing"
+"""The occurrence that takes an execution on from a choice or history."""
+
+_TYPES = "occurrence selection firing transition variables inputs outbox region item chart memory"
+TYPES = frozenset(_TYPES.split())
+"""What hides an event of the same name inside a region's package."""
+
+
+ITEM = Param("Item", "in", "Event")
+"""The event that a step is made for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What a history needs to know: the last leaf left in a region."""
+
+    place: Place
+    label: str
+
+    @property
+    def last(self) -> str:
+        """The component with the leaf."""
+        return f"Last_In_{self.label}"
+
+    @property
+    def known(self) -> str:
+        """The component that says whether there is one."""
+        return f"Known_In_{self.label}"
+
+
+def guards_of(region: Region) -> list[m.Expression]:
+    """All guards and conditions."""
+    guards = [t.guard for t in region.transitions if t.guard is not None]
+    return guards + [t.trigger.condition for t in region.transitions if isinstance(t.trigger, When)]
+
+
+def flows_of(region: Region) -> list[m.Flow]:
+    """All behaviours: effects, initial effects, entries, exits."""
+    flows = [t.effect for t in region.transitions]
+    flows += [flow for s in region.states for flow in (s.entry, s.exit)]
+    flows += [r.initial.effect for s in region.states for r in s.regions]
+    return [*flows, region.initial.effect]
+
+
+class RegionShape(Places):
+    """The types of one region's package; asked by its emitters and by the instances'."""
+
+    def __init__(
+        self, system: System, component: Component, region: Region, *, noted: bool = False
+    ) -> None:
+        super().__init__(region)
+        self.noted = noted
+        self.system = system
+        self.component = component
+
+    @cached_property
+    def firings(self) -> tuple[Firing, ...]:
+        """The lines of the declared chart, in order of precedence."""
+        return self.compounds.firings()
+
+    @cached_property
+    def start(self) -> tuple[Step, ...]:
+        """The entries of the region's start."""
+        return self.compounds.default(TOP)
+
+    def in_sources(self, firing: Firing) -> Expr:
+        """Are all its sources active?"""
+        return both(*flat([self.in_state(self.place, s) for s in firing.sources]))
+
+    def leads_to(self, firing: Firing) -> dict[Lane, str]:
+        """The leaves that a move leads to."""
+        pseudo = self.region.pseudostate(firing.goal) if firing.goal else None
+        if pseudo is not None and pseudo.kind is PseudoKind.TERMINATE:
+            return {self.lanes[-1]: pseudo.name}
+        return self.after(firing.entries)
+
+    # --- lanes
+
+    @cached_property
+    def busy_lanes(self) -> tuple[Lane, ...]:
+        """The lanes with transitions, in the order in which they fire."""
+        return tuple(n for n in self.lanes if any(f.lane == n for f in self.firings))
+
+    def lane_name(self, lane: Lane) -> str:
+        """Its component of a choice."""
+        return "Top" if lane.owner is None else ada_case(lane.name)
+
+    def lane_of(self, place: Place) -> Lane:
+        """The lane whose leaves a region holds."""
+        if place.owner is None:
+            return self.lanes[-1]
+        if self.region.state(place.owner).is_orthogonal:
+            return Lane(place.region, place.owner)
+        return self.region.lane(place.owner)
+
+    def inner_lanes(self, lane: Lane) -> tuple[Lane, ...]:
+        """The busy lanes inside a lane."""
+        return tuple(n for n in self.busy_lanes if n != lane and lane in self._around(n))
+
+    def _around(self, lane: Lane) -> list[Lane]:
+        found = [lane]
+        while found[-1].owner is not None:
+            found.append(self.region.lane(found[-1].owner))
+        return found
+
+    def common_owner(self, one: Lane, other: Lane) -> str | None:
+        """The orthogonal state in whose different regions two lanes stand; None: one is inside."""
+        mine = [n for n in self._around(one) if n.owner is not None]
+        theirs = [n for n in self._around(other) if n.owner is not None]
+        for lane in mine:
+            if lane not in theirs and any(n.owner == lane.owner for n in theirs):
+                return lane.owner
+        return None
+
+    @cached_property
+    def left_states(self) -> tuple[str, ...]:
+        """The orthogonal states that some transition leaves from inside."""
+        found = {s for f in self.firings for s in self.compounds.left(f)}
+        return tuple(s.name for s in self.region.states if s.name in found)
+
+    @cached_property
+    def watched(self) -> tuple[str, ...]:
+        """The orthogonal states in which firings can conflict."""
+        return tuple(s for s in self.left_states if len(self.lanes_in(s)) > 1)
+
+    def lanes_in(self, state: str) -> tuple[Lane, ...]:
+        """The busy lanes inside an orthogonal state, in the order in which they fire."""
+        inside = self.region.ancestors
+        return tuple(n for n in self.busy_lanes if n.owner and state in inside(n.owner))
+
+    # --- steps
+
+    @cached_property
+    def deferring(self) -> bool:
+        """Does a state defer events?"""
+        return any(s.defers for s in self.region.states)
+
+    @cached_property
+    def listed(self) -> bool:
+        """Can one step fire more than one transition?"""
+        return self.passes or not self.single
+
+    @cached_property
+    def most_firings(self) -> int:
+        """The most that one step fires."""
+        ranks = [self.rank(p.name) for p in self.region.pseudostates if p.kind in PASSED]
+        lanes = [n for n in self.busy_lanes if not self.inner_lanes(n)]
+        return max(1, len(lanes)) * (1 + max(ranks, default=0))
+
+    def rank(self, pseudo: str) -> int:
+        """The most segments that follow when an execution is in a choice or history."""
+        goals = {f.goal for f in self.firings if f.sources[0] == pseudo} - {pseudo}
+        passed = {p.name for p in self.region.pseudostates if p.kind in PASSED}
+        return 1 + max((self.rank(g) for g in goals if g in passed), default=0)
+
+    def completed(self, state: str) -> str:
+        """The component that says that a state has completed and nothing took it yet."""
+        return f"Completed_{ada_case(state)}"
+
+    def is_complete(self, state: str) -> Expr | None:
+        """Has a state without do activity completed? None: always, when active."""
+        at = self.region.state(state)
+        parts: list[Expr] = []
+        for nested in at.regions:
+            finals = [s for s in self.region.children(state, nested.name) if s.final]
+            inside = [self.in_state(self.place, s.name) for s in finals]
+            parts.append(chain("or else", inside, Ref("False")))
+        return both(*flat(parts)) if parts else None
+
+    @property
+    def polls_more(self) -> bool:
+        """Are there occurrences of its own besides time-outs?"""
+        return bool(self.completing) or self.deferring
+
+    @property
+    def polls_out(self) -> bool:
+        """Does asking for the next occurrence change the region's state?"""
+        return bool(self.timers) or self.polls_more
+
+    def poll_params(self) -> tuple[Param, ...]:
+        """The profile of Poll; a deferred event comes with its value."""
+        mode = "in out" if self.polls_out else "in"
+        params = [Param("Self", mode, "Region"), Param("Now", "out", "Occurrence")]
+        if self.deferring and self.takes_item:
+            params.append(ITEM._replace(mode="out"))
+        return tuple(params)
+
+    # --- notes
+
+    def note(self, text: str) -> tuple[Stmt, ...]:
+        """In a program for simulation: say that a behaviour is executed."""
+        if not self.noted:
+            return ()
+        return (Do("Ravenchart.Notes.Put", arguments(Ref(f'"{text}"'))),)
+
+    # --- packages and types
+
+    @property
+    def package(self) -> str:
+        """Full name of the region's package."""
+        return region_package(self.system, self.component, self.region)
+
+    # --- memory
+
+    @cached_property
+    def memories(self) -> tuple[Memory, ...]:
+        """The regions whose last leaf some history asks for."""
+        found: dict[Place, Memory] = {}
+        for pseudo in self.region.pseudostates:
+            if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
+                own = self.compounds.place(pseudo.name)
+                wanted = [own]
+                if pseudo.kind is PseudoKind.DEEP_HISTORY:
+                    lanes = (Place(n.owner, n.name) for n in self.lanes if n.owner is not None)
+                    wanted += [p for p in lanes if own in self.compounds.places(p.owner or "")]
+                for place in wanted:
+                    label = place.region or place.owner or ""
+                    found[place] = Memory(place, ada_case(label))
+        return tuple(found.values())
+
+    def memory(self, place: Place) -> Memory:
+        """The memory of a region that has one."""
+        return next(one for one in self.memories if one.place == place)
+
+    def memory_type(self, memory: Memory) -> str:
+        """The type of its last leaf."""
+        owner = self.region.state(memory.place.owner or "")
+        if owner.is_orthogonal:
+            return f"{self.states}.{ada_case(memory.place.region)}_Leaf"
+        return f"{self.states}.{ada_case(owner.name)}"
+
+    # --- occurrences
+
+    @property
+    def timers(self) -> tuple[Transition, ...]:
+        """The transitions with a time-out, in model order."""
+        timed = (After, Every)
+        return tuple(t for t in self.region.transitions if isinstance(t.trigger, timed))
+
+    @cached_property
+    def completing(self) -> tuple[str, ...]:
+        """The states whose completion triggers something, in tree order."""
+        wanted = {t.source for t in self.region.transitions if isinstance(t.trigger, Completion)}
+        return tuple(s.name for s in self.region.states if s.name in wanted)
+
+    @cached_property
+    def passes(self) -> bool:
+        """Are there choices or histories?"""
+        return any(p.kind in PASSED for p in self.region.pseudostates)
+
+    def occurrences(self) -> tuple[str, ...]:
+        """All occurrences of the region."""
+        found = ["Start_Of_Region"]
+        found += [f"Completion_Of_{ada_case(s)}" for s in self.completing]
+        found += [f"On_{ada_case(e)}" for e in self.region.events()]
+        found += [f"Expiry_Of_{ada_case(t.name)}" for t in self.timers]
+        found += [PASSING] if self.passes else []
+        return (*found, "Conditions")
+
+    def triggers(self, firing: Firing) -> tuple[str, ...]:
+        """The occurrences that a firing is made for."""
+        found: list[str] = []
+        for trigger in firing.triggers:
+            match trigger:
+                case OnEvent(event) | str(event):
+                    found.append(f"On_{ada_case(event)}")
+                case After() | Every():
+                    timed = next(t for t in self.timers if t.trigger is trigger)
+                    found.append(f"Expiry_Of_{ada_case(timed.name)}")
+                case Completion():
+                    found += [f"Completion_Of_{ada_case(s)}" for s in firing.sources]
+                case Segment():
+                    found.append(PASSING)
+                case When():
+                    found.append("Conditions")
+        return tuple(found)
+
+    def event(self, event: str) -> str:
+        """The event as the region's package names it."""
+        name = ada_case(event)
+        return f"{ada_case(self.component.name)}.{name}" if name.lower() in TYPES else name
+
+    # --- what it reads
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What it copies in: everything read that it does not itself write."""
+        return tuple(n for n in self.region.reads if n not in self.region.writes)
+
+    @property
+    def has_box(self) -> bool:
+        """Does a step send or raise anything?"""
+        return bool(self.region.sends or self.region.raises)
+
+    def guard_params(self) -> tuple[Param, ...]:
+        """The parameters that guards are evaluated over, besides place and occurrence."""
+        named = {name for guard in guards_of(self.region) for name in names_in(guard)}
+        params = []
+        if self.memories:
+            params.append(Param("Past", "in", "Memory"))
+        if named & set(self.region.writes):
+            params.append(Param("Data", "in", "Variables"))
+        if named & set(self.inputs):
+            params.append(Param("Ins", "in", "Inputs"))
+        if any(asks_event(g) for g in guards_of(self.region)):
+            params.append(ITEM)
+        return tuple(params)
+
+    @cached_property
+    def takes_item(self) -> bool:
+        """Does a step need the event itself, for its value?"""
+        flows = (e for flow in flows_of(self.region) for e in expressions_in(flow))
+        asked = any(asks_event(e) for e in (*guards_of(self.region), *flows))
+        return carries(self.component) and (asked or self.deferring)
+
+    def choice_params(self) -> tuple[Param, ...]:
+        """What a selection is made over."""
+        return (
+            Param(self.place, "in", self.place_type),
+            Param("Now", "in", "Occurrence"),
+            *self.guard_params(),
+        )
+
+    def choice_args(self, old: bool = False) -> tuple[Arg, ...]:
+        """The same from the region's own state, before or after a call."""
+        mark = "'Old" if old else ""
+        fields = {"Leaf": "Leaf", "Place": "Place", "Data": "Data", "Past": "Past"}
+        return tuple(
+            Arg(None, Ref(f"Self.{fields[p.name]}{mark}" if p.name in fields else p.name))
+            for p in self.choice_params()
+        )
+
+    def target_params(self) -> tuple[Param, ...]:
+        """Target looks at the place and the past only when it needs to."""
+        params = []
+        if not self.single or any(f.kind is not Kind.MOVE for f in self.firings):
+            params.append(Param(self.place, "in", self.place_type))
+        if self.memories:
+            params.append(Param("Past", "in", "Memory"))
+        return tuple(params)
+
+    def target(self, chosen: str, mark: str = "'Old") -> Expr:
+        """A call of Target over the region's state, by default before a call."""
+        own = (Ref(f"Self.{p.name}{mark}") for p in self.target_params())
+        return call("Target", Ref(chosen), *own)
+
+    def step_params(self) -> tuple[Param, ...]:
+        """The profile of Step and Fire, without what was chosen."""
+        params = [Param("Self", "in out", "Region")]
+        if self.inputs:
+            params.append(Param("Ins", "in", "Inputs"))
+        if self.takes_item:
+            params.append(ITEM)
+        if self.has_box:
+            params.append(Param("Box", "in out", "Outbox"))
+        return tuple(params)
+
+    def scope(self, data: str) -> Scope:
+        """Names in guards (``data`` = Data) and in behaviours (``data`` = Self.Data)."""
+        writes = {n.lower() for n in self.region.writes}
+
+        def variable(name: str) -> str:
+            prefix = data if name.lower() in writes else "Ins"
+            return f"{prefix}.{ada_case(name)}"
+
+        def raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
+            item = event_value(self.component, event, given)
+            return (raise_in_list("Event_Lists", "Box.Raised", item),)
+
+        return Scope(
+            self.system,
+            self.component,
+            variable,
+            lambda name: f"{data}.{ada_case(name)}",
+            lambda port: (f"Box.{ada_case(port)}", f"Box.{ada_case(port)}_Sent"),
+            raised,
+        )
+
+
+def plain_args(params: tuple[Param, ...], **replaced: str) -> tuple[Arg, ...]:
+    """Positional arguments that repeat the parameters, some replaced."""
+    return tuple(Arg(None, Ref(replaced.get(p.name, p.name))) for p in params)
+
+
+def guard_operators(region: Region) -> set[str]:
+    """The runtime's types whose operators its guards use."""
+    return {name for guard in guards_of(region) for name in operators_in(guard)}
+
+
+def behaviour_operators(region: Region) -> set[str]:
+    """The runtime's types whose operators its behaviours use."""
+    return {name for flow in flows_of(region) for name in flow_operators(flow)}
+
+
+def behaviour_names(region: Region) -> set[str]:
+    """What its behaviours read."""
+    return {name for flow in flows_of(region) for name in flow_names(flow)}

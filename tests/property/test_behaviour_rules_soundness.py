@@ -1,0 +1,39 @@
+"""What the interpreter comes to, the rules of behaviour have found reachable."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from behaviour.machine import Machine
+from behaviour.rules.reach import Clock, Reach
+from gen.model import Shutdown, System
+from gen.terms import Ns
+from tests.support.interpreted import stimuli_of, system_of
+from tests.support.random_charts import events_of, instance_name, model_of
+
+CHARTS = range(40)
+
+
+def _raised_outside(system: System) -> System:
+    """The system, told that any of its events may come from outside."""
+    pairs = ((one.name, event.name) for one in system.instances for event in one.component.events)
+    return replace(system, shutdown=Shutdown(tuple(pairs), Ns(0)))
+
+
+@pytest.mark.parametrize("seed", CHARTS)
+def test_every_configuration_and_transition_of_a_run_is_found(seed: int) -> None:
+    system = _raised_outside(system_of(model_of([seed])))
+    reach = Reach(system.components[0], system, Clock(60))
+    threads = {t.name: t for t in reach.threads}
+    found = {name: {n.configuration.active for n in t.nodes} for name, t in threads.items()}
+    fired = {n: {f for e in t.edges for f in e.outcome.fired} for n, t in threads.items()}
+    machine = Machine(system)
+    regions = machine.instances[instance_name(seed)].regions
+    for record in machine.run(stimuli_of(events_of(seed, [seed]), system)):
+        for name, run in regions.items():
+            active = tuple(s for s in threads[name].tree.states if s in run.configuration())
+            assert active in found[name], (record.text(), name)
+        effects = {b.removesuffix(".effect") for b in record.behaviours if b.endswith(".effect")}
+        assert {e for e in effects if not e.startswith("initial(")} <= fired[record.region]

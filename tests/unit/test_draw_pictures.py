@@ -1,0 +1,46 @@
+"""The pictures under docs show the examples as they are, and their READMEs show the pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from gen.draw.svg import mark
+from ravenchart import draw, house, steps
+from ravenchart.__main__ import main
+from ravenchart.toolchain import ROOT
+
+PICTURES = ROOT / "docs" / "pictures"
+
+
+def _texts(example: str) -> dict[str, str]:
+    return draw.texts(steps.check(ROOT / "examples" / example / "model.yaml").system)
+
+
+@pytest.mark.parametrize("example", house.EXAMPLES)
+def test_pictures_are_of_what_the_model_says(example: str) -> None:
+    texts = _texts(example)
+    there = {path.name: path.read_text() for path in (PICTURES / example).iterdir()}
+    assert sorted(there) == sorted(texts), "run make docs, and delete what is no longer drawn"
+    for name, text in texts.items():
+        assert mark(text) in there[name], f"{name}: run make docs"
+
+
+@pytest.mark.parametrize("example", house.EXAMPLES)
+def test_the_readme_shows_every_picture(example: str) -> None:
+    readme = (ROOT / "examples" / example / "README.md").read_text()
+    for name in _texts(example):
+        assert f"](../../docs/pictures/{example}/{name})" in readme
+
+
+def test_the_command_writes_one_file_for_each_chart_and_one_for_the_structure(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = str(ROOT / "tests" / "feature" / "charts" / "model.yaml")
+    assert main(["draw", model, "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().out == f"{tmp_path}: 3 drawings\n"
+    names = ["Unit.Leader.svg", "Unit.Subject.svg", "structure.svg"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert main(["draw", model, "--out", str(tmp_path), "--format", "mermaid"]) == 0
+    assert (tmp_path / "Unit.Subject.mmd").read_text().startswith("---\ntitle: Unit.Subject\n")
