@@ -4,11 +4,12 @@ RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
 EXAMPLES   := examples/cartesian_robot examples/three_components
 
-.PHONY: help setup demo test check prove generate bench docs lock clean
+.PHONY: help setup demo test test-long check prove generate bench docs lock clean
 
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
 	@echo 'make test      every test'
+	@echo 'make test-long  the same with 2,000 random charts: about an hour'
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples'
 	@echo 'make generate  the examples'' generated/ from their models'
@@ -23,6 +24,9 @@ demo: setup
 
 test: setup
 	@$(PYTHON) -m pytest -q
+
+test-long: setup
+	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -m pytest -q
 
 check: setup
 	@$(PYTHON) -m ruff check .
@@ -41,7 +45,7 @@ bench: setup
 
 docs: setup
 	@$(PYTHON) -m gen.reference
-	@for e in $(EXAMPLES); do \
+	@for e in examples/*; do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 
 lock:

@@ -47,6 +47,11 @@ class Raised:
     event: str
     value: Value | None
 
+    @property
+    def place(self) -> tuple[str, str]:
+        """Instance and event."""
+        return self.instance, self.event
+
 
 @dataclass(frozen=True, slots=True)
 class Arrived:
@@ -55,6 +60,11 @@ class Arrived:
     at: Ns
     end: End
     value: Value
+
+    @property
+    def place(self) -> tuple[str, str]:
+        """Instance and port."""
+        return self.end.instance, self.end.port
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,3 +43,13 @@ def seconds(time: Ns) -> str:
     while len(digits) > 3 and digits.endswith("000"):
         digits = digits[:-3]
     return f"{whole}.{digits}"
+
+
+def parsed(line: str) -> Record:
+    """The record that `Record.text` printed as ``line``."""
+    head, _, behaviours = line.partition(": ")
+    time, _, element = head.partition(" ")
+    instance, _, region = element.partition(".")
+    whole, _, decimals = time.partition(".")
+    at = Ns(int(whole) * 10**9 + int(decimals.ljust(9, "0")))
+    return Record(at, instance, region, tuple(behaviours.split(", ")))

@@ -177,6 +177,10 @@ class _Sharing:
             if region.events():
                 raisers = self.raisers(instance, region)
                 yield self.made(f"{instance.name}.{region.name}.queue", [own, *raisers])
+            for activity, _ in component.completing(region.name):
+                users = [own, self.runs(instance.name, activity.name)]
+                yield self.made(f"{instance.name}.{activity.name}.visit", users)
+                yield self.made(f"{instance.name}.{activity.name}.done", users)
 
     def writers(self, instance: str, port: str) -> Iterable[str]:
         """The processors that put values into an input port's mailbox."""

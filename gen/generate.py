@@ -7,17 +7,18 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from .emit.ada import Unit
-from .emit.ada_text import print_unit
+from .emit.ada_text import print_item, print_unit
 from .emit.certificate import emit_certificate
 from .emit.charts.declared import emit_region
 from .emit.codecs import emit_codecs
 from .emit.components import emit_activities, emit_component
 from .emit.dbc import emit_dbc
-from .emit.deployment import emit_deployment
+from .emit.deployment import emit_deployment, emit_without_tasks
 from .emit.instances import emit_instances
 from .emit.naming import ada_case
-from .emit.project import project_text
+from .emit.project import project_text, simulation_project
 from .emit.quiet import has_decided_conditions, quiet
+from .emit.simulation import emit_simulation, simulated
 from .emit.types import emit_root
 from .model import System
 from .terms import IntegerType, Ns
@@ -32,24 +33,49 @@ HEADER = (
 def units(system: System, bounds: Mapping[str, Ns]) -> tuple[Unit, ...]:
     """Every Ada unit of the program; ``bounds`` claims each task's response time in ns."""
     header = HEADER.format(system=system.name)
+    found = _logic(system, header)
+    found += emit_codecs(system, header)
+    found += emit_instances(system, header)
+    found.append(emit_certificate(system, bounds, header))
+    found += emit_deployment(system, header)
+    return tuple(_finished(system, found))
+
+
+def _logic(system: System, header: str, *, noted: bool = False) -> list[Unit]:
+    """The root and the components: no state, no tasks."""
     found: list[Unit] = [emit_root(system, header)]
     used = {i.component.name for i in system.instances}
     for component in system.components:
         if component.name in used:
             found.append(emit_component(system, component, header))
             for region in component.regions:
-                found += emit_region(system, component, region, header)
+                found += emit_region(system, component, region, header, noted=noted)
             found += emit_activities(system, component, header)
-    found += emit_codecs(system, header)
-    found += emit_instances(system, header)
-    found.append(emit_certificate(system, bounds, header))
-    found += emit_deployment(system, header)
+    return found
+
+
+def _finished(system: System, found: list[Unit]) -> list[Unit]:
+    """The units with what depends on the whole program."""
     if not any(isinstance(t, IntegerType) for t in system.types):
         #  the root has no need of the runtime, and its children cannot see it through the root
         found = [_seeing_runtime(unit) for unit in found]
     if has_decided_conditions(system):
         found = [quiet(unit) for unit in found]
-    return tuple(found)
+    return found
+
+
+def simulation(system: System) -> dict[str, str]:
+    """The files of the program that runs in virtual time, project file included."""
+    reduced = simulated(system)
+    header = HEADER.format(system=system.name)
+    found = _logic(reduced, header, noted=True)
+    found += emit_instances(reduced, header, noted=True)
+    found += emit_without_tasks(reduced, header)
+    found.append(emit_simulation(reduced, header))
+    files = _printed(_finished(system, found), ada_case(system.name))
+    name = ada_case(system.name).lower()
+    files[f"{name}_simulation.gpr"] = simulation_project(system)
+    return files
 
 
 def _seeing_runtime(unit: Unit) -> Unit:
@@ -57,9 +83,8 @@ def _seeing_runtime(unit: Unit) -> Unit:
     return unit if sees else replace(unit, withs=("Ravenchart", *unit.withs))
 
 
-def _pruned(unit: Unit, root: str) -> Unit:
+def _pruned(unit: Unit, root: str, text: str) -> Unit:
     """The unit without the context that its text does not name."""
-    text = print_unit(replace(unit, withs=()))
     kept = []
     for name in unit.withs:
         seen_as = name.removeprefix(f"{root}.")
@@ -82,11 +107,17 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
     return out
 
 
+def _printed(found: list[Unit], root: str) -> dict[str, str]:
+    texts = [print_item(unit) for unit in found]
+    pairs = zip(found, texts, strict=True)
+    pruned = _without_repeats([_pruned(unit, root, text) for unit, text in pairs])
+    return {u.file_name: print_unit(u, text) for u, text in zip(pruned, texts, strict=True)}
+
+
 def generate(system: System, bounds: Mapping[str, Ns]) -> dict[str, str]:
     """File name to text, the same bytes for the same model."""
     root = ada_case(system.name)
-    pruned = _without_repeats([_pruned(unit, root) for unit in units(system, bounds)])
-    files = {unit.file_name: print_unit(unit) for unit in pruned}
+    files = _printed(list(units(system, bounds)), root)
     name = root.lower()
     files[f"{name}.gpr"] = project_text(system, has_user_code=bool(user_units(system)))
     files["trace.json"] = trace_json(system)

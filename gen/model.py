@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from .statechart import Overflow, Region, Timing
+from .statechart import DONE, Overflow, Region, Timing
 from .terms import Expression, Flow, Ns, Origin, Scalar, ScalarType, Type, Value, named
 
 NO_TIME = Ns(0)
@@ -123,6 +123,11 @@ class Activity:
     flow: Flow | None
     """None: the body is the user's."""
 
+    @property
+    def completes(self) -> StateRef | None:
+        """The state that it completes by `DONE`."""
+        return self.while_in if DONE in self.raises else None
+
 
 @dataclass(frozen=True, slots=True)
 class Component:
@@ -158,6 +163,11 @@ class Component:
     def runnables(self) -> tuple[Region | Activity, ...]:
         """The regions, then the activities, each in model order."""
         return (*self.regions, *self.activities)
+
+    def completing(self, region: str) -> tuple[tuple[Activity, str], ...]:
+        """The do activities that complete a state of a region, each with that state."""
+        all_of_them = ((a, a.completes) for a in self.activities)
+        return tuple((a, at.state) for a, at in all_of_them if at and at.region == region)
 
     def users(self, data: str) -> tuple[str, ...]:
         """The regions and activities that read or write ``data``, in model order."""

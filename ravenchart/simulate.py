@@ -1,27 +1,31 @@
 """`ravenchart simulate`: a model in virtual time, by its program or by the interpreter.
 
-The program is to be the generated one without tasks and buses: a main that holds
-the processors' tables, reads numbered stimuli from standard input, calls the rows
-in the order of `behaviour.machine` and prints the lines of `Record.text`. Until it
-is generated, only the interpreter runs.
+The program is the generated one without tasks and buses: a main that holds the
+processors' tables, reads numbered stimuli from standard input, calls the rows in the
+order of `behaviour.machine` and prints the lines of `Record.text`.
 """
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Iterable
 from pathlib import Path
 
 from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
 from behaviour.stimuli import Stimuli, read
-from behaviour.traces import Record
+from behaviour.traces import Record, parsed
 from gen.diagnostics import Diagnostic, error, render
+from gen.emit.simulation import numbers
+from gen.emit.simulation import stimuli as stimuli_of_system
+from gen.generate import simulation, user_units
 from gen.load import LARGEST, read_file
 from gen.model import System
 from gen.terms import Origin
 from gen.tree import lines_of
 
-from .steps import Checked, Refused
+from . import toolchain
+from .steps import Checked, Refused, build_folder, replace_file
 
 
 def stimuli_of(system: System, path: Path) -> Stimuli:
@@ -63,10 +67,47 @@ def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
 
 def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
     """What the generated program executes."""
-    raise Refused(
-        f"{checked.path}: error: the generated program cannot take {len(stimuli.entries)} stimuli "
-        "in virtual time yet; use --interpreter"
-    )
+    program = build_simulation(checked.system, checked.folder / "user", _home(checked))
+    return run_simulation(checked.system, program, stimuli)
+
+
+def _home(checked: Checked) -> Path:
+    return build_folder(checked, "simulation")
+
+
+def build_simulation(system: System, user: Path, home: Path) -> Path:
+    """Write and compile the program in virtual time below ``home``; its path."""
+    source = home / "source"
+    source.mkdir(parents=True, exist_ok=True)
+    files = simulation(system)
+    for old in source.iterdir():
+        if old.name not in files:
+            old.unlink()
+    for name, text in files.items():
+        replace_file(source / name, text)
+    project = next(name for name in files if name.endswith(".gpr"))
+    given = {"RAVENCHART_USER": str(user.resolve())} if user_units(system) else {}
+    toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project], source, given)
+    return home / project.removesuffix(".gpr")
+
+
+def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Record]:
+    """The steps that the compiled program executes under the stimuli."""
+    known = {
+        (instance.lower(), what.lower()): (number, of_type)
+        for number, (instance, what, of_type) in enumerate(stimuli_of_system(system), 1)
+    }
+    lines = [str(stimuli.until)]
+    for entry in stimuli.entries:
+        owner, what = entry.place
+        number, of_type = known[(owner.lower(), what.lower())]
+        values = numbers(of_type, entry.value)
+        lines.append(" ".join(map(str, (entry.at, number, *values))))
+    text = "".join(f"{line}\n" for line in lines)
+    done = subprocess.run([program], input=text, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise toolchain.ToolFailed(f"{program.name}: {done.stderr.strip()}")
+    return [parsed(line) for line in done.stdout.splitlines()]
 
 
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:

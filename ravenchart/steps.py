@@ -99,7 +99,7 @@ def write_program(checked: Checked) -> Written:
     old = manifest.read_text(encoding="utf-8").split() if manifest.is_file() else []
     changed = 0
     for name, text in {**files, MANIFEST: "".join(f"{n}\n" for n in sorted(files))}.items():
-        changed += _replace(folder / name, text)
+        changed += replace_file(folder / name, text)
     for name in old:
         if name not in files and Path(name).name == name:
             (folder / name).unlink(missing_ok=True)
@@ -110,7 +110,7 @@ def write_program(checked: Checked) -> Written:
     return Written(folder, len(files), changed, missing)
 
 
-def _replace(path: Path, text: str) -> bool:
+def replace_file(path: Path, text: str) -> bool:
     """Put ``text`` at ``path`` in one step; False when it stands there already."""
     data = text.encode("utf-8")
     if path.is_file() and path.read_bytes() == data:

@@ -14,8 +14,8 @@ from gen.model import Component, System
 from .control import RULES
 from .invariants import invariants_hold
 from .livelock import eventless_steps_end
+from .outcomes import TooManyWays
 from .reach import Clock, OutOfTime, Reach
-from .stepping import TooManyWays
 
 SECONDS = 10.0
 """What the check of a model may take."""

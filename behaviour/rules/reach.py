@@ -13,52 +13,28 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import z3
 
-from gen.model import Activity, Component, System
-from gen.statechart import (
-    DONE,
-    After,
-    Every,
-    Initial,
-    Overflow,
-    Region,
-    State,
-    Transition,
-    TransitionKind,
-    When,
-)
-from gen.terms import (
-    BOOLEAN,
-    EnumerationType,
-    Expression,
-    If,
-    InState,
-    IntegerType,
-    Ns,
-    Reading,
-    ScalarType,
-    Set,
-)
+from gen.model import Component, System
+from gen.statechart import DONE, After, Every, When
+from gen.terms import BOOLEAN, Set
 
 from . import logic
+from .cells import actions, expressions, partition
 from .logic import Term, Variable
-from .schedule import PORTS
-from .stepping import Configuration, Outcome, outcomes
+from .outcomes import Outcome, outcomes
+from .outside import as_region, done_of, external_events, parameters_of
+from .stepping import Configuration
 from .tree import CONDITIONS, START, Occurrence, Tree
 
-Cell = tuple[int, int]
-"""First and last value; Booleans count 0 and 1."""
 Cells = tuple[int, ...]
 """For each variable that a region writes and tells apart, the cell that it is in."""
 
-MOST_CELLS = 12
-"""A variable with more is not told apart."""
-MOST_NODES = 400
-"""A region with more nodes is looked at without its data."""
+MOST_QUESTIONS = 1_500
+"""A region that needs more answers of z3 to tell its data apart is looked at without them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +69,10 @@ class Clock:
     def count(self) -> None:
         """One situation more; `OutOfTime` when there is no time for it."""
         self.situations += 1
+        self.check()
+
+    def check(self) -> None:
+        """`OutOfTime` when there is no time left."""
         if time.monotonic() - self.started > self.seconds:
             raise OutOfTime
 
@@ -106,6 +86,7 @@ class Thread:
     nodes: dict[Node, Edge | None] = field(default_factory=dict)
     """Each with the edge that leads to it on a shortest way."""
     edges: list[Edge] = field(default_factory=list)
+    questions: int = 0
     steps: dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]] = field(default_factory=dict)
     known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
 
@@ -123,13 +104,13 @@ class Reach:
         self.clock = clock
         self.types = logic.readable(component)
         self.symbols: dict[Variable, Term] = {}
-        self.constants = _parameters(component, system)
+        self.constants = parameters_of(component, system)
         self.initial = {
             name: value
             for data in component.data
             for name, value in logic.scalars(data.name, data.type, data.initial).items()
         }
-        self.cells = _partition(component, self.types, self.initial)
+        self.cells = partition(component, self.types, self.initial)
         self.cell_terms = {
             (name, cell): self.in_cell(name, self.symbol(name), cell)
             for name, cells in self.cells.items()
@@ -154,7 +135,7 @@ class Reach:
 
     def _threads(self) -> list[Thread]:
         regions = [Tree(r, frozenset(self._working(r.name))) for r in self.component.regions]
-        flows = [Tree(_as_region(a)) for a in self.component.activities if a.flow is not None]
+        flows = [Tree(as_region(a)) for a in self.component.activities if a.flow is not None]
         made = []
         for tree in (*regions, *flows):
             own = (v for v in self.cells if v[1] in tree.region.writes)
@@ -294,8 +275,6 @@ class Reach:
                         if after not in thread.nodes:
                             thread.nodes[after] = edge
                             waiting.append(after)
-            if thread.own and len(thread.nodes) > MOST_NODES:
-                raise _TooMany
 
     def _show(self, thread: Thread, edge: Edge) -> None:
         """What others may see of a step."""
@@ -341,6 +320,7 @@ class Reach:
         """The outcomes of a step, data aside."""
         key = (at, occurrence)
         if key not in thread.steps:
+            self.clock.check()
             made = outcomes(thread.tree, at, occurrence, self.symbol, self.plain)
             thread.steps[key] = made
         return thread.steps[key]
@@ -371,6 +351,9 @@ class Reach:
         solver.push()
         solver.add(*self.of_node(thread, cells), outcome.condition)
         while (answer := solver.check()) != z3.unsat:
+            thread.questions += 1
+            if thread.own and thread.questions > MOST_QUESTIONS:
+                raise _TooMany
             if answer == z3.unknown:
                 yield from self._all(fixed, open_)
                 break
@@ -421,176 +404,8 @@ class Reach:
 
 
 class _TooMany(Exception):  # noqa: N818
-    """More nodes than a region may have with its data."""
+    """More questions than a region may ask about its data."""
 
 
 def _is_value(value: Term) -> bool:
     return bool(z3.is_int_value(value) or z3.is_true(value) or z3.is_false(value))
-
-
-def _as_region(activity: Activity) -> Region:
-    """An activity's flow as the internal transition of a region of one state."""
-    here = activity.origin
-    condition = activity.while_in
-    guard = None if condition is None else InState(condition.region, condition.state)
-    state = State("working", here, None, "", (), (), ())
-    work = Transition(
-        "run",
-        here,
-        "working",
-        "working",
-        TransitionKind.INTERNAL,
-        Every(Ns(0), 1),
-        guard,
-        activity.flow or (),
-    )
-    return Region(
-        name=activity.name,
-        origin=here,
-        timing=activity.timing,
-        queue_depth=1,
-        overflow=Overflow.REJECT_NEWEST,
-        on_overflow=None,
-        steps_per_execution=1,
-        initial=Initial("working"),
-        safe_state=None,
-        states=(state,),
-        transitions=(work,),
-        reads=activity.reads,
-        writes=activity.writes,
-        sends=activity.sends,
-        raises=activity.raises,
-    )
-
-
-def done_of(component: Component, activity: str) -> str:
-    """The name of the completion that an activity raises."""
-    found = next(a for a in component.activities if a.name == activity)
-    assert found.while_in is not None
-    return f"{found.while_in.region}.{found.while_in.state}.{DONE}"
-
-
-def external_events(component: Component, system: System) -> Iterator[tuple[str, str | None]]:
-    """What may come from outside, each with the row that raises it; None: at any time.
-
-    An event that nothing raises is among them: that it never comes is said elsewhere.
-    """
-    instances = {i.name for i in system.instances if i.component.name == component.name}
-    for port in component.ports:
-        yield from ((e, PORTS) for e in (port.on_arrival, port.on_stale, port.on_overflow) if e)
-    for activity in component.activities:
-        if activity.flow is None:
-            for event in activity.raises:
-                named = done_of(component, activity.name) if event == DONE else event
-                yield named, activity.name
-    yield from ((r.on_overflow, None) for r in component.regions if r.on_overflow)
-    outside = [pair for processor in system.processors for pair in processor.on_deadline_miss]
-    yield from ((e, None) for owner, e in (*outside, *system.shutdown.raises) if owner in instances)
-    raised = {e for item in component.runnables() for e in item.raises}
-    raised |= {e for port in component.ports for e in (port.on_arrival, port.on_stale) if e}
-    yield from ((event.name, None) for event in component.events if event.name not in raised)
-
-
-def _parameters(component: Component, system: System) -> dict[str, dict[Variable, Term]]:
-    """The parameters of each instance that has any."""
-    types = {p.name: p.type for p in component.parameters}
-    return {
-        instance.name: {
-            logic.variable(Reading.PARAMETER, name, None): logic.constant(value, types[name])
-            for name, value in instance.parameters
-        }
-        for instance in system.instances
-        if instance.component.name == component.name and instance.parameters
-    }
-
-
-# --- Cells -------------------------------------------------------------------------
-
-
-def expressions(component: Component) -> Iterator[Expression]:
-    """Every expression that decides something, those in flows included."""
-    yield from (invariant.condition for invariant in component.invariants)
-    for region in component.regions:
-        for transition in region.transitions:
-            if isinstance(transition.trigger, When):
-                yield transition.trigger.condition
-            if transition.guard is not None:
-                yield transition.guard
-    for action in actions(component):
-        if isinstance(action, If):
-            yield action.condition
-
-
-def actions(component: Component) -> Iterator[object]:
-    """Every action of a component's flows."""
-    for flow in flows(component):
-        yield from every(flow)
-
-
-def flows(component: Component) -> Iterator[Sequence[object]]:
-    """Every flow of a component."""
-    for region in component.regions:
-        yield region.initial.effect
-        for state in region.states:
-            yield from (state.entry, state.exit)
-            yield from (nested.initial.effect for nested in state.regions)
-        yield from (transition.effect for transition in region.transitions)
-    yield from (activity.flow for activity in component.activities if activity.flow is not None)
-
-
-def every(flow: Iterable[object]) -> Iterator[object]:
-    """The actions of a flow, those inside others too."""
-    for action in flow:
-        yield action
-        if isinstance(action, If):
-            yield from every((*action.then, *action.otherwise))
-
-
-def _partition(
-    component: Component, types: dict[Variable, ScalarType], initial: dict[Variable, Term]
-) -> dict[Variable, tuple[Cell, ...]]:
-    """The cells of each data item that can be told apart."""
-    deciding = _deciding(component)
-    cuts: dict[Variable, set[int]] = {name: set() for name in initial if name in deciding}
-    for expression in expressions(component):
-        for name, number in logic.landmarks(expression):
-            if name in cuts:
-                cuts[name] |= {number, number + 1}
-    found = {}
-    for name in cuts:
-        cells = _cells(types[name], cuts[name], initial[name])
-        if len(cells) <= MOST_CELLS:
-            found[name] = cells
-    return found
-
-
-def _deciding(component: Component) -> set[Variable]:
-    """The variables that decisions depend on, also through what others are set to."""
-    found = set(_variables(expressions(component)))
-    sets = [
-        (logic.variable(Reading.DATA, action.data, action.field), action)
-        for action in actions(component)
-        if isinstance(action, Set)
-    ]
-    while True:
-        more = {v for name, a in sets if name in found for v in _variables([a.value])} - found
-        if not more:
-            return found
-        found |= more
-
-
-def _variables(terms: Iterable[Expression]) -> Iterator[Variable]:
-    for expression in terms:
-        for name in logic.names(expression):
-            yield logic.variable(name.kind, name.name, name.field)
-
-
-def _cells(type_: ScalarType, cuts: set[int], initial: Term) -> tuple[Cell, ...]:
-    if isinstance(type_, EnumerationType):
-        return tuple((i, i) for i in range(len(type_.literals)))
-    assert isinstance(type_, IntegerType)
-    start = initial.as_long()
-    firsts = sorted(
-        {type_.first} | {n for n in {*cuts, start, start + 1} if type_.first < n <= type_.last}
-    )
-    return tuple(zip(firsts, [*(n - 1 for n in firsts[1:]), type_.last], strict=True))

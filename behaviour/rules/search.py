@@ -22,9 +22,11 @@ from gen.terms import BOOLEAN, Reading
 
 from . import logic
 from .logic import Term, Variable
-from .reach import Reach, Thread, external_events
+from .outcomes import Outcome
+from .outside import external_events
+from .reach import Reach, Thread
 from .schedule import Rows
-from .stepping import Configuration, Outcome
+from .stepping import Configuration
 from .timing import Way
 from .tree import CONDITIONS, START, Occurrence
 from .words import label, where

@@ -17,8 +17,9 @@ from gen.statechart import After, Every
 
 from . import logic
 from .logic import PORT_STATES, Term, Variable
+from .outcomes import Outcome
 from .schedule import PORTS, Row
-from .stepping import Configuration, Outcome
+from .stepping import Configuration
 from .tree import CONDITIONS, START, Occurrence
 
 if TYPE_CHECKING:

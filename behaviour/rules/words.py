@@ -11,8 +11,9 @@ from gen.statechart import After, Every
 
 from . import logic
 from .logic import Term, Variable
+from .outcomes import Outcome
 from .reach import Edge, Reach, Thread
-from .stepping import Configuration, Outcome
+from .stepping import Configuration
 from .tree import Tree
 
 LONGEST = 12
@@ -87,4 +88,5 @@ def valuation(reach: Reach, model: Term, terms: Iterable[Term]) -> str:
 def reached(reach: Reach, thread: Thread, edge: Edge) -> str:
     """The shortest way to where a step begins, as a note."""
     way = reach.way(thread, edge.before)
-    return f"it comes there by {trace(thread.tree, way)}"
+    text = trace(thread.tree, way)
+    return f"it comes there by {text}" if len(way) > 1 else f"it begins with {text}"

@@ -245,11 +245,12 @@ class Subprogram:
 
 @dataclass(frozen=True, slots=True)
 class Instance:
-    """``package name is new generic (...);``"""
+    """``package name is new generic (...);``, or a ``procedure``."""
 
     name: str
     generic: str
     args: tuple[Arg, ...]
+    kind: str = "package"
 
 
 @dataclass(frozen=True, slots=True)

@@ -325,8 +325,8 @@ def _declaration(decl: Decl) -> Doc:
             return _group(_cat(start, _aspects(aspects) if aspects else "", ";"))
         case Subprogram():
             return _subprogram(decl)
-        case Instance(name, generic, args):
-            head = f"package {name} is new {generic}"
+        case Instance(name, generic, args, kind):
+            head = f"{kind} {name} is new {generic}"
             return _group(_cat(head, _nest(_cat(SOFT, _args(args)), 2), ";"))
         case Package():
             return _package(decl)
@@ -377,12 +377,20 @@ def _package(package: Package) -> Doc:
     )
 
 
-def print_unit(unit: Unit) -> str:
-    """The text of ``unit``, ending in a newline."""
+def print_item(unit: Unit) -> str:
+    """The text of ``unit`` without its header and context, ending in a newline."""
+    return _laid_out(_declaration(unit.item))
+
+
+def print_unit(unit: Unit, item: str | None = None) -> str:
+    """The text of ``unit``, ending in a newline; ``item`` is what `print_item` made of it."""
     parts: list[Doc] = [_comment(unit.header), _text("")]
     parts += [_text(f"with {name};") for name in unit.withs]
-    if unit.withs:
-        parts.append(_text(""))
-    parts.append(_declaration(unit.item))
-    text = wl.pformat(_upright(_cat(*_between(parts))), width=WIDTH - 3)
+    head = _laid_out(_upright(_cat(*_between(parts))))
+    gap = "\n" if unit.withs else ""
+    return head + gap + (print_item(unit) if item is None else item)
+
+
+def _laid_out(doc: Doc) -> str:
+    text = wl.pformat(doc, width=WIDTH - 3)
     return "\n".join(line.rstrip() for line in text.split("\n")) + "\n"

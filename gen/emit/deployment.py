@@ -53,6 +53,11 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
     return tuple(units)
 
 
+def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
+    """What instances need of it in a simulation."""
+    return (_health(system, header), _elements(system, header))
+
+
 def _health(system: System, header: str) -> Unit:
     args = arguments(Ceiling=priority(system.object("health").ceiling))
     name = f"{root_package(system)}.Health_Counts"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..model import Component, Event, System
 from ..terms import Type, named
-from .ada import Aggregate, Arg, Comment, Decl, EnumType, Expr, RecordType, Ref
+from .ada import Aggregate, Arg, Comment, Decl, EnumType, Expr, Object, RecordType, Ref
 from .ada import Component as Field
 from .naming import ada_case, default_value, type_name
 
@@ -35,15 +35,14 @@ def event_types(system: System, component: Component) -> list[Decl]:
         EnumType("Event_Name", names),
         Comment("An event with its value; components that it does not use keep their default."),
         RecordType("Event", tuple(fields)),
+        Object("No_Event", "Event", Aggregate((Arg("others", Ref("<>")),)), constant=True),
     ]
 
 
 def null_event(component: Component) -> Expr:
     """What stands where there is no event."""
-    first = Ref(f"{ada_case(component.name)}.{ada_case(component.events[0].name)}")
-    if not carries(component):
-        return first
-    return _record(component, Arg("Name", first))
+    name = "No_Event" if carries(component) else ada_case(component.events[0].name)
+    return Ref(f"{ada_case(component.name)}.{name}")
 
 
 def event_value(
@@ -62,7 +61,9 @@ def event_value(
 
 def _record(component: Component, *rows: Arg, prefix: str = "") -> Aggregate:
     """An event record; what is not given keeps its default."""
-    return Aggregate((*rows, Arg("others", Ref("<>"))), f"{prefix}{ada_case(component.name)}.Event")
+    types = {e.type.name for e in component.events if e.type is not None}
+    rest = () if len(rows) > len(types) else (Arg("others", Ref("<>")),)
+    return Aggregate((*rows, *rest), f"{prefix}{ada_case(component.name)}.Event")
 
 
 def name_of(component: Component, event: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..model import Activity, Port
-from ..statechart import Region
+from ..statechart import DONE, Region
 from .ada import (
     Arg,
     Assign,
@@ -24,6 +24,7 @@ from .ada import (
     UseType,
     arguments,
     call,
+    do,
     equal,
     number,
 )
@@ -119,7 +120,7 @@ class Rows(Site):
     # --- body: regions
 
     def run_region(self, region: Region) -> list[Decl]:
-        shape = RegionShape(self.system, self.instance.component, region)
+        shape = RegionShape(self.system, self.instance.component, region, noted=self.noted)
         name = ada_case(region.name)
         package = f"{self.component}.{name}"
         step = self._step_region(shape, package)
@@ -130,12 +131,23 @@ class Rows(Site):
             declarations.append(Object("Ins", f"{package}.Inputs"))
             body += [self._copy_in(n, f"Ins.{ada_case(n)}") for n in shape.inputs]
             step_args = arguments(Ref("Ins"))
+        completing = self.instance.component.completing(region.name)
+        if completing:
+            declarations.append(Object("Visit", "Ravenchart.Event_Count"))
+        for activity, state in completing:
+            notice = f"{package}.Notice_{ada_case(state)}"
+            body.append(do(f"{ada_case(activity.name)}_Done_Board.Read", Ref("Visit")))
+            body.append(do(notice, Ref(f"{name}_Region"), Ref("Visit")))
         if shape.timers:
             body.append(Do(f"{package}.Tick", arguments(Ref(f"{name}_Region"))))
         one: Stmt = Do(f"Step_{name}", step_args)
         if region.steps_per_execution > 1:
             one = Loop(f"for Unused in 1 .. {region.steps_per_execution}", (one,))
         body.append(one)
+        #  visits before states: who sees a state entered sees that visit, or a later one
+        for activity, state in completing:
+            visits = Ref(f"{name}_Region.{shape.visits(state)}")
+            body.append(do(f"{ada_case(activity.name)}_Visit_Board.Write", visits))
         body.append(Do(f"{name}_Board.Write", arguments(Ref(f"{name}_Region.{shape.place}"))))
         for data in self.instance.component.data:
             if data.name in region.writes and self._has_object(data.name):
@@ -167,7 +179,7 @@ class Rows(Site):
             owners = {t for n in shape.lanes if n.owner for t in shape.compared_types(n.owner)}
             declarations += [UseType(f"{states}.{t}") for t in sorted(owners)]
         after = self._after_step(shape, package)
-        if not isinstance(after[0], Pragma):
+        if not shape.listed and not isinstance(after[0], Pragma):
             declarations.append(UseType(f"{package}.Selection"))
         polled = [Ref(f"{name}_Region"), Ref("Now")]
         polled += [Ref("Event")] if len(shape.poll_params()) > 2 else []
@@ -192,14 +204,15 @@ class Rows(Site):
             declarations.append(Object("Box", f"{package}.Outbox"))
             args.append(Ref("Box"))
         body.append(Do(f"{package}.Step", arguments(*args, Ref("Fired"))))
+        if self.noted:
+            body.append(do("Ravenchart.Steps.Finish", Ref(f'"{self._element(region.name)}"')))
+        body += after
         if shape.deferring:
             lost = f"{name}_Region.Lost"
-            counted = [self._fault("Queue_Overflow")]
-            counted += self._note(
-                "Fault", region.name, "region", self._fault_number("Queue_Overflow")
-            )
-            body.append(If(((Ref(lost), (*counted, Assign(lost, Ref("False")))),)))
-        body += after
+            told = [self._fault("Queue_Overflow")]
+            told += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
+            told += [self._raise(region.on_overflow)] if region.on_overflow is not None else []
+            body.append(If(((Ref(lost), (*told, Assign(lost, Ref("False")))),)))
         params = (Param("Ins", "in", f"{package}.Inputs"),) if shape.inputs else ()
         return Subprogram(
             f"Step_{name}", params, declarations=tuple(declarations), body=tuple(body)
@@ -263,6 +276,9 @@ class Rows(Site):
         if activity.while_in is not None:
             region = component.region(activity.while_in.region)
             guard = self._active_in(region, activity.while_in.state, declarations)
+        if activity.completes is not None:
+            declarations.append(Object("Visit", "Ravenchart.Event_Count"))
+            before.append(do(f"{ada_case(activity.name)}_Visit_Board.Read", Ref("Visit")))
         for name in reads:
             local = f"{ada_case(name)}_Value"
             declarations.append(Object(local, reading_type(self.system, component, name)))
@@ -289,6 +305,10 @@ class Rows(Site):
             flag = raise_flag(event)
             declarations.append(Object(flag, "Boolean"))
             args.append(Arg(flag, Ref(flag)))
+            if event == DONE:
+                done = do(f"{ada_case(activity.name)}_Done_Board.Write", Ref("Visit"))
+                after.append(If(((Ref(flag), (done,)),)))
+                continue
             given: Expr | None = None
             if (carried := raised_type(component, event)) is not None:
                 given = Ref(raise_value(event))

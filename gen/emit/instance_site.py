@@ -28,6 +28,8 @@ class Site:
 
     system: System
     instance: Instance
+    noted: bool = False
+    """For simulation: every behaviour and step says that it was executed."""
 
     @property
     def component(self) -> str:
@@ -67,6 +69,8 @@ class Site:
         targets = [c.target for c in self.system.connections]
         targets += [t for m in self.system.messages for t in m.targets]
         names = {t.port for t in targets if t.instance == self.instance.name}
+        if self.noted:
+            return self.instance.component.inputs()
         return tuple(p for p in self.instance.component.inputs() if p.name in names)
 
     def _note(

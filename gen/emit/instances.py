@@ -6,8 +6,9 @@ logic, and publishes what came out. Logic stays in the component's packages.
 
 from __future__ import annotations
 
-from ..model import Activity, Port, PortKind, System, Work
+from ..model import Activity, Event, Port, PortKind, System, Work
 from ..statechart import Overflow, Region
+from ..terms import named
 from .ada import (
     SPARK,
     Case,
@@ -32,7 +33,7 @@ from .ada import (
 from .ada import Instance as Instantiation
 from .charts.places import Places
 from .components import leaf_type
-from .events import name_of, null_event
+from .events import event_value, name_of, null_event
 from .instance_rows import Rows
 from .instance_site import Site
 from .naming import (
@@ -77,6 +78,8 @@ class Glue(Site):
         if component.inputs() or any(r.events() for r in component.regions):
             names.add("Ravenchart.Queues")
         names.add("Ravenchart.Blackboards")
+        if self.noted:
+            names.add("Ravenchart.Steps")
         names |= {f"{root}.{self.component}.{ada_case(r.name)}" for r in component.regions}
         if any(a.flow is None for a in component.activities):
             names.add(f"{root}.{self.component}.Activities")
@@ -132,7 +135,7 @@ class Glue(Site):
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
         items += [self._send_body(p) for p in component.outputs() if p.name in used]
-        rows = Rows(self.system, self.instance)
+        rows = Rows(self.system, self.instance, self.noted)
         for slot in self._slots():
             match slot.work:
                 case Work.PORT_REGION:
@@ -232,6 +235,12 @@ class Glue(Site):
                         f"{region.name}.queue",
                     )
                 )
+            for activity, state in component.completing(region.name):
+                items.append(Comment(f"[{self._element(activity.name)}] completes {state}"))
+                for kind in ("visit", "done"):
+                    board = f"{ada_case(activity.name)}_{ada_case(kind)}"
+                    element = f"{activity.name}.{kind}"
+                    items.append(self._board(board, "Ravenchart.Event_Count", number(0), element))
         return items
 
     # --- body: arrivals, events, sending
@@ -272,7 +281,7 @@ class Glue(Site):
             steps: list[Stmt] = []
             for region in regions:
                 if event.name in region.events():
-                    steps += self._enqueue(region)
+                    steps += self._enqueue(region, event, Ref("Item"), tells=True)
             steps += self._note("Raised", event.name, "event") if steps else ()
             rows.append((f"{self.component}.{ada_case(event.name)}", tuple(steps)))
         declarations: tuple[Decl, ...] = ()
@@ -288,14 +297,28 @@ class Glue(Site):
             body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
         )
 
-    def _enqueue(self, region: Region) -> list[Stmt]:
+    def _enqueue(self, region: Region, event: Event, item: Expr, *, tells: bool) -> list[Stmt]:
+        """Put an event into a region's queue; with ``tells``, report what is lost by an event."""
         queue = f"{ada_case(region.name)}_Queue"
         full: list[Stmt] = [self._fault("Queue_Overflow")]
         full += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
+        if tells and region.on_overflow is not None:
+            full += self.overflowed(region.on_overflow)
         condition = Chain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+        args = [item, Ref("Status")]
+        if event.overflow is not None and event.overflow is not region.overflow:
+            args.append(Ref(f"Ravenchart.Queueing.{ada_case(event.overflow.value)}"))
+        return [Do(f"{queue}.Put", arguments(*args)), If(((condition, tuple(full)),))]
+
+    def overflowed(self, name: str) -> list[Stmt]:
+        """Raise the event that tells of a loss; what is lost by that is only counted."""
+        component = self.instance.component
+        event: Event = named(component.events, name)
         return [
-            Do(f"{queue}.Put", arguments(Ref("Item"), Ref("Status"))),
-            If(((condition, tuple(full)),)),
+            s
+            for r in component.regions
+            if event.name in r.events()
+            for s in self._enqueue(r, event, event_value(component, name), tells=False)
         ]
 
     def _send_body(self, port: Port) -> Subprogram:
@@ -322,6 +345,6 @@ class Glue(Site):
         )
 
 
-def emit_instances(system: System, header: str) -> tuple[Unit, ...]:
+def emit_instances(system: System, header: str, *, noted: bool = False) -> tuple[Unit, ...]:
     """The packages of all instances."""
-    return tuple(u for i in system.instances for u in Glue(system, i).units(header))
+    return tuple(u for i in system.instances for u in Glue(system, i, noted).units(header))

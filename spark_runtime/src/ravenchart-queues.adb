@@ -12,7 +12,10 @@ is
    protected Queue
      with Priority => Ceiling
    is
-      procedure Put (Item : Element_Type; Status : out Queueing.Put_Status);
+      procedure Put
+        (Item      : Element_Type;
+         When_Full : Queueing.Overflow_Policy;
+         Status    : out Queueing.Put_Status);
 
       procedure Take
         (Item : out Element_Type; Status : out Queueing.Take_Status);
@@ -26,15 +29,15 @@ is
 
    protected body Queue is
 
-      procedure Put (Item : Element_Type; Status : out Queueing.Put_Status) is
+      procedure Put
+        (Item      : Element_Type;
+         When_Full : Queueing.Overflow_Policy;
+         Status    : out Queueing.Put_Status) is
       begin
-         pragma Warnings
-           (GNATprove, Off, "statement has no effect",
-            Reason => "each instance has one policy");
          if Fifos.Length (Store) < Capacity then
             Fifos.Put (Store, Item);
             Status := Queueing.Queued;
-         elsif Policy = Queueing.Drop_Oldest then
+         elsif When_Full = Queueing.Drop_Oldest then
             Fifos.Replace_Oldest (Store, Item);
             Given_Up := Next (Given_Up);
             Status   := Queueing.Dropped_Oldest;
@@ -42,7 +45,6 @@ is
             Given_Up := Next (Given_Up);
             Status   := Queueing.Rejected_Full;
          end if;
-         pragma Warnings (GNATprove, On, "statement has no effect");
       end Put;
 
       procedure Take
@@ -62,11 +64,14 @@ is
 
    end Queue;
 
-   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   procedure Put
+     (Item      : Element_Type;
+      Status    : out Queueing.Put_Status;
+      When_Full : Queueing.Overflow_Policy := Policy)
    with Refined_Global => (In_Out => Queue)
    is
    begin
-      Queue.Put (Item, Status);
+      Queue.Put (Item, When_Full, Status);
    end Put;
 
    procedure Take (Item : out Element_Type; Status : out Queueing.Take_Status)

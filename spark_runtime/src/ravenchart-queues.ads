@@ -18,6 +18,7 @@ generic
    Ceiling : System.Any_Priority;
    --  At least the priority of every caller.
    Policy : Queueing.Overflow_Policy;
+   --  For elements that are put without another.
 package Ravenchart.Queues
   with
     SPARK_Mode,
@@ -25,7 +26,10 @@ package Ravenchart.Queues
       (State with Synchronous, External => (Async_Readers, Async_Writers)),
     Initializes    => State
 is
-   procedure Put (Item : Element_Type; Status : out Queueing.Put_Status)
+   procedure Put
+     (Item      : Element_Type;
+      Status    : out Queueing.Put_Status;
+      When_Full : Queueing.Overflow_Policy := Policy)
    with Global => (In_Out => State);
    --  Queue Item; a full queue gives up an element and counts it.
 

@@ -1,4 +1,4 @@
-"""The bad models and what loading them prints.
+"""The bad models, and what loading them and looking at their behaviour prints.
 
 After a deliberate change of a message, `python -m tests.support.bad_models`
 writes every expect.txt anew; read the difference before you keep it.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from behaviour.rules import findings
 from gen.diagnostics import render
 from gen.load import Loaded, load
 
@@ -25,9 +26,10 @@ def loaded(name: str) -> Loaded:
 
 
 def messages(name: str) -> str:
-    """What loading the case prints."""
+    """What loading the case prints, and what its behaviour gets wrong."""
     result = loaded(name)
-    return "\n".join(render(item, result.sources) for item in result.diagnostics) + "\n"
+    late = () if result.system is None else findings(result.system)
+    return "\n".join(render(item, result.sources) for item in (*result.diagnostics, *late)) + "\n"
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ is
 
       type Node_Set is array (Node) of Boolean;
 
-      function Configuration (Leaf : Monitoring_States.Leaf) return Node_Set is
+      function Active_In (Leaf : Monitoring_States.Leaf) return Node_Set is
         ((Watching => Leaf = Monitoring_States.Watching,
           Alarmed => Leaf = Monitoring_States.Alarmed));
    end Chart;
@@ -94,11 +94,12 @@ is
    is
       use type Chart.Node;
       use type Chart.Node_Set;
-      Active : Chart.Node_Set :=
+      Before : constant Chart.Node_Set :=
         (if Self.Started
-            then Chart.Configuration (Self.Leaf)
+            then Chart.Active_In (Self.Leaf)
          else (others => False))
       with Ghost;
+      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Watching
       with
         Pre => Active (Chart.Watching),
@@ -175,7 +176,7 @@ is
             Exit_Alarmed;
             Enter_Watching;
       end case;
-      pragma Assert (Active = Chart.Configuration (Self.Leaf));
+      pragma Assert (Active = Chart.Active_In (Self.Leaf));
       Self.Started := True;
    end Fire;
 

@@ -304,7 +304,7 @@ is
 
       type Node_Set is array (Node) of Boolean;
 
-      function Configuration (Leaf : Motion_States.Leaf) return Node_Set is
+      function Active_In (Leaf : Motion_States.Leaf) return Node_Set is
         ((Operational => Leaf in Motion_States.Operational,
           Idle => Leaf = Motion_States.Idle,
           Homing => Leaf in Motion_States.Homing,
@@ -350,11 +350,12 @@ is
    is
       use type Chart.Node;
       use type Chart.Node_Set;
-      Active : Chart.Node_Set :=
+      Before : constant Chart.Node_Set :=
         (if Self.Started
-            then Chart.Configuration (Self.Leaf)
+            then Chart.Active_In (Self.Leaf)
          else (others => False))
       with Ghost;
+      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Operational
       with
         Pre =>
@@ -507,7 +508,8 @@ is
       with
         Pre =>
           Self.Leaf in Motion_States.Fault
-          and then Active = Chart.Configuration (Self.Leaf),
+          and then (for all N in Chart.Limit .. Chart.Drive =>
+                Active (N) = Chart.Active_In (Self.Leaf) (N)),
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
@@ -527,7 +529,8 @@ is
       with
         Pre =>
           Self.Leaf in Motion_States.Moving
-          and then Active = Chart.Configuration (Self.Leaf),
+          and then (for all N in Chart.Accelerating .. Chart.Braking =>
+                Active (N) = Chart.Active_In (Self.Leaf) (N)),
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
@@ -549,7 +552,8 @@ is
       with
         Pre =>
           Self.Leaf in Motion_States.Homing
-          and then Active = Chart.Configuration (Self.Leaf),
+          and then (for all N in Chart.Seeking .. Chart.Backing_Off =>
+                Active (N) = Chart.Active_In (Self.Leaf) (N)),
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
@@ -569,7 +573,8 @@ is
       with
         Pre =>
           Self.Leaf in Motion_States.Operational
-          and then Active = Chart.Configuration (Self.Leaf),
+          and then (for all N in Chart.Idle .. Chart.Braking =>
+                Active (N) = Chart.Active_In (Self.Leaf) (N)),
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
@@ -784,7 +789,9 @@ is
             Exit_Homing;
             pragma Assert
               ((for all N in Chart.Node =>
-                   Active (N) = (N in Chart.Operational)));
+                   Active (N)
+                   = (N not in Chart.Idle .. Chart.Braking
+                      and then Before (N))));
             Self.Data.Homed := True;
             Enter_Idle;
          when At_Speed =>
@@ -845,7 +852,7 @@ is
             Enter_Operational;
             Enter_Idle;
       end case;
-      pragma Assert (Active = Chart.Configuration (Self.Leaf));
+      pragma Assert (Active = Chart.Active_In (Self.Leaf));
       Self.Started := True;
    end Fire;
 

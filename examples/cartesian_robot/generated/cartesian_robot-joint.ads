@@ -13,6 +13,7 @@ is
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Joint.Event,
+      Null_Event => Joint.Ordered,
       Capacity => 16);
 
    --  [Joint.Motion.states]

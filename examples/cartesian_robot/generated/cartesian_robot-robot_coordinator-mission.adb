@@ -194,7 +194,7 @@ is
 
       type Node_Set is array (Node) of Boolean;
 
-      function Configuration (Leaf : Mission_States.Leaf) return Node_Set is
+      function Active_In (Leaf : Mission_States.Leaf) return Node_Set is
         ((Active => Leaf in Mission_States.Active,
           Waiting => Leaf = Mission_States.Waiting,
           Homing => Leaf = Mission_States.Homing,
@@ -242,11 +242,12 @@ is
    is
       use type Chart.Node;
       use type Chart.Node_Set;
-      Active : Chart.Node_Set :=
+      Before : constant Chart.Node_Set :=
         (if Self.Started
-            then Chart.Configuration (Self.Leaf)
+            then Chart.Active_In (Self.Leaf)
          else (others => False))
       with Ghost;
+      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Active
       with
         Pre =>
@@ -360,7 +361,8 @@ is
       with
         Pre =>
           Self.Leaf in Mission_States.Travelling
-          and then Active = Chart.Configuration (Self.Leaf),
+          and then (for all N in Chart.Departing .. Chart.Under_Way =>
+                Active (N) = Chart.Active_In (Self.Leaf) (N)),
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
@@ -380,7 +382,8 @@ is
       with
         Pre =>
           Self.Leaf in Mission_States.Active
-          and then Active = Chart.Configuration (Self.Leaf),
+          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
+                Active (N) = Chart.Active_In (Self.Leaf) (N)),
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
@@ -647,7 +650,7 @@ is
             Enter_Stopped;
             Enter_Shut_Down;
       end case;
-      pragma Assert (Active = Chart.Configuration (Self.Leaf));
+      pragma Assert (Active = Chart.Active_In (Self.Leaf));
       Self.Started := True;
    end Fire;
 

@@ -13,6 +13,7 @@ is
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Robot_Coordinator.Event,
+      Null_Event => Robot_Coordinator.Commanded,
       Capacity => 16);
 
    --  [Robot_Coordinator.Mission.states]

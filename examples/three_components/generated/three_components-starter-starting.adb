@@ -34,7 +34,7 @@ is
 
       type Node_Set is array (Node) of Boolean;
 
-      function Configuration (Leaf : Starting_States.Leaf) return Node_Set is
+      function Active_In (Leaf : Starting_States.Leaf) return Node_Set is
         ((Before => Leaf = Starting_States.Before,
           After_Start => Leaf = Starting_States.After_Start));
    end Chart;
@@ -74,11 +74,12 @@ is
    is
       use type Chart.Node;
       use type Chart.Node_Set;
-      Active : Chart.Node_Set :=
+      Before : constant Chart.Node_Set :=
         (if Self.Started
-            then Chart.Configuration (Self.Leaf)
+            then Chart.Active_In (Self.Leaf)
          else (others => False))
       with Ghost;
+      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Before
       with
         Pre => Active (Chart.Before),
@@ -145,7 +146,7 @@ is
             Box.Token_Out_Sent := True;
             Enter_After_Start;
       end case;
-      pragma Assert (Active = Chart.Configuration (Self.Leaf));
+      pragma Assert (Active = Chart.Active_In (Self.Leaf));
       Self.Started := True;
    end Fire;
 

@@ -13,6 +13,7 @@ is
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Starter.Event,
+      Null_Event => Starter.Token_Came,
       Capacity => 16);
 
    --  [Starter.Starting.states]

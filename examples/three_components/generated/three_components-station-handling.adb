@@ -30,17 +30,17 @@ is
 
       type Node_Set is array (Node) of Boolean;
 
-      function Configuration (Leaf : Handling_States.Leaf) return Node_Set is
+      function Active_In (Leaf : Handling_States.Leaf) return Node_Set is
         ((Empty => Leaf = Handling_States.Empty,
           Holding => Leaf = Handling_States.Holding));
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
    begin
-      if Self.Started then
-         Now := Conditions;
-      else
+      if not Self.Started then
          Now := Start_Of_Region;
+      else
+         Now := Conditions;
       end if;
    end Poll;
 
@@ -58,11 +58,12 @@ is
    is
       use type Chart.Node;
       use type Chart.Node_Set;
-      Active : Chart.Node_Set :=
+      Before : constant Chart.Node_Set :=
         (if Self.Started
-            then Chart.Configuration (Self.Leaf)
+            then Chart.Active_In (Self.Leaf)
          else (others => False))
       with Ghost;
+      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Empty
       with
         Pre => Active (Chart.Empty),
@@ -123,7 +124,7 @@ is
             Box.Token_Out_Sent := True;
             Enter_Empty;
       end case;
-      pragma Assert (Active = Chart.Configuration (Self.Leaf));
+      pragma Assert (Active = Chart.Active_In (Self.Leaf));
       Self.Started := True;
    end Fire;
 

@@ -29,7 +29,7 @@ is
 
       type Node_Set is array (Node) of Boolean;
 
-      function Configuration (Leaf : Watching_States.Leaf) return Node_Set is
+      function Active_In (Leaf : Watching_States.Leaf) return Node_Set is
         ((Quiet => Leaf = Watching_States.Quiet,
           Busy => Leaf = Watching_States.Busy));
    end Chart;
@@ -65,11 +65,12 @@ is
    is
       use type Chart.Node;
       use type Chart.Node_Set;
-      Active : Chart.Node_Set :=
+      Before : constant Chart.Node_Set :=
         (if Self.Started
-            then Chart.Configuration (Self.Leaf)
+            then Chart.Active_In (Self.Leaf)
          else (others => False))
       with Ghost;
+      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Quiet
       with
         Pre => Active (Chart.Quiet),
@@ -129,7 +130,7 @@ is
             Exit_Busy;
             Enter_Quiet;
       end case;
-      pragma Assert (Active = Chart.Configuration (Self.Leaf));
+      pragma Assert (Active = Chart.Active_In (Self.Leaf));
       Self.Started := True;
    end Fire;
 

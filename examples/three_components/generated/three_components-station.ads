@@ -13,6 +13,7 @@ is
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Station.Event,
+      Null_Event => Station.Token_Came,
       Capacity => 16);
 
    --  [Station.Handling.states]

@@ -97,8 +97,6 @@ class Compounds:
     def place(self, vertex: str) -> Place:
         """The region that a state or pseudostate stands in."""
         pseudo = self.region.pseudostate(vertex)
-        if pseudo is not None and pseudo.kind is PseudoKind.TERMINATE:
-            return TOP
         at: State = self.region.state(vertex) if pseudo is None else pseudo  # type: ignore[assignment]
         return Place(at.parent, at.region)
 
@@ -128,7 +126,7 @@ class Compounds:
         return tuple(
             p.name
             for p in self.region.pseudostates
-            if (p.kind in PASSED and Place(p.parent, p.region) == place)
+            if (p.kind in PASSED and self.place(p.name) == place)
             or (p.kind is PseudoKind.TERMINATE and place == TOP)
         )
 

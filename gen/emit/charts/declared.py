@@ -46,24 +46,26 @@ from ..ada import Component as Field
 from ..components import reading_type
 from ..events import name_of, null_event
 from ..naming import ada_case, default_value, type_name, value
-from ..terms import emit_expression, states_in
+from ..terms import emit_expression
 from .compound import PASSED, Firing, Kind
 from .history import restored_functions, restored_place
-from .places import Places, flat
+from .places import flat
 from .shape import START, RegionShape, guard_operators, guards_of, plain_args
 from .stepping import body_of
+from .working import done_types, notices, work_fields
 
 
 def emit_region(
-    system: System, component: Component, region: Region, header: str
+    system: System, component: Component, region: Region, header: str, *, noted: bool = False
 ) -> tuple[Unit, ...]:
-    """Spec and body of the package of one region."""
-    shape = RegionShape(system, component, region)
+    """Spec and body of the package of one region; ``noted`` as in `Site`."""
+    shape = RegionShape(system, component, region, noted=noted)
     withs = ["Ravenchart.Timers"] if shape.timers else []
     withs += ["Ravenchart.Event_Lists"] if shape.deferring else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
     body = Package(shape.package, body_of(shape), (SPARK,), is_body=True)
-    return Unit(header, tuple(withs), spec), Unit(header, (), body)
+    seen = ("Ravenchart.Steps",) if noted else ()
+    return Unit(header, tuple(withs), spec), Unit(header, seen, body)
 
 
 # --- Types -------------------------------------------------------------------
@@ -92,19 +94,18 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
 def _use_types(shape: RegionShape) -> list[Decl]:
     """The types whose operators the declared chart uses."""
     region = shape.region
-    asked = {pair for guard in guards_of(region) for pair in states_in(guard)}
-    compared = {
-        f"{other.states}.{kind}"
-        for name, state in asked
-        if name != region.name
-        for other in (Places(shape.component.region(name)),)
-        for kind in other.compared_types(state)
-    }
     own = {f"{shape.states}.{shape.lane_type(n)}" for n in shape.lanes}
     if not shape.single:
         own.add(shape.place_type)
     ordered = [f"{shape.states}.Leaf", *sorted(own - {f"{shape.states}.Leaf"})]
-    return [UseType(n) for n in (*ordered, *sorted(guard_operators(region)), *sorted(compared))]
+    return [
+        UseType(n)
+        for n in (
+            *ordered,
+            *sorted(guard_operators(region)),
+            *sorted(shape.compared_in(guards_of(region))),
+        )
+    ]
 
 
 def _lane_types(shape: RegionShape) -> list[Decl]:
@@ -191,6 +192,7 @@ def _records(shape: RegionShape) -> list[Decl]:
                 ),
             ),
         ]
+    items += done_types(shape)
     items += [Comment("The region's own state."), RecordType("Region", _region_fields(shape))]
     return items
 
@@ -205,6 +207,7 @@ def _region_fields(shape: RegionShape) -> tuple[Field, ...]:
     if shape.timers:
         rows.append(Field("Timers", f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"))
     rows += [Field(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
+    rows += work_fields(shape)
     if shape.deferring:
         rows.append(Field("Deferred", "Deferrals.List"))
         rows.append(Field("Lost", "Boolean", FALSE))
@@ -419,6 +422,7 @@ def _operations(shape: RegionShape) -> list[Decl]:
             Subprogram("Tick", (self_out,), aspects=(Aspect("Post", same),)),
             Comment("One more execution: the time-outs come nearer."),
         ]
+    items += notices(shape, same)
     due = equal(equal(Ref("Now"), Ref("Start_Of_Region")), Prefix("not", Ref("Self.Started")))
     post: list[Expr] = [same, due] if shape.polls_out else [due]
     if shape.completing:

@@ -170,18 +170,26 @@ class Moves:
         if firing.kind is Kind.INTERNAL:
             return effect or (NULL,)
         assert firing.domain is not None
-        if self._terminates(firing):
-            stop = Assign("Active", Aggregate((Arg("others", FALSE),)))
-            goal = self.shape.configuration(self.shape.leads_to(firing), self.held)
-            return (*effect, Assign(self.held, goal), stop)
         out = self._leave(firing)
         claim = (self._claim(firing.domain),) if effect else ()
+        if self._terminates(firing):
+            entered = self._steps(firing.entries[:-1])
+            return (*out, *claim, *effect, *entered, *self._stop(firing))
         if firing.kind is Kind.RESTORE:
             pseudo = self.region.pseudostate(firing.sources[0])
             assert pseudo is not None
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
             return (*out, *Restoring(self.shape, self._steps).statements(firing.domain, deep))
         return (*out, *claim, *effect, *self._steps(firing.entries))
+
+    def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
+        """The region stops: nothing is active any more, and nothing more is left."""
+        goal = self.shape.leads_to(firing)
+        stops = [
+            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
+            for lane, leaf in goal.items()
+        ]
+        return (*stops, Assign("Active", Aggregate((Arg("others", FALSE),))))
 
     def _terminates(self, firing: Firing) -> bool:
         pseudo = self.region.pseudostate(firing.goal) if firing.goal else None
@@ -391,6 +399,7 @@ class Moves:
             body=(
                 *here,
                 *self._arm(vertex),
+                *self._begin_work(vertex),
                 Assign(f"Active ({node})", TRUE),
                 *note,
                 *emit_flow(self.scope, state.entry),
@@ -409,20 +418,28 @@ class Moves:
             found.append(Do("Ravenchart.Timers.Arm", arguments(*args)))
         return tuple(found)
 
+    def _begin_work(self, state: str) -> tuple[Stmt, ...]:
+        """Another visit, in which the do activity is not done yet."""
+        if state not in self.shape.working:
+            return ()
+        visits = f"Self.{self.shape.visits(state)}"
+        return (
+            Assign(visits, call("Ravenchart.Next", Ref(visits))),
+            Assign(f"Self.{self.shape.done(state)}", FALSE),
+        )
+
     def _complete(self, vertex: str) -> tuple[Stmt, ...]:
         """What has completed by an entry: the leaf itself, or the state around a final one."""
         state = self.region.state(vertex)
         shape = self.shape
-        if vertex in shape.completing and state.is_leaf:
+        if vertex in shape.completing and state.is_leaf and vertex not in shape.working:
             return (Assign(f"Self.{shape.completed(vertex)}", TRUE),)
         owner = state.parent
         if not state.final or owner is None or owner not in shape.completing:
             return ()
         done = Assign(f"Self.{shape.completed(owner)}", TRUE)
         others = [r for r in self.region.state(owner).regions if r.name != state.region]
-        if not others:
-            return (done,)
-        parts: list[Expr] = []
+        parts: list[Expr] = [Ref(f"Self.{shape.done(owner)}")] if owner in shape.working else []
         for nested in others:
             leaf = Ref(shape.at(self.held, shape.lane_of(Place(owner, nested.name))))
             finals = [
@@ -431,7 +448,7 @@ class Moves:
                 if s.final
             ]
             parts.append(chain("or else", finals, FALSE))
-        return (If(((both(*parts), (done,)),)),)
+        return (If(((both(*parts), (done,)),)),) if parts else (done,)
 
     def _leaving(self, place: Place) -> Subprogram:
         assert place.owner is not None

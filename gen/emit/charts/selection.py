@@ -30,7 +30,7 @@ from ..naming import ada_case
 from ..terms import emit_expression
 from .compound import PASSED, TOP, Firing, Kind, Place
 from .places import flat
-from .shape import PASSING, RegionShape, plain_args
+from .shape import HELD, PASSING, RegionShape, plain_args
 
 
 def selectors(shape: RegionShape) -> list[Decl]:
@@ -71,9 +71,8 @@ def _segments(shape: RegionShape) -> list[Decl]:
 
 def segment(shape: RegionShape, holder: str) -> Expr:
     """A call of that function over the state of the region."""
-    held = {shape.place, "Data", "Past"}
     names = [p.name for p in shape.choice_params() if p.name != "Now"]
-    return call("Select_Segment", *(Ref(f"{holder}{n}" if n in held else n) for n in names))
+    return call("Select_Segment", *(Ref(f"{holder}{n}" if n in HELD else n) for n in names))
 
 
 def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -31,6 +32,7 @@ from ..terms import (
     names_in,
     operators_in,
     raise_in_list,
+    states_in,
 )
 from .compound import PASSED, TOP, Firing, Kind, Place, Step
 from .places import Places, flat
@@ -40,9 +42,11 @@ PASSING = "Passing"
 """The occurrence that takes an execution on from a choice or history."""
 
 _TYPES = "occurrence selection firing transition variables inputs outbox region item chart memory"
-TYPES = frozenset(_TYPES.split())
+TYPES = frozenset((*_TYPES.split(), "done_states"))
 """What hides an event of the same name inside a region's package."""
 
+HELD = frozenset(("Leaf", "Place", "Data", "Past", "Done_In"))
+"""The parameters of a selection that are components of the region's own state."""
 
 ITEM = Param("Item", "in", "Event")
 """The event that a step is made for."""
@@ -109,7 +113,7 @@ class RegionShape(Places):
         """The leaves that a move leads to."""
         pseudo = self.region.pseudostate(firing.goal) if firing.goal else None
         if pseudo is not None and pseudo.kind is PseudoKind.TERMINATE:
-            return {self.lanes[-1]: pseudo.name}
+            return self.after(firing.entries[:-1]) | {self.lanes[-1]: pseudo.name}
         return self.after(firing.entries)
 
     # --- lanes
@@ -195,15 +199,34 @@ class RegionShape(Places):
         """The component that says that a state has completed and nothing took it yet."""
         return f"Completed_{ada_case(state)}"
 
+    @cached_property
+    def working(self) -> tuple[str, ...]:
+        """The states that do activities complete, in tree order."""
+        found = {state for _, state in self.component.completing(self.region.name)}
+        return tuple(s.name for s in self.region.states if s.name in found)
+
+    def done(self, state: str) -> str:
+        """The component that says that a do activity of an active state is done."""
+        return f"Done_In.{ada_case(state)}"
+
+    def visits(self, state: str) -> str:
+        """The component that counts the entries of a state with a do activity."""
+        return f"Visits_{ada_case(state)}"
+
     def is_complete(self, state: str) -> Expr | None:
-        """Has a state without do activity completed? None: always, when active."""
-        at = self.region.state(state)
-        parts: list[Expr] = []
-        for nested in at.regions:
-            finals = [s for s in self.region.children(state, nested.name) if s.final]
-            inside = [self.in_state(self.place, s.name) for s in finals]
-            parts.append(chain("or else", inside, Ref("False")))
+        """Has an active state completed? None: always."""
+        parts = self.finals(state, self.place)
+        parts += [Ref(self.done(state))] if state in self.working else []
         return both(*flat(parts)) if parts else None
+
+    def finals(self, state: str, holder: str) -> list[Expr]:
+        """For each region of a state: is it in a final state?"""
+        parts: list[Expr] = []
+        for nested in self.region.state(state).regions:
+            finals = [s for s in self.region.children(state, nested.name) if s.final]
+            inside = [self.in_state(holder, s.name) for s in finals]
+            parts.append(chain("or else", inside, Ref("False")))
+        return parts
 
     @property
     def polls_more(self) -> bool:
@@ -223,13 +246,24 @@ class RegionShape(Places):
             params.append(ITEM._replace(mode="out"))
         return tuple(params)
 
+    def compared_in(self, expressions: Iterable[m.Expression]) -> set[str]:
+        """The types of other regions' states that expressions compare."""
+        asked = {pair for e in expressions for pair in states_in(e)}
+        return {
+            f"{other.states}.{kind}"
+            for name, state in asked
+            if name != self.region.name
+            for other in (Places(self.component.region(name)),)
+            for kind in other.compared_types(state)
+        }
+
     # --- notes
 
     def note(self, text: str) -> tuple[Stmt, ...]:
         """In a program for simulation: say that a behaviour is executed."""
         if not self.noted:
             return ()
-        return (Do("Ravenchart.Notes.Put", arguments(Ref(f'"{text}"'))),)
+        return (Do("Ravenchart.Steps.Note", arguments(Ref(f'"{text}"'))),)
 
     # --- packages and types
 
@@ -336,6 +370,8 @@ class RegionShape(Places):
         params = []
         if self.memories:
             params.append(Param("Past", "in", "Memory"))
+        if any(len(f.sources) > 1 and {*f.sources} & {*self.working} for f in self.firings):
+            params.append(Param("Done_In", "in", "Done_States"))
         if named & set(self.region.writes):
             params.append(Param("Data", "in", "Variables"))
         if named & set(self.inputs):
@@ -362,9 +398,8 @@ class RegionShape(Places):
     def choice_args(self, old: bool = False) -> tuple[Arg, ...]:
         """The same from the region's own state, before or after a call."""
         mark = "'Old" if old else ""
-        fields = {"Leaf": "Leaf", "Place": "Place", "Data": "Data", "Past": "Past"}
         return tuple(
-            Arg(None, Ref(f"Self.{fields[p.name]}{mark}" if p.name in fields else p.name))
+            Arg(None, Ref(f"Self.{p.name}{mark}" if p.name in HELD else p.name))
             for p in self.choice_params()
         )
 

@@ -36,20 +36,34 @@ from ..ada import (
 )
 from ..events import null_event
 from ..naming import ada_case
+from ..terms import expressions_in
 from .compound import PASSED
 from .firing import Moves
 from .selection import segment, selectors
-from .shape import START, RegionShape, behaviour_operators, guard_operators
+from .shape import (
+    START,
+    RegionShape,
+    behaviour_operators,
+    flows_of,
+    guard_operators,
+    guards_of,
+)
+from .working import notice_bodies
 
 
 def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     """All of the package's body."""
-    more = sorted(behaviour_operators(shape.region) - guard_operators(shape.region))
+    region = shape.region
+    flows = [e for flow in flows_of(region) for e in expressions_in(flow)]
+    more = sorted(behaviour_operators(region) - guard_operators(region))
+    more += ["Ravenchart.Event_Count"] if shape.working else []
+    more += sorted(shape.compared_in(flows) - shape.compared_in(guards_of(region)))
     moves = Moves(shape)
     return (
         *(UseType(name) for name in more),
         *selectors(shape),
         moves.chart(),
+        *notice_bodies(shape),
         *_polling(shape),
         moves.fire(),
         _step(shape, moves),
@@ -173,23 +187,23 @@ def _passing_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
     bound = Chain("<=", (left, Chain("-", (number(most + 2), Ref("I")))))
     counted = equal(Ref("Fired.Count"), Chain("-", (Ref("I"), number(1))))
     fired = (_fire(moves, "Fired.Items (1)"), Assign("Fired.Count", number(1)))
+    loop = Loop(
+        f"for I in 2 .. {most + 1}",
+        (
+            Pragma("Loop_Invariant", (both(Ref("Self.Started"), counted, bound),)),
+            If(((equal(left, number(0)), (Say("exit"),)),)),
+            Assign("Fired.Items (I)", segment(shape, "Self.")),
+            _fire(moves, "Fired.Items (I)"),
+            Assign("Fired.Count", Ref("I")),
+        ),
+    )
     return (
         Assign("Fired", _nothing()),
         If(
             ((begun, (Assign("Fired.Items (1)", Ref(START)),)),),
             (Assign("Fired.Items (1)", pick),),
         ),
-        If(((Chain("/=", (first, Ref("None"))), fired),)),
-        Loop(
-            f"for I in 2 .. {most + 1}",
-            (
-                Pragma("Loop_Invariant", (both(Ref("Self.Started"), counted, bound),)),
-                If(((equal(left, number(0)), (Say("exit"),)),)),
-                Assign("Fired.Items (I)", segment(shape, "Self.")),
-                _fire(moves, "Fired.Items (I)"),
-                Assign("Fired.Count", Ref("I")),
-            ),
-        ),
+        If(((Chain("/=", (first, Ref("None"))), (*fired, loop)),)),
     )
 
 

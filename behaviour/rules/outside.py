@@ -1,0 +1,89 @@
+"""What a component is set in: events from outside, parameters, activities as regions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gen.model import Activity, Component, System
+from gen.statechart import DONE, Every, Initial, Overflow, Region, State, Transition, TransitionKind
+from gen.terms import InState, Ns, Reading
+
+from . import logic
+from .logic import Term, Variable
+from .schedule import PORTS
+
+
+def as_region(activity: Activity) -> Region:
+    """An activity's flow as the internal transition of a region of one state."""
+    here = activity.origin
+    condition = activity.while_in
+    guard = None if condition is None else InState(condition.region, condition.state)
+    state = State("working", here, None, "", (), (), ())
+    work = Transition(
+        "run",
+        here,
+        "working",
+        "working",
+        TransitionKind.INTERNAL,
+        Every(Ns(0), 1),
+        guard,
+        activity.flow or (),
+    )
+    return Region(
+        name=activity.name,
+        origin=here,
+        timing=activity.timing,
+        queue_depth=1,
+        overflow=Overflow.REJECT_NEWEST,
+        on_overflow=None,
+        steps_per_execution=1,
+        initial=Initial("working"),
+        safe_state=None,
+        states=(state,),
+        transitions=(work,),
+        reads=activity.reads,
+        writes=activity.writes,
+        sends=activity.sends,
+        raises=activity.raises,
+    )
+
+
+def done_of(component: Component, activity: str) -> str:
+    """The name of the completion that an activity raises."""
+    found = next(a for a in component.activities if a.name == activity)
+    assert found.while_in is not None
+    return f"{found.while_in.region}.{found.while_in.state}.{DONE}"
+
+
+def external_events(component: Component, system: System) -> Iterator[tuple[str, str | None]]:
+    """What may come from outside, each with the row that raises it; None: at any time.
+
+    An event that nothing raises is among them: that it never comes is said elsewhere.
+    """
+    instances = {i.name for i in system.instances if i.component.name == component.name}
+    for port in component.ports:
+        yield from ((e, PORTS) for e in (port.on_arrival, port.on_stale, port.on_overflow) if e)
+    for activity in component.activities:
+        if activity.flow is None:
+            for event in activity.raises:
+                named = done_of(component, activity.name) if event == DONE else event
+                yield named, activity.name
+    yield from ((r.on_overflow, None) for r in component.regions if r.on_overflow)
+    outside = [pair for processor in system.processors for pair in processor.on_deadline_miss]
+    yield from ((e, None) for owner, e in (*outside, *system.shutdown.raises) if owner in instances)
+    raised = {e for item in component.runnables() for e in item.raises}
+    raised |= {e for port in component.ports for e in (port.on_arrival, port.on_stale) if e}
+    yield from ((event.name, None) for event in component.events if event.name not in raised)
+
+
+def parameters_of(component: Component, system: System) -> dict[str, dict[Variable, Term]]:
+    """The parameters of each instance that has any."""
+    types = {p.name: p.type for p in component.parameters}
+    return {
+        instance.name: {
+            logic.variable(Reading.PARAMETER, name, None): logic.constant(value, types[name])
+            for name, value in instance.parameters
+        }
+        for instance in system.instances
+        if instance.component.name == component.name and instance.parameters
+    }

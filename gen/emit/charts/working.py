@@ -1,0 +1,92 @@
+"""Do activities that complete their state: what a region knows of them, and how it is told.
+
+A region counts the visits of such a state and publishes them. Its do activity names
+the visit that it works for when it raises `done`, so that one that comes late, after
+the state has been left, completes nothing, be the state entered again or not.
+"""
+
+from __future__ import annotations
+
+from ..ada import (
+    FALSE,
+    TRUE,
+    Aspect,
+    Assign,
+    Comment,
+    Component,
+    Decl,
+    Expr,
+    If,
+    Param,
+    Prefix,
+    RecordType,
+    Ref,
+    Stmt,
+    Subprogram,
+    both,
+    equal,
+    number,
+)
+from ..naming import ada_case
+from .places import flat
+from .shape import RegionShape
+
+_PARAMS = (Param("Self", "in out", "Region"), Param("Visit", "in", "Ravenchart.Event_Count"))
+
+
+def done_types(shape: RegionShape) -> list[Decl]:
+    """The record of what is done."""
+    if not shape.working:
+        return []
+    flags = tuple(Component(ada_case(s), "Boolean", FALSE) for s in shape.working)
+    return [
+        Comment("Is the do activity of an active state done?"),
+        RecordType("Done_States", flags),
+    ]
+
+
+def work_fields(shape: RegionShape) -> list[Component]:
+    """The components of the region's own state."""
+    if not shape.working:
+        return []
+    visits = (shape.visits(s) for s in shape.working)
+    counts = [Component(v, "Ravenchart.Event_Count", number(0)) for v in visits]
+    return [Component("Done_In", "Done_States"), *counts]
+
+
+def notices(shape: RegionShape, kept: Expr) -> list[Decl]:
+    """The procedures by which the region is told; ``kept`` is what they do not change."""
+    items: list[Decl] = []
+    for state in shape.working:
+        name = f"Notice_{ada_case(state)}"
+        items += [
+            Subprogram(name, _PARAMS, aspects=(Aspect("Post", kept),)),
+            Comment(f"A do activity of {state} was done in that visit."),
+        ]
+    return items
+
+
+def notice_bodies(shape: RegionShape) -> list[Decl]:
+    """What they do: the state completes, when its regions have ended too."""
+    items: list[Decl] = []
+    for state in shape.working:
+        done = f"Self.{shape.done(state)}"
+        held = f"Self.{shape.place}"
+        news = both(
+            *flat(
+                [
+                    Ref("Self.Started"),
+                    equal(Ref("Visit"), Ref(f"Self.{shape.visits(state)}")),
+                    shape.in_state(held, state),
+                    Prefix("not", Ref(done)),
+                ]
+            )
+        )
+        completes: tuple[Stmt, ...] = ()
+        if state in shape.completing:
+            completes = (Assign(f"Self.{shape.completed(state)}", TRUE),)
+            if ends := shape.finals(state, held):
+                completes = (If(((both(*flat(ends)), completes),)),)
+        body = If(((news, (Assign(done, TRUE), *completes)),))
+        items.append(Subprogram(f"Notice_{ada_case(state)}", _PARAMS, body=(body,)))
+    return items

@@ -1,0 +1,1 @@
+"""Proof mutation score: generated code broken in small ways, and who notices."""

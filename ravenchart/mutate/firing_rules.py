@@ -1,0 +1,291 @@
+"""Breaks of what a region does: target, order, actions, history, deferral, time-outs, completion."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from .mutants import NOTE, Edit, Files, Found, replaced, swapped
+from .source import Branch, Span, Subprogram, arms, choices, statements, subprogram, subprograms
+
+_MOVE = re.compile(r"^(Exit|Leave|Enter)_\w+;$")
+_GHOST = re.compile(r"^(pragma |Active\b)")
+_HELD = re.compile(r"^Self\.(Place(\.\w+)?|Leaf) :=")
+_KEPT = re.compile(r"^Self\.(Past|Completed_|Timers)|^Ravenchart\.Timers\.")
+
+
+def _rows(text: str) -> Iterator[tuple[str, list[Span]]]:
+    """The lists of statements in which a firing moves, with the name of what holds them."""
+    for one in subprograms(text):
+        if one.is_expression:
+            continue
+        if one.name == "Fire" or one.name.startswith("Leave_"):
+            yield from _nested(text, one.name, one.inner)
+        elif one.name.startswith(("Enter_", "Exit_")):
+            yield one.name, _working(text, one.inner)
+
+
+def _nested(text: str, name: str, inner: Span) -> Iterator[tuple[str, list[Span]]]:
+    for statement in statements(text, inner):
+        if statement.of(text).startswith("case "):
+            for arm in arms(text, statement):
+                yield name, _working(text, arm.body)
+                yield from _nested(text, name, arm.body)
+        elif statement.of(text).startswith("if "):
+            yield from _nested_if(text, name, statement)
+
+
+def _nested_if(text: str, name: str, statement: Span) -> Iterator[tuple[str, list[Span]]]:
+    start = text.rfind("\n", 0, statement.start) + 1
+    indent = " " * (statement.start - start)
+    mark = re.compile(rf"^(?:{indent}.*\bthen|{indent}else|{indent}end if;)$", re.M)
+    cuts = list(mark.finditer(text, start, statement.end))
+    for opening, closing in zip(cuts, cuts[1:], strict=False):
+        inner = Span(opening.end() + 1, closing.start())
+        yield name, _working(text, inner)
+        yield from _nested(text, name, inner)
+
+
+def _working(text: str, inner: Span) -> list[Span]:
+    """The statements that run and are not there for simulation."""
+    return [
+        s
+        for s in statements(text, inner)
+        if not s.of(text).startswith((NOTE, "null;")) and not _GHOST.match(s.of(text))
+    ]
+
+
+def _named(text: str, prefix: str) -> list[str]:
+    return [s.name for s in subprograms(text) if s.name.startswith(prefix)]
+
+
+# --- target
+
+
+def target_in_code(file: str, files: Files) -> Iterator[Found]:
+    """Another state that is entered last, or another leaf that an entry sets."""
+    text = files[file]
+    entries = _named(text, "Enter_")
+    for place, row in _rows(text):
+        last = row[-1].of(text) if row else ""
+        if place == "Fire" and last.startswith("Enter_"):
+            name = last.removesuffix(";")
+            other = entries[(entries.index(name) + 1) % len(entries)]
+            if other != name:
+                yield place, "enter", replaced(row[-1], f"{other};")
+    found = [
+        (one.name, match)
+        for one in subprograms(text)
+        if one.name.startswith("Enter_")
+        for match in re.compile(r"Self\.(Leaf|Place(?:\.\w+)?) := ([\w.]+);").finditer(
+            text, one.inner.start, one.inner.end
+        )
+    ]
+    for place, match in found:
+        same = [m.group(2) for _, m in found if m.group(1) == match.group(1)]
+        if other := _next(match.group(2), same):
+            yield place, "leaf", replaced(Span(*match.span(2)), other)
+
+
+def _next(here: str, names: list[str]) -> str | None:
+    ordered = list(dict.fromkeys(names))
+    if len(ordered) < 2:
+        return None
+    return ordered[(ordered.index(here) + 1) % len(ordered)]
+
+
+def target_declared(file: str, files: Files) -> Iterator[Found]:
+    """Another leaf in the declared target of a transition."""
+    text = files[file]
+    one = subprogram(text, "Target")
+    if one is None:
+        return
+    pattern = re.compile(r"(\w+) => (\w+_States\.\w+)")
+    found = list(pattern.finditer(text, one.inner.start, one.inner.end))
+    alone = {r.body.start for r in choices(text, one.inner)}
+    for match in found:
+        kind = "" if match.start(2) in alone else match.group(1)
+        same = [
+            m.group(2)
+            for m in found
+            if ("" if m.start(2) in alone else m.group(1)) == kind
+        ]
+        if other := _next(match.group(2), same):
+            yield "Target", "target", replaced(Span(*match.span(2)), other)
+
+
+# --- order
+
+
+def order(file: str, files: Files) -> Iterator[Found]:
+    """Two neighbours of a firing in the other order: exits, effects, entries, or two effects of
+    which one reads what the other sets; two lanes that fire in the other order."""
+    text = files[file]
+    for place, row in _rows(text):
+        for first, second in zip(row, row[1:], strict=False):
+            if _ordered(first.of(text), second.of(text)):
+                yield place, "exchange", swapped(text, first, second)
+    step = subprogram(text, "Step")
+    if step is None or step.is_expression:
+        return
+    lanes = list(
+        re.compile(r"^( *)if C\.(\w+) /= None\b.*?^\1end if;", re.M | re.S).finditer(
+            text, step.inner.start, step.inner.end
+        )
+    )
+    for one, other in zip(lanes, lanes[1:], strict=False):
+        yield "Step", "lanes", swapped(text, Span(*one.span()), Span(*other.span()))
+
+
+def _ordered(first: str, second: str) -> bool:
+    moves = bool(_MOVE.match(first)), bool(_MOVE.match(second))
+    if any(moves):
+        return first != second
+    if any(_HELD.match(s) or _KEPT.match(s) for s in (first, second)):
+        return False
+    if any(s.startswith(("if ", "case ")) for s in (first, second)):
+        return False
+    set_first, set_second = _assigned(first), _assigned(second)
+    return bool(set_first and set_first in second) or bool(set_second and set_second in first)
+
+
+def _assigned(statement: str) -> str | None:
+    match = re.match(r"([\w.]+) :=", statement)
+    return match.group(1) if match else None
+
+
+# --- actions
+
+
+def missing(file: str, files: Files) -> Iterator[Found]:
+    """An exit, entry, or action of a state or effect that is left out."""
+    text = files[file]
+    for place, row in _rows(text):
+        for statement in row:
+            word = statement.of(text)
+            if _MOVE.match(word):
+                yield place, "no move", replaced(statement, "null;")
+            elif not _HELD.match(word) and not _KEPT.match(word) and not _is_move(word):
+                yield place, "no action", replaced(statement, "null;")
+
+
+def _is_move(word: str) -> bool:
+    """A case or if that itself moves, such as what restores a history."""
+    return word.startswith(("case ", "if ")) and re.search(
+        r"\b(Exit|Enter|Leave)_\w+;|\bDeferrals\.|Self\.Completed_", word
+    ) is not None
+
+
+# --- history
+
+
+def history_in_code(file: str, files: Files) -> Iterator[Found]:
+    """A leaf that is not remembered, or another one; something else restored."""
+    text = files[file]
+    pattern = re.compile(r"Self\.Past\.(\w+) := ([\w.]+);")
+    found = [
+        (one.name, match)
+        for one in subprograms(text)
+        if one.name.startswith("Exit_")
+        for match in pattern.finditer(text, one.inner.start, one.inner.end)
+    ]
+    for place, match in found:
+        same = [m.group(2) for _, m in found if m.group(1) == match.group(1)]
+        same += ["True", "False"] if match.group(2) in ("True", "False") else []
+        if other := _next(match.group(2), same):
+            yield place, "remember", replaced(Span(*match.span(2)), other)
+        yield place, "forget", replaced(Span(*match.span()), "null;")
+    fire = subprogram(text, "Fire")
+    if fire is None:
+        return
+    known = re.compile(r"\bif (Past\.Known_\w+) then")
+    for match in known.finditer(text, fire.inner.start, fire.inner.end):
+        yield "Fire", "known", replaced(Span(*match.span(1)), f"not {match.group(1)}")
+    for case in re.compile(r"\bcase Past\.\w+ is").finditer(
+        text, fire.inner.start, fire.inner.end
+    ):
+        rows = arms(text, Span(case.start(), fire.inner.end))
+        yield from _exchanged(text, rows)
+
+
+def _exchanged(text: str, rows: list[Branch]) -> Iterator[Found]:
+    for one, other in zip(rows, rows[1:], strict=False):
+        if one.body.of(text) != other.body.of(text):
+            yield "Fire", "restore", swapped(text, one.body, other.body)
+
+
+def history_declared(file: str, files: Files) -> Iterator[Found]:
+    """Another leaf that a history is declared to restore."""
+    text = files[file]
+    pattern = re.compile(r"(?:=>|else)\s+(\w+_States\.\w+)")
+    for one in subprograms(text):
+        if one.name.startswith(("Deep_", "Shallow_")):
+            found = list(pattern.finditer(text, one.inner.start, one.inner.end))
+            for match in found:
+                if other := _next(match.group(1), [m.group(1) for m in found]):
+                    yield one.name, "restore", replaced(Span(*match.span(1)), other)
+
+
+# --- deferral, time, completion
+
+
+def deferral(file: str, files: Files) -> Iterator[Found]:
+    """A deferred event that is taken too early, twice, never, or not kept."""
+    text = files[file]
+    for one in (subprogram(text, "Poll"), subprogram(text, "Fire")):
+        if one is not None:
+            yield from _edits(text, one, "early", r"\bif (not )Is_Deferred\b", "")
+            yield from _edits(text, one, "twice", r"(Deferrals\.Remove [^;]*;)", "null;")
+            yield from _edits(text, one, "latest", r"(Deferrals\.Element \(Self\.Deferred, I\))",
+                              "Deferrals.Element (Self.Deferred, 1)")
+            yield from _edits(text, one, "lose", r"(Deferrals\.Append [^;]*;)", "null;")
+            yield from _edits(text, one, "full", r"Count \(Self\.Deferred\)( = )", " /= ")
+
+
+def deferral_declared(file: str, files: Files) -> Iterator[Found]:
+    """An event that is not declared as deferred; less room for deferred ones."""
+    text = files[file]
+    one = subprogram(text, "Is_Deferred")
+    if one is not None:
+        for row in choices(text, one.inner):
+            if row.body.of(text) != "False":
+                yield one.name, "take", replaced(row.body, "False")
+
+
+def timeout(file: str, files: Files) -> Iterator[Found]:
+    """A time-out that is longer, not started, not stopped, or taken for another."""
+    text = files[file]
+    for one in subprograms(text):
+        if one.name.startswith(("Enter_", "Exit_")) and not one.is_expression:
+            pattern = re.compile(r"Timers\.Arm \(Self\.Timers \(\d+\), ([\d_]+)")
+            for match in pattern.finditer(text, one.inner.start, one.inner.end):
+                longer = str(int(match.group(1).replace("_", "")) + 1)
+                yield one.name, "later", replaced(Span(*match.span(1)), longer)
+            yield from _edits(text, one, "start", r"(Ravenchart\.Timers\.Arm [^;]*;)", "null;")
+            yield from _edits(text, one, "stop", r"(Ravenchart\.Timers\.Disarm [^;]*;)", "null;")
+    poll = subprogram(text, "Poll")
+    if poll is None:
+        return
+    yield from _edits(text, poll, "due", r"(Ravenchart\.Timers\.Take_Due [^;]*;)", "Due := 0;")
+    rows = list(
+        re.compile(r"Now := (Expiry_Of_\w+);").finditer(text, poll.inner.start, poll.inner.end)
+    )
+    for first, second in zip(rows, rows[1:], strict=False):
+        yield "Poll", "expiry", swapped(text, Span(*first.span(1)), Span(*second.span(1)))
+
+
+def completion(file: str, files: Files) -> Iterator[Found]:
+    """A completion that is not noticed, comes again, or outlives its state."""
+    text = files[file]
+    for one in subprograms(text):
+        if one.is_expression or not one.name.startswith(("Enter_", "Exit_", "Poll")):
+            continue
+        yield from _edits(text, one, "forget", r"(Self\.Completed_\w+ := (?:True|False);)", "null;")
+        yield from _edits(text, one, "others", r"\bif (Self\.\w+(?:\.\w+)? = [^;]*?)\s+then", "True")
+
+
+def _edits(
+    text: str, one: Subprogram, rule: str, pattern: str, new: str
+) -> Iterator[tuple[str, str, tuple[Edit, ...]]]:
+    for match in re.compile(pattern).finditer(text, one.inner.start, one.inner.end):
+        yield one.name, rule, replaced(Span(*match.span(1)), new)

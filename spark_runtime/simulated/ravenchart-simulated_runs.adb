@@ -1,0 +1,45 @@
+with Ada.Text_IO;
+with Ravenchart.Steps;
+
+procedure Ravenchart.Simulated_Runs is
+   Next   : Instants := Offsets;
+   Counts : array (Processor) of Natural := (others => 0);
+   Last  : Long_Long_Integer;
+   Coming : Long_Long_Integer := Long_Long_Integer'Last;
+   Number : Long_Long_Integer;
+   First  : Processor;
+
+   procedure Look_Ahead;
+   --  The instant of the next stimulus, if there is one.
+
+   procedure Look_Ahead is
+   begin
+      Ada.Text_IO.Skip_Line;
+      Coming := Long_Long_Integer'Last;
+      if not Ada.Text_IO.End_Of_File then
+         Steps.Get (Coming);
+      end if;
+   end Look_Ahead;
+
+begin
+   Steps.Get (Last);
+   Look_Ahead;
+   loop
+      First := Processor'First;
+      for P in Processor loop
+         if Next (P) < Next (First) then
+            First := P;
+         end if;
+      end loop;
+      exit when Next (First) > Last;
+      Steps.Set_Time (Next (First));
+      while Coming <= Next (First) loop
+         Steps.Get (Number);
+         Take (Positive (Number));
+         Look_Ahead;
+      end loop;
+      Release (First, Counts (First));
+      Next (First)   := Next (First) + Periods (First);
+      Counts (First) := Counts (First) + 1;
+   end loop;
+end Ravenchart.Simulated_Runs;

@@ -1,0 +1,133 @@
+"""The examples of charts do what their READMEs say, step by step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import behaviour.rules
+from gen.load import Loaded, load
+from ravenchart import simulate, steps
+from ravenchart.toolchain import ROOT
+
+EXAMPLES = ("crossing", "pump", "qhsmtst")
+PATIENCE = 300.0
+"""Seconds for the check of behaviour: a busy machine shall not turn it into a warning."""
+
+
+@dataclass(frozen=True)
+class Example:
+    """An example, loaded, with its README."""
+
+    folder: Path
+    loaded: Loaded
+    readme: str
+
+    @property
+    def trace(self) -> str:
+        """What the README expects of `simulate`."""
+        found = re.search(r"^## The trace\n.*?^```\n(.*?)^```\n", self.readme, re.S | re.M)
+        assert found is not None
+        return found.group(1)
+
+
+def _example(name: str) -> Example:
+    folder = ROOT / "examples" / name
+    return Example(folder, load(folder / "model.yaml"), (folder / "README.md").read_text())
+
+
+@pytest.fixture(scope="module", params=EXAMPLES)
+def example(request: pytest.FixtureRequest) -> Example:
+    """Each of the examples."""
+    return _example(request.param)
+
+
+def test_nothing_is_found_in_the_model(example: Example) -> None:
+    assert example.loaded.system is not None
+    found = behaviour.rules.findings(example.loaded.system, PATIENCE)
+    assert [str(one) for one in (*example.loaded.diagnostics, *found)] == []
+
+
+def test_the_trace_is_that_of_the_readme(example: Example) -> None:
+    system = example.loaded.system
+    assert system is not None
+    stimuli = simulate.stimuli_of(system, example.folder / "events.yaml")
+    records = simulate.simulated_by_interpreter(system, stimuli)
+    assert "".join(f"{record.text()}\n" for record in records) == example.trace
+
+
+# --- The published order of QHsmTst -----------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Handled:
+    """One signal: the state that handles it, and what is left, entered and begun."""
+
+    signal: str
+    state: str
+    order: tuple[str, ...]
+
+
+def _published(readme: str) -> list[Handled]:
+    rows = re.findall(r"^\| (start|[A-I]) \| (\w+) \| (?:`(.*?)` )?\|$", readme, re.M)
+    return [Handled(signal, state, tuple(order.split())) for signal, state, order in rows]
+
+
+def _told(trace: str) -> Iterator[Handled]:
+    """The lines of the chart, in the words of the publication."""
+    for line in trace.splitlines():
+        behaviours = line.split(": ")[1].split(", ")
+        if "test.Chart" not in line:
+            continue
+        signal, state = "start", "top"
+        order = []
+        for behaviour in behaviours:
+            name, _, what = behaviour.rpartition(".")
+            handled = re.fullmatch(r"(s\d*)_([a-i])", name)
+            initial = re.fullmatch(r"initial\((\w+)\)|(\w+)_init", name)
+            if handled is not None:
+                state, signal = handled.group(1), handled.group(2).upper()
+            elif initial is not None:
+                of = (initial.group(1) or initial.group(2)).lower()
+                order.append(f"*{'top' if of == 'chart' else of}")
+            else:
+                order.append(f"{'+' if what == 'entry' else '-'}{name.lower()}")
+        yield Handled(signal, state, tuple(order))
+
+
+def _states_of(rows: Iterable[Handled]) -> set[str]:
+    return {row.state for row in rows}
+
+
+def test_qhsmtst_has_the_published_order() -> None:
+    own = _example("qhsmtst")
+    published = _published(own.readme)
+    assert len(published) == 22
+    assert _states_of(published) == {"top", "s", "s1", "s11", "s2", "s21", "s211"}
+    assert list(_told(own.trace)) == published
+
+
+# --- The invariants of the crossing ------------------------------------------------------
+
+
+def test_a_crossing_that_forgets_a_condition_is_refused_with_the_way_to_it(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "crossing" / "model.yaml").read_text()
+    assert text.count("when: road_free and not requested") == 1
+    model = tmp_path / "model.yaml"
+    model.write_text(text.replace("when: road_free and not requested", "when: road_free"))
+    with pytest.raises(steps.Refused, match="green_for_both of Crossing happens: Blinking -Ordered"):
+        steps.check(model)
+
+
+def test_a_pump_without_else_gets_stuck_and_check_says_so(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "pump" / "model.yaml").read_text()
+    lines = [line for line in text.splitlines(keepends=True) if "guard: else" not in line]
+    assert len(lines) == len(text.splitlines()) - 1
+    model = tmp_path / "model.yaml"
+    model.write_text("".join(lines))
+    with pytest.raises(steps.Refused, match="Infusion may get stuck in May_Go_On"):
+        steps.check(model)

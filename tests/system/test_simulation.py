@@ -1,0 +1,90 @@
+"""The generated code in virtual time against the reference traces and the interpreter."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+import yaml
+
+from behaviour.machine import Machine
+from behaviour.traces import Record
+from gen.model import System
+from ravenchart.simulate import build_simulation, run_simulation
+from tests.support import random_charts, reference_charts
+from tests.support.interpreted import plain, stimuli_of, system_of
+from tests.support.reference_charts import NAMES, chart_of, labels_of
+
+LONG = "RAVENCHART_LONG_TESTS" in os.environ
+"""`make test-long`: all of the random charts, in batches of one compilation each."""
+
+BATCH = 12
+FIRST = 1_000
+CHARTS = 2_004 if LONG else BATCH
+
+
+def _program(system: System, home: Path) -> Path:
+    return build_simulation(system, home, home / "simulation")
+
+
+def _instance(case: str) -> str:
+    return f"unit_{NAMES.index(case)}"
+
+
+def _all_references() -> str:
+    """One system of all reference charts, an instance each."""
+    parts = {case: plain(reference_charts.model_of(chart_of(case))) for case in NAMES}
+    whole = dict(next(iter(parts.values())))
+    whole["components"] = {
+        f"Part_{k}": next(iter(part["components"].values()))
+        for k, part in enumerate(parts.values())
+    }
+    whole["instances"] = {
+        f"unit_{k}": {"component": f"Part_{k}", "node": "board"} for k in range(len(parts))
+    }
+    (processor,) = whole["processors"].values()
+    (row,) = processor["activities"]
+    processor["activities"] = [f"unit_{k}.{row.partition('.')[2]}" for k in range(len(parts))]
+    return yaml.safe_dump(whole, sort_keys=False)
+
+
+def _events_for(case: str) -> str:
+    entries = plain(reference_charts.events_of(chart_of(case)))
+    for entry in entries:
+        if "raise" in entry:
+            entry["raise"] = f"{_instance(case)}.{entry['raise'].partition('.')[2]}"
+    return yaml.safe_dump(entries, sort_keys=False)
+
+
+def test_the_generated_code_gives_every_reference_trace(tmp_path: Path) -> None:
+    system = system_of(_all_references())
+    program = _program(system, tmp_path)
+    for name in NAMES:
+        case = chart_of(name)
+        records = run_simulation(system, program, stimuli_of(_events_for(name), system))
+        own = [b for r in records if r.instance == _instance(name) for b in r.behaviours]
+        assert labels_of(case, own) in case["expected_traces"], name
+
+
+def _by_chart(records: Sequence[Record], seeds: Sequence[int]) -> dict[int, list[str]]:
+    own = {random_charts.instance_name(seed): seed for seed in seeds}
+    found: dict[int, list[str]] = {seed: [] for seed in seeds}
+    for record in records:
+        found[own[record.instance]].append(record.text())
+    return found
+
+
+@pytest.mark.parametrize("start", range(FIRST, FIRST + CHARTS, BATCH))
+def test_program_and_interpreter_agree_on_random_charts(start: int, tmp_path: Path) -> None:
+    seeds = range(start, start + BATCH)
+    system = system_of(random_charts.model_of(seeds))
+    program = _program(system, tmp_path)
+    for run in range(2):
+        stimuli = stimuli_of(random_charts.events_of(start + run, seeds), system)
+        executed = _by_chart(run_simulation(system, program, stimuli), seeds)
+        interpreted = _by_chart(list(Machine(system).run(stimuli)), seeds)
+        for seed in seeds:
+            assert executed[seed] == interpreted[seed], f"seed {seed}, run {run}"
+        assert sum(map(len, executed.values())) > 5 * BATCH  # they do something
