@@ -2,7 +2,7 @@
 
 RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
-EXAMPLES   := examples/cartesian_robot examples/three_components
+EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup demo test test-long check prove generate bench docs lock clean
 
@@ -45,12 +45,12 @@ bench: setup
 
 docs: setup
 	@$(PYTHON) -m gen.reference
-	@for e in examples/*; do \
+	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 
 lock:
 	@.venv/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --extra dev \
-	   --no-header --no-emit-index-url --output-file requirements.lock pyproject.toml
+	   --no-header --no-emit-index-url --no-emit-find-links --output-file requirements.lock pyproject.toml
 
 clean:
 	rm -rf build obj .venv

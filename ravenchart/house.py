@@ -16,7 +16,7 @@ from .steps import Refused
 from .toolchain import ROOT, ToolFailed, ToolMissing
 
 RECORDS = ROOT / "proofs" / "records"
-EXAMPLES = ("cartesian_robot", "three_components")
+EXAMPLES = ("cartesian_robot", "crossing", "pump", "qhsmtst", "three_components")
 DRIVERS = ("loopback", "slcan")
 
 

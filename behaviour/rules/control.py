@@ -132,11 +132,14 @@ def _rivals(reach: Reach, thread: Thread) -> dict[tuple[str, str], tuple[Edge, s
 
 
 def guards_exclude_each_other(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
-    """Of transitions with one source and trigger, at most one is enabled; else the first wins."""
+    """Of transitions with one source and trigger, at most one guard holds; else the first wins.
+
+    A last one without guard is the rest, and is meant.
+    """
     region, fired = thread.tree.region, _fired(thread)
     for (first, second), (edge, data) in _rivals(reach, thread).items():
         one, other = _transition(region, first), _transition(region, second)
-        if second not in fired:
+        if second not in fired or other.guard is None:
             continue
         with_data = f" with {data}" if data else ""
         message = (
@@ -147,10 +150,7 @@ def guards_exclude_each_other(reach: Reach, thread: Thread) -> Iterator[Diagnost
             (one.origin, f"{first} is here"),
             (other.origin, reached(reach, thread, edge)),
         ]
-        last = other.guard is None
-        hint = (
-            "write `guard: else`" if last else f"let the guard of {second} exclude that of {first}"
-        )
+        hint = f"let the guard of {second} exclude that of {first}"
         yield warning("RV-1103", other.origin, message, notes=notes, hint=hint)
 
 

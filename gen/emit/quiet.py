@@ -11,9 +11,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from .. import terms as m
-from ..model import System
+from ..model import Component, StateRef, System
 from ..statechart import When
 from .ada import Package, Pragma, Ref, Unit
+from .charts.compound import Place
+from .charts.places import Places
 from .terms import expressions_in
 
 _WORDS = ("can only be", "can never be", "explicit membership test", "'Valid attribute")
@@ -34,7 +36,20 @@ def has_decided_conditions(system: System) -> bool:
     regions = [r for c in system.components for r in c.regions]
     if any(len(r.leaves()) == 1 for r in regions):
         return True
+    if any(_works_always(c, a.while_in) for c in system.components for a in c.activities):
+        return True
     return any(_is_decided(e) for e in _expressions(system))
+
+
+def _works_always(component: Component, place: StateRef | None) -> bool:
+    """Is it a composite that holds all leaves of its lane?"""
+    if place is None:
+        return False
+    region = component.region(place.region)
+    places = Places(region)
+    nested = region.state(place.state).regions
+    inside = places.literals_in(Place(place.state, nested[0].name)) if len(nested) == 1 else ()
+    return tuple(inside) == places.literals(region.lane(place.state))
 
 
 def _has_one_value(of_type: m.Type) -> bool:

@@ -38,7 +38,7 @@ def _nested(text: str, name: str, inner: Span) -> Iterator[tuple[str, list[Span]
 def _nested_if(text: str, name: str, statement: Span) -> Iterator[tuple[str, list[Span]]]:
     start = text.rfind("\n", 0, statement.start) + 1
     indent = " " * (statement.start - start)
-    mark = re.compile(rf"^(?:{indent}.*\bthen|{indent}else|{indent}end if;)$", re.M)
+    mark = re.compile(rf"^{indent}(?:(?:\S.*)?\bthen|else|end if;)$", re.M)
     cuts = list(mark.finditer(text, start, statement.end))
     for opening, closing in zip(cuts, cuts[1:], strict=False):
         inner = Span(opening.end() + 1, closing.start())

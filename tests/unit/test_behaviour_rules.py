@@ -43,6 +43,20 @@ def test_guards_that_exclude_each_other_are_well() -> None:
     )
 
 
+def test_transition_without_guard_after_another_is_the_rest() -> None:
+    assert not said(
+        model(
+            region(
+                "Main",
+                BOTH,
+                "low: {from: A, to: B, on: Go, guard: level < 50}\n"
+                "rest: {from: A, to: A, on: Go}\n"
+                "back: {from: B, to: A, on: Stop}",
+            )
+        )
+    )
+
+
 def test_guards_of_different_events_may_both_hold() -> None:
     assert not said(
         model(

@@ -29,6 +29,9 @@ is
          and then Ins.Report_Y.Value.Condition = Cartesian_Robot.Standing
          and then Ins.Report_Z.Value.Condition = Cartesian_Robot.Standing
          then Homed
+      elsif Now = On_Commanded
+         and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+         then Halt_Homing
       elsif Now = Conditions
          and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
              or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
@@ -610,6 +613,11 @@ is
          when Halt =>
             Leave_Travelling;
             Exit_Travelling;
+            Exit_Active;
+            Enter_Stopped;
+            Enter_Failed;
+         when Halt_Homing =>
+            Exit_Homing;
             Exit_Active;
             Enter_Stopped;
             Enter_Failed;

@@ -30,6 +30,7 @@ is
       Homed,
       Move,
       Halt,
+      Halt_Homing,
       Shut_Down_Failed,
       Recover,
       Joint_Failed,
@@ -105,6 +106,10 @@ is
            Leaf in Mission_States.Travelling
            and then Now = On_Commanded
            and then Ins.Command.Value.Kind = Cartesian_Robot.Halt,
+        when Halt_Homing =>
+           Leaf = Mission_States.Homing
+           and then Now = On_Commanded
+           and then Ins.Command.Value.Kind = Cartesian_Robot.Halt,
         when Shut_Down_Failed =>
            Leaf = Mission_States.Failed and then Now = On_Shutdown,
         when Recover =>
@@ -135,6 +140,7 @@ is
         when Homed => Leaf = Mission_States.Homing,
         when Move => Leaf = Mission_States.Ready,
         when Halt => Leaf in Mission_States.Travelling,
+        when Halt_Homing => Leaf = Mission_States.Homing,
         when Shut_Down_Failed => Leaf = Mission_States.Failed,
         when Recover => Leaf = Mission_States.Failed,
         when Joint_Failed => Leaf in Mission_States.Active,
@@ -152,6 +158,7 @@ is
         when Homed => Mission_States.Ready,
         when Move => Mission_States.Departing,
         when Halt => Mission_States.Failed,
+        when Halt_Homing => Mission_States.Failed,
         when Shut_Down_Failed => Mission_States.Shut_Down,
         when Recover => Mission_States.Waiting,
         when Joint_Failed => Mission_States.Failed,

@@ -1,0 +1,102 @@
+"""`make bench-proof`: does the proof of a region grow linearly with its leaf states?
+
+Random charts of growing size are generated and proved: selection, configuration and
+order together. Processor time and wall time on two jobs are given for each leaf.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from .mutate.observing import Observer
+from .mutate.workbench import Workbench
+from .random_models import random_model
+from .toolchain import ToolFailed, ToolMissing
+
+SIZES = (15, 30, 60, 120)
+MOST = 2.0
+"""Seconds of processor time that a leaf state may take."""
+JOBS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """One proof: leaf states, seconds of processor and wall, where gnatprove spent them."""
+
+    leaves: int
+    processor: float
+    wall: float
+    phases: Counter[str]
+    subprograms: int
+
+    @property
+    def per_leaf(self) -> float:
+        """Seconds of processor time for each leaf state."""
+        return self.processor / self.leaves
+
+    def line(self) -> str:
+        """For people."""
+        parts = ", ".join(f"{name} {spent:.0f} s" for name, spent in self.phases.most_common(4))
+        return (
+            f"{self.leaves:>4} leaves: processor {self.processor:.1f} s "
+            f"({self.per_leaf:.2f} s a leaf), wall {self.wall:.1f} s "
+            f"({self.wall / self.leaves:.2f} s a leaf), {self.subprograms} subprograms; {parts}"
+        )
+
+
+def _processor_time() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def measure(leaves: int, seed: int) -> Figures:
+    """Generate and prove one chart; ToolFailed when something of it is not proved."""
+    with tempfile.TemporaryDirectory(prefix="ravenchart-proof-") as place:
+        model = Path(place) / "model.yaml"
+        model.write_text(random_model(leaves, seed), encoding="utf-8")
+        bench = Workbench(model, Path(place), Observer)
+        unit = next(n for n, text in bench.files.items() if "procedure Fire" in text)
+        processor, wall = _processor_time(), time.perf_counter()
+        bench.prove([unit], jobs=JOBS)
+        processor, wall = _processor_time() - processor, time.perf_counter() - wall
+        found = next(Path(place).rglob(f"{Path(unit).stem}.spark"))
+        result = json.loads(found.read_text(encoding="utf-8"))
+        names = {check["entity"]["name"] for check in result["proof"]}
+        return Figures(leaves, processor, wall, Counter(result.get("timings", {})), len(names))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure every size; 1 when one takes too long or is not proved."""
+    parser = argparse.ArgumentParser(prog="make bench-proof", description=__doc__)
+    parser.add_argument("--sizes", type=int, nargs="+", default=list(SIZES))
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args(arguments)
+    slow = []
+    try:
+        for leaves in options.sizes:
+            found = measure(leaves, options.seed)
+            print(found.line(), flush=True)
+            if found.per_leaf > MOST:
+                slow.append(leaves)
+    except ToolMissing as missing:
+        print(f"ravenchart: error: {missing}", file=sys.stderr)
+        return 2
+    except ToolFailed as failed:
+        print(str(failed).rstrip(), file=sys.stderr)
+        return 1
+    verdict = f"NOT at {', '.join(map(str, slow))} leaves" if slow else "holds"
+    print(f"at most {MOST:g} s of processor time a leaf at every size: {verdict}")
+    return 1 if slow else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,88 @@
+"""All rules by kind, and the mutants of a generated program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from . import firing_rules, program_rules, selection_rules
+from .mutants import Files, Mutant, Rule, numbered
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A rule, its kind, the files that it looks at, and in which part it breaks something."""
+
+    kind: str
+    rule: Rule
+    looks_at: Callable[[str, str], bool]
+    declared: bool = False
+
+
+def _region_body(name: str, text: str) -> bool:
+    return name.endswith(".adb") and "procedure Fire" in text
+
+
+def _region_spec(name: str, text: str) -> bool:
+    return name.endswith(".ads") and "type Selection is" in text
+
+
+def _ceilings(name: str, text: str) -> bool:
+    return name.endswith(".adb") and "Ceiling => System" in text
+
+
+def _processor(name: str, text: str) -> bool:
+    return name.endswith(".ads") and "is new Ravenchart.Periodic_Processors" in text
+
+
+def _certificate(name: str, _text: str) -> bool:
+    return name.endswith("-timing_certificate.ads")
+
+
+def _codecs(name: str, _text: str) -> bool:
+    return name.endswith("-codecs.adb")
+
+
+def _codec_spec(name: str, _text: str) -> bool:
+    return name.endswith("-codecs.ads")
+
+
+ENTRIES = (
+    Entry("target", firing_rules.target_in_code, _region_body),
+    Entry("target", firing_rules.target_declared, _region_spec, declared=True),
+    Entry("source", selection_rules.source_in_code, _region_body),
+    Entry("source", selection_rules.source_declared, _region_spec, declared=True),
+    Entry("trigger", selection_rules.trigger_in_code, _region_body),
+    Entry("trigger", selection_rules.trigger_declared, _region_spec, declared=True),
+    Entry("guard", selection_rules.guard_in_code, _region_body),
+    Entry("guard", selection_rules.guard_declared, _region_spec, declared=True),
+    Entry("priority", selection_rules.priority_in_code, _region_body),
+    Entry("priority", selection_rules.priority_declared, _region_spec, declared=True),
+    Entry("order", firing_rules.order, _region_body),
+    Entry("missing action", firing_rules.missing, _region_body),
+    Entry("history", firing_rules.history_in_code, _region_body),
+    Entry("history", firing_rules.history_declared, _region_spec, declared=True),
+    Entry("deferral", firing_rules.deferral, _region_body),
+    Entry("deferral", firing_rules.deferral_declared, _region_spec, declared=True),
+    Entry("time-out", firing_rules.timeout, _region_body),
+    Entry("completion", firing_rules.completion, _region_body),
+    Entry("ceiling", program_rules.ceiling, _ceilings),
+    Entry("period", program_rules.period, _processor),
+    Entry("certificate", program_rules.certificate, _certificate),
+    Entry("codec", program_rules.codec_in_code, _codecs),
+    Entry("codec", program_rules.codec_declared, _codec_spec, declared=True),
+)
+"""In the order of the report."""
+
+KINDS = tuple(dict.fromkeys(e.kind for e in ENTRIES))
+
+
+def mutants_of(files: Files) -> list[Mutant]:
+    """Every mutant of a program, in order of rule, file and place."""
+    return [
+        mutant
+        for entry in ENTRIES
+        for name in sorted(files)
+        if entry.looks_at(name, files[name])
+        for mutant in numbered(entry.kind, entry.declared, name, entry.rule(name, files))
+    ]

@@ -1,0 +1,203 @@
+"""A copy of a program that can be broken: compiled, proved and run again, then restored."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from gen.generate import generate, user_units
+
+from .. import steps
+from ..toolchain import ROOT, ToolFailed, ToolMissing, have
+from .mutants import Files, Mutant
+from .observing import Observer, Simulated
+from .source import choices, subprogram
+
+PROOF = ("--level=1", "--prover=cvc4,z3", "--timeout=10", "--checks-as-errors")
+LONGEST = 1200
+"""Seconds after which a tool is given up: the mutant counts as not caught by it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Who caught a mutant, in which words; nobody: it survived."""
+
+    by: str | None
+    words: str = ""
+
+
+class Workbench:
+    """One program in a folder of its own, without the switches that only look at style.
+
+    A warning or a long line that a break leaves behind would be no merit of the
+    checks: neither is an error here.
+    """
+
+    def __init__(self, model: Path, folder: Path, observer: type[Observer] = Simulated) -> None:
+        checked = steps.check(model)
+        self.folder = folder
+        self.driver = steps.default_driver(checked)
+        files = dict(generate(checked.system, steps.bounds(checked)))
+        self.files: Files = {n: t for n, t in files.items() if n.endswith((".ads", ".adb"))}
+        self.source = folder / "model" / "generated"
+        self._copy(checked, files)
+        self.project = f"{checked.stem}.gpr"
+        self.main = f"{checked.stem}_main"
+        self.observer = observer(checked, folder)
+
+    def _copy(self, checked: steps.Checked, files: Mapping[str, str]) -> None:
+        for name in ("spark_runtime", "hw_can"):
+            shutil.copytree(ROOT / name, self.folder / name, dirs_exist_ok=True)
+        shutil.copy(ROOT / "ravenchart.gpr", self.folder)
+        self.source.mkdir(parents=True, exist_ok=True)
+        if user_units(checked.system):
+            user = self.source.parent / "user"
+            shutil.copytree(checked.folder / "user", user, dirs_exist_ok=True)
+        for name, text in files.items():
+            (self.source / name).write_text(_plain(text) if name.endswith(".gpr") else text)
+
+    # --- the unbroken program
+
+    def prepare(self, units: Sequence[str]) -> None:
+        """Compile, prove and run the unbroken program; ToolFailed when it is not clean."""
+        self._compile()
+        self.prove(units)
+        self.observer.prepare(self.executable)
+
+    @property
+    def executable(self) -> Path:
+        """The built program."""
+        return self.folder / "build" / self.main
+
+    # --- a broken one
+
+    def try_mutant(self, mutant: Mutant) -> Verdict:
+        """Break, ask the compiler, gnatprove and the tests in turn, restore."""
+        path = self.source / mutant.file
+        text = self.files[mutant.file]
+        broken = mutant.applied(text)
+        path.write_text(broken)
+        try:
+            return self._judged(mutant, broken)
+        finally:
+            path.write_text(text)
+
+    def _judged(self, mutant: Mutant, broken: str) -> Verdict:
+        try:
+            self._compile()
+        except ToolFailed as failed:
+            return Verdict("compiler", _first(str(failed)))
+        try:
+            for name in self._focus(mutant):
+                self.prove([_body(mutant.file)], self._place(name, mutant, broken))
+            if not self._is_modular(mutant):
+                self.prove(self.units_of(mutant))
+        except ToolFailed as failed:
+            return Verdict("gnatprove", _first(str(failed)))
+        seen = self.observer.differs(mutant, self.executable)
+        return Verdict("tests", seen) if seen else Verdict(None)
+
+    def _is_modular(self, mutant: Mutant) -> bool:
+        """Is all that the mutant can falsify in the subprograms of its focus? Each has a
+        contract, and callers know no more."""
+        body = subprogram(self.files[mutant.file], mutant.place)
+        return not mutant.declared and body is not None and "-codecs" not in mutant.file
+
+    def _focus(self, mutant: Mutant) -> list[str]:
+        """The subprograms that are asked first."""
+        text = self.files.get(_body(mutant.file), "")
+        if not mutant.declared:
+            names = [mutant.place]
+            if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
+                names.append("Fire")
+            return [n for n in names if subprogram(text, n) is not None]
+        spec = self.files[mutant.file]
+        one = subprogram(spec, mutant.place)
+        if mutant.place == "Enabled" and one is not None:
+            at = mutant.edits[0].span.start
+            rows = [c for c in choices(spec, one.inner) if c.body.start <= at < c.body.end]
+            name = rows[0].head.of(spec) if rows else ""
+            using = re.compile(rf"(?:then|\() *{name}\b")
+            for match in re.finditer(r"function (In_\w+)", text):
+                found = subprogram(text, match.group(1))
+                if found is not None and using.search(found.inner.of(text)):
+                    return [found.name]
+        return ["Fire"] if subprogram(text, "Fire") is not None else []
+
+    def _place(self, name: str, mutant: Mutant, broken: str) -> str:
+        """Where a subprogram is declared, as gnatprove wants it."""
+        body = _body(mutant.file)
+        spec = body.removesuffix("b") + "s"
+        texts = {**self.files, mutant.file: broken}
+        for file in (spec, body):
+            match = re.search(rf"^ *(?:procedure|function) {name}\b", texts.get(file, ""), re.M)
+            if match is not None:
+                return f"{file}:{texts[file].count(chr(10), 0, match.start()) + 1}"
+        raise ValueError(name)
+
+    def units_of(self, mutant: Mutant) -> list[str]:
+        """What is proved again: the unit; for ceilings and periods the tasks and the main."""
+        if mutant.kind in ("ceiling", "period"):
+            tasks = [
+                _body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t
+            ]
+            return [*tasks, f"{self.main}.adb"]
+        body = _body(mutant.file)
+        return [body if body in self.files else mutant.file]
+
+    # --- tools
+
+    def _compile(self) -> None:
+        self._run(["gprbuild", "-p", "-q", "-j1", "-P", self.project])
+
+    def prove(self, units: Sequence[str], only: str | None = None, *, jobs: int = 1) -> None:
+        """Prove units, or one subprogram of one; ToolFailed with what is left."""
+        command = ["gnatprove", "-P", self.project, "-q", "--output=oneline", *PROOF]
+        command += [f"-j{jobs}", "-u", *units]
+        if only is not None:
+            command.append(f"--limit-subp={only}")
+        self._run(command)
+
+    def _run(self, command: list[str]) -> None:
+        if not have(command[0]):
+            raise ToolMissing(command[0])
+        variables = {"MODE": "checks", "CAN_DRIVER": self.driver}
+        variables["RAVENCHART_BUILD"] = str(self.folder / "build")
+        done = subprocess.run(
+            [*command, *(f"-X{n}={v}" for n, v in variables.items())],
+            cwd=self.source,
+            env={**os.environ, "GPR_PROJECT_PATH": str(self.folder)},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=LONGEST,
+            check=False,
+        )
+        if done.returncode != 0:
+            raise ToolFailed(done.stdout)
+
+
+def _plain(project: str) -> str:
+    """The project without warnings as errors and without rules of layout."""
+    switches = re.compile(r'\("-gnat2012",.*?-gnatyM79"\)[^\n]*', re.S)
+    return switches.sub('("-gnat2012", "-gnatws")', project)
+
+
+def _body(file: str) -> str:
+    return file.removesuffix("s") + "b" if file.endswith(".ads") else file
+
+
+def _first(words: str) -> str:
+    """The first line that tells an error, without its place."""
+    for line in words.splitlines():
+        match = re.match(r"(\S+\.ad[bs]):\d+:\d+: (.*)", line)
+        if match and "warning:" not in line and "info:" not in line:
+            return f"{match.group(1)}: {match.group(2)}"
+    return words.strip().splitlines()[-1] if words.strip() else "no words"
