@@ -4,7 +4,7 @@ RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-long check prove generate bench docs lock clean
+.PHONY: help setup demo test test-long check prove generate bench bench-proof mutate docs lock clean
 
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
@@ -13,7 +13,9 @@ help:
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples'
 	@echo 'make generate  the examples'' generated/ from their models'
-	@echo 'make bench     figures: runtime operations, generator, analysis'
+	@echo 'make bench     figures: runtime operations, charts, generator, analysis'
+	@echo 'make bench-proof  does the proof of a chart grow linearly?'
+	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make docs      model reference, JSON Schema and error list; pictures of the examples'
 
 setup:
@@ -42,6 +44,12 @@ generate: setup
 
 bench: setup
 	@$(PYTHON) -m ravenchart.bench
+
+bench-proof: setup
+	@$(PYTHON) -m ravenchart.bench_proof
+
+mutate: setup
+	@$(PYTHON) -m ravenchart.mutate
 
 docs: setup
 	@$(PYTHON) -m gen.reference

@@ -17,7 +17,7 @@ from gen.load import load
 from gen.model import Task
 from gen.terms import Ns, Origin
 
-from . import steps, toolchain
+from . import bench_charts, steps, toolchain
 from .toolchain import ROOT
 
 PLACE = Origin("bench", 1, 1)
@@ -84,6 +84,7 @@ def analysis() -> None:
 def main() -> None:
     """All figures."""
     runtime_operations()
+    bench_charts.main()
     generator()
     analysis()
 

@@ -16,7 +16,12 @@ from .steps import Refused
 from .toolchain import ROOT, ToolFailed, ToolMissing
 
 RECORDS = ROOT / "proofs" / "records"
+PATIENCE = 300.0
+"""Seconds for the rules of behaviour: a busy machine shall not turn them into a warning."""
+
 EXAMPLES = ("cartesian_robot", "crossing", "pump", "qhsmtst", "three_components")
+PROVED = ("cartesian_robot", "qhsmtst", "three_components")
+"""The examples with a proof record; `ravenchart prove` does the others on request."""
 DRIVERS = ("loopback", "slcan")
 
 
@@ -33,7 +38,7 @@ class Target:
 
 def targets() -> tuple[Target, ...]:
     """The runtime with each driver, then the examples."""
-    return (*map(_runtime, DRIVERS), *map(_example, EXAMPLES))
+    return (*map(_runtime, DRIVERS), *map(_example, PROVED))
 
 
 def _runtime(driver: str) -> Target:
@@ -49,7 +54,7 @@ def _runtime(driver: str) -> Target:
 
 
 def _example(name: str) -> Target:
-    checked = steps.check(ROOT / "examples" / name / "model.yaml")
+    checked = steps.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
     steps.write_program(checked)
     driver = steps.default_driver(checked)
     return Target(
@@ -80,7 +85,7 @@ def check() -> bool:
     """Generated files up to date, and every build free of warnings."""
     fresh = True
     for example in EXAMPLES:
-        checked = steps.check(ROOT / "examples" / example / "model.yaml")
+        checked = steps.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)
         if checked.warnings:
             print(checked.warnings, file=sys.stderr)
             fresh = False

@@ -49,15 +49,20 @@ class Checked:
         return ada_case(self.system.name).lower()
 
 
-def check(path: Path, *, deadlines: bool = True) -> Checked:
-    """Load, check and analyse a model; Refused with every diagnostic when it is wrong."""
+def check(
+    path: Path, *, deadlines: bool = True, patience: float = behaviour.rules.SECONDS
+) -> Checked:
+    """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
+
+    ``patience`` is how many seconds the rules of behaviour may take.
+    """
     loaded = load(path)
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics))
     analysis = analyse(system)
     late = findings(analysis) if deadlines else ()
-    everything = (*loaded.diagnostics, *behaviour.rules.findings(system), *late)
+    everything = (*loaded.diagnostics, *behaviour.rules.findings(system, patience), *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything))
     return Checked(path, system, analysis, _rendered(loaded, everything))

@@ -78,11 +78,12 @@ KINDS = tuple(dict.fromkeys(e.kind for e in ENTRIES))
 
 
 def mutants_of(files: Files) -> list[Mutant]:
-    """Every mutant of a program, in order of rule, file and place."""
-    return [
-        mutant
-        for entry in ENTRIES
-        for name in sorted(files)
-        if entry.looks_at(name, files[name])
-        for mutant in numbered(entry.kind, entry.declared, name, entry.rule(name, files))
-    ]
+    """Every mutant of a program, in order of rule, file and place; each text once."""
+    found: dict[tuple[str, str], Mutant] = {}
+    for entry in ENTRIES:
+        for name in sorted(files):
+            if entry.looks_at(name, files[name]):
+                made = numbered(entry.kind, entry.declared, name, entry.rule(name, files))
+                for mutant in made:
+                    found.setdefault((name, mutant.applied(files[name])), mutant)
+    return list(found.values())

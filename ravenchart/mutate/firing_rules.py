@@ -1,9 +1,10 @@
-"""Breaks of what a region does: target, order, actions, history, deferral, time-outs, completion."""
+"""Breaks of what a region does: target, order, actions, history, deferral, time, completion."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 from .mutants import NOTE, Edit, Files, Found, replaced, swapped
 from .source import Branch, Span, Subprogram, arms, choices, statements, subprogram, subprograms
@@ -40,7 +41,7 @@ def _nested_if(text: str, name: str, statement: Span) -> Iterator[tuple[str, lis
     indent = " " * (statement.start - start)
     mark = re.compile(rf"^{indent}(?:(?:\S.*)?\bthen|else|end if;)$", re.M)
     cuts = list(mark.finditer(text, start, statement.end))
-    for opening, closing in zip(cuts, cuts[1:], strict=False):
+    for opening, closing in pairwise(cuts):
         inner = Span(opening.end() + 1, closing.start())
         yield name, _working(text, inner)
         yield from _nested(text, name, inner)
@@ -70,9 +71,9 @@ def target_in_code(file: str, files: Files) -> Iterator[Found]:
         last = row[-1].of(text) if row else ""
         if place == "Fire" and last.startswith("Enter_"):
             name = last.removesuffix(";")
-            other = entries[(entries.index(name) + 1) % len(entries)]
-            if other != name:
-                yield place, "enter", replaced(row[-1], f"{other};")
+            following = entries[(entries.index(name) + 1) % len(entries)]
+            if following != name:
+                yield place, "enter", replaced(row[-1], f"{following};")
     found = [
         (one.name, match)
         for one in subprograms(text)
@@ -105,11 +106,7 @@ def target_declared(file: str, files: Files) -> Iterator[Found]:
     alone = {r.body.start for r in choices(text, one.inner)}
     for match in found:
         kind = "" if match.start(2) in alone else match.group(1)
-        same = [
-            m.group(2)
-            for m in found
-            if ("" if m.start(2) in alone else m.group(1)) == kind
-        ]
+        same = [m.group(2) for m in found if ("" if m.start(2) in alone else m.group(1)) == kind]
         if other := _next(match.group(2), same):
             yield "Target", "target", replaced(Span(*match.span(2)), other)
 
@@ -122,7 +119,7 @@ def order(file: str, files: Files) -> Iterator[Found]:
     which one reads what the other sets; two lanes that fire in the other order."""
     text = files[file]
     for place, row in _rows(text):
-        for first, second in zip(row, row[1:], strict=False):
+        for first, second in pairwise(row):
             if _ordered(first.of(text), second.of(text)):
                 yield place, "exchange", swapped(text, first, second)
     step = subprogram(text, "Step")
@@ -133,7 +130,7 @@ def order(file: str, files: Files) -> Iterator[Found]:
             text, step.inner.start, step.inner.end
         )
     )
-    for one, other in zip(lanes, lanes[1:], strict=False):
+    for one, other in pairwise(lanes):
         yield "Step", "lanes", swapped(text, Span(*one.span()), Span(*other.span()))
 
 
@@ -171,9 +168,10 @@ def missing(file: str, files: Files) -> Iterator[Found]:
 
 def _is_move(word: str) -> bool:
     """A case or if that itself moves, such as what restores a history."""
-    return word.startswith(("case ", "if ")) and re.search(
-        r"\b(Exit|Enter|Leave)_\w+;|\bDeferrals\.|Self\.Completed_", word
-    ) is not None
+    return (
+        word.startswith(("case ", "if "))
+        and re.search(r"\b(Exit|Enter|Leave)_\w+;|\bDeferrals\.|Self\.Completed_", word) is not None
+    )
 
 
 # --- history
@@ -201,15 +199,13 @@ def history_in_code(file: str, files: Files) -> Iterator[Found]:
     known = re.compile(r"\bif (Past\.Known_\w+) then")
     for match in known.finditer(text, fire.inner.start, fire.inner.end):
         yield "Fire", "known", replaced(Span(*match.span(1)), f"not {match.group(1)}")
-    for case in re.compile(r"\bcase Past\.\w+ is").finditer(
-        text, fire.inner.start, fire.inner.end
-    ):
+    for case in re.compile(r"\bcase Past\.\w+ is").finditer(text, fire.inner.start, fire.inner.end):
         rows = arms(text, Span(case.start(), fire.inner.end))
         yield from _exchanged(text, rows)
 
 
 def _exchanged(text: str, rows: list[Branch]) -> Iterator[Found]:
-    for one, other in zip(rows, rows[1:], strict=False):
+    for one, other in pairwise(rows):
         if one.body.of(text) != other.body.of(text):
             yield "Fire", "restore", swapped(text, one.body, other.body)
 
@@ -236,8 +232,8 @@ def deferral(file: str, files: Files) -> Iterator[Found]:
         if one is not None:
             yield from _edits(text, one, "early", r"\bif (not )Is_Deferred\b", "")
             yield from _edits(text, one, "twice", r"(Deferrals\.Remove [^;]*;)", "null;")
-            yield from _edits(text, one, "latest", r"(Deferrals\.Element \(Self\.Deferred, I\))",
-                              "Deferrals.Element (Self.Deferred, 1)")
+            element = r"Deferrals\.Element \(Self\.Deferred, (I)\)"
+            yield from _edits(text, one, "first", element, "1")
             yield from _edits(text, one, "lose", r"(Deferrals\.Append [^;]*;)", "null;")
             yield from _edits(text, one, "full", r"Count \(Self\.Deferred\)( = )", " /= ")
 
@@ -270,7 +266,7 @@ def timeout(file: str, files: Files) -> Iterator[Found]:
     rows = list(
         re.compile(r"Now := (Expiry_Of_\w+);").finditer(text, poll.inner.start, poll.inner.end)
     )
-    for first, second in zip(rows, rows[1:], strict=False):
+    for first, second in pairwise(rows):
         yield "Poll", "expiry", swapped(text, Span(*first.span(1)), Span(*second.span(1)))
 
 
@@ -280,8 +276,10 @@ def completion(file: str, files: Files) -> Iterator[Found]:
     for one in subprograms(text):
         if one.is_expression or not one.name.startswith(("Enter_", "Exit_", "Poll")):
             continue
-        yield from _edits(text, one, "forget", r"(Self\.Completed_\w+ := (?:True|False);)", "null;")
-        yield from _edits(text, one, "others", r"\bif (Self\.\w+(?:\.\w+)? = [^;]*?)\s+then", "True")
+        noticed = r"(Self\.Completed_\w+ := (?:True|False);)"
+        yield from _edits(text, one, "forget", noticed, "null;")
+        others = r"\bif (Self\.\w+(?:\.\w+)? = [^;]*?)\s+then"
+        yield from _edits(text, one, "others", others, "True")
 
 
 def _edits(

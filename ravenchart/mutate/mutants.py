@@ -42,9 +42,9 @@ class Mutant:
     edits: tuple[Edit, ...]
 
     @property
-    def key(self) -> tuple[str, str, str, int]:
+    def key(self) -> tuple[str, str, str, str, int]:
         """What tells it from the others."""
-        return (self.file, self.place, self.rule, self.ordinal)
+        return (self.kind, self.file, self.place, self.rule, self.ordinal)
 
     @property
     def name(self) -> str:

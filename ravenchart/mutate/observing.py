@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from random import Random
 
@@ -16,7 +16,7 @@ from behaviour.machine import Machine
 from behaviour.stimuli import Arrived, Raised, Stimuli
 from behaviour.traces import Record
 from gen.generate import simulation
-from gen.model import End, System
+from gen.model import End, Event, Port, System
 from gen.terms import IntegerType, Ns, RecordType, Scalar, ScalarType, Type, Value
 
 from .. import simulate, steps
@@ -54,12 +54,13 @@ def random_stimuli(system: System, seed: int) -> Stimuli:
         for instance in system.instances:
             if seed == 0 or rng.random() > 0.25:
                 continue
-            events, ports = instance.component.events, instance.component.inputs()
-            if not events and not ports:
+            sources: list[Event | Port] = [*instance.component.events]
+            sources += instance.component.inputs()
+            if not sources:
                 continue
-            chosen = rng.choice((*events, *ports))
+            chosen = rng.choice(sources)
             value = _value(chosen.type, rng)
-            if chosen in events:
+            if not isinstance(chosen, Port):
                 entries.append(Raised(Ns(at), instance.name, chosen.name, value))
             elif value is not None:
                 entries.append(Arrived(Ns(at), End(instance.name, chosen.name), value))
@@ -144,8 +145,8 @@ class Simulated(Observer):
         return ""
 
 
-def _records(found: object) -> list[str]:
-    return [one.text() for one in found if isinstance(one, Record)]  # type: ignore[attr-defined]
+def _records(found: Iterable[Record]) -> list[str]:
+    return [one.text() for one in found]
 
 
 class Real(Observer):

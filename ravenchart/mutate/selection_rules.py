@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 from .mutants import Edit, Files, Found, replaced, swapped
 from .source import (
@@ -61,7 +62,7 @@ def source_in_code(file: str, files: Files) -> Iterator[Found]:
             continue
         case = re.compile(r"\(?case ").search(text, one.inner.start, one.inner.end)
         rows = _dispatch(text, one) if case else []
-        for first, second in zip(rows, rows[1:], strict=False):
+        for first, second in pairwise(rows):
             yield one.name, "exchange", swapped(text, first.body, second.body)
 
 
@@ -148,7 +149,7 @@ def guard_in_code(file: str, files: Files) -> Iterator[Found]:
     for one, rows in selectors(text):
         for row in rows[:-1]:
             parts = conjuncts(text, row.head)
-            for before, part in zip(parts, parts[1:], strict=False):
+            for before, part in pairwise(parts):
                 for rule, edits in _guards(text, before, part):
                     yield one.name, rule, edits
 
@@ -161,7 +162,7 @@ def guard_declared(file: str, files: Files) -> Iterator[Found]:
         return
     for row in choices(text, one.inner):
         parts = conjuncts(text, row.body)
-        for before, part in zip(parts, parts[1:], strict=False):
+        for before, part in pairwise(parts):
             if not _PLACED.match(part.of(text)) and not _TRIGGER.match(part.of(text)):
                 for rule, edits in _guards(text, before, part):
                     yield one.name, rule, edits
@@ -198,7 +199,7 @@ def priority_in_code(file: str, files: Files) -> Iterator[Found]:
 
 
 def _same_trigger(text: str, rows: list[Branch]) -> Iterator[tuple[Branch, Branch]]:
-    for first, second in zip(rows[:-1], rows[1:-1], strict=False):
+    for first, second in pairwise(rows[:-1]):
         heads = [conjuncts(text, r.head)[0].of(text) for r in (first, second)]
         if heads[0] == heads[1]:
             yield first, second

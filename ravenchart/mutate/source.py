@@ -134,20 +134,14 @@ def _lines(text: str, inner: Span) -> Iterator[tuple[int, str]]:
 
 
 def arms(text: str, statement: Span) -> list[Branch]:
-    """The arms of a case statement: their choices, their statements."""
+    """The arms of the case statement that starts there: their choices, their statements."""
     start = text.rfind("\n", 0, statement.start) + 1
     indent = " " * (statement.start - start)
-    marks = list(
-        re.compile(rf"^{indent}   when (.*) =>\n", re.M).finditer(
-            text, statement.start, statement.end
-        )
-    )
-    ends = [m.start() for m in marks[1:]]
-    last = text.rfind("\n", 0, statement.end) + 1
-    return [
-        Branch(Span(m.start(1), m.end(1)), Span(m.end(), e))
-        for m, e in zip(marks, [*ends, last], strict=True)
-    ]
+    last = text.find(f"\n{indent}end case;", statement.start) + 1
+    mark = re.compile(rf"^{indent}   when (.*) =>\n", re.M)
+    marks = list(mark.finditer(text, statement.start, last))
+    ends = [*(m.start() for m in marks[1:]), last]
+    return [Branch(Span(*m.span(1)), Span(m.end(), e)) for m, e in zip(marks, ends, strict=True)]
 
 
 def _tokens(text: str, inner: Span) -> list[tuple[str, Span]]:

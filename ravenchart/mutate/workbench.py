@@ -143,9 +143,7 @@ class Workbench:
     def units_of(self, mutant: Mutant) -> list[str]:
         """What is proved again: the unit; for ceilings and periods the tasks and the main."""
         if mutant.kind in ("ceiling", "period"):
-            tasks = [
-                _body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t
-            ]
+            tasks = [_body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t]
             return [*tasks, f"{self.main}.adb"]
         body = _body(mutant.file)
         return [body if body in self.files else mutant.file]

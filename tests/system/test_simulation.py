@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,13 +13,17 @@ import yaml
 from behaviour.machine import Machine
 from behaviour.traces import Record
 from gen.model import System
+from ravenchart.__main__ import main
 from ravenchart.simulate import build_simulation, run_simulation
+from ravenchart.toolchain import ROOT
 from tests.support import random_charts, reference_charts
 from tests.support.interpreted import plain, stimuli_of, system_of
 from tests.support.reference_charts import NAMES, chart_of, labels_of
 
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 """`make test-long`: all of the random charts, in batches of one compilation each."""
+
+EXAMPLES = sorted(p.parent.name for p in (ROOT / "examples").glob("*/events.yaml"))
 
 BATCH = 12
 FIRST = 1_000
@@ -66,6 +71,22 @@ def test_the_generated_code_gives_every_reference_trace(tmp_path: Path) -> None:
         records = run_simulation(system, program, stimuli_of(_events_for(name), system))
         own = [b for r in records if r.instance == _instance(name) for b in r.behaviours]
         assert labels_of(case, own) in case["expected_traces"], name
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_command_says_the_same_of_an_example_both_ways(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = ROOT / "examples" / name
+    call = ["simulate", str(folder / "model.yaml"), "--events", str(folder / "events.yaml")]
+    assert main(call) == 0
+    executed = capsys.readouterr().out
+    assert main([*call, "--interpreter"]) == 0
+    assert capsys.readouterr().out == executed
+    assert executed.count("\n") > 10
+    assert main([*call, "--json"]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert len(lines) == executed.count("\n")
 
 
 def _by_chart(records: Sequence[Record], seeds: Sequence[int]) -> dict[int, list[str]]:

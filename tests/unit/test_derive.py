@@ -149,6 +149,16 @@ def test_do_activity_uses_the_state_that_it_works_in() -> None:
     assert set(system.object("two.Handling").users) == {"processor_2", "processor_3"}
 
 
+def test_do_activity_that_completes_its_state_shares_two_objects_with_the_region() -> None:
+    system = load(ROOT / "tests" / "feature" / "done" / "model.yaml").system
+    assert system is not None
+    for element in ("unit_1.work.visit", "unit_1.work.done"):
+        item = system.object(element)
+        assert (item.users, item.ceiling) == (("regions", "workers"), 2)
+    others = [o.element for o in example("three_components").objects]
+    assert not [one for one in others if one.endswith((".visit", ".done"))]
+
+
 def test_moving_a_row_moves_priorities_and_users_along() -> None:
     path = ROOT / "examples" / "three_components" / "model.yaml"
     text = path.read_text()

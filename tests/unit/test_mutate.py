@@ -1,0 +1,141 @@
+"""Mutants: where rules find their places, which are chosen, when an explanation counts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from gen.generate import generate, simulation
+from ravenchart import steps
+from ravenchart.mutate.catalogue import KINDS, mutants_of
+from ravenchart.mutate.mutants import Files, Mutant, sampled
+from ravenchart.mutate.report import Outcome, as_json, explanations, reason_of, survivors, table
+from ravenchart.mutate.source import arms, branches, conjuncts, statements, subprogram
+from ravenchart.mutate.workbench import Verdict
+from ravenchart.toolchain import ROOT
+
+ADA = """\
+package body P is
+   function In_A (Now : Occurrence) return Selection is
+     (if Now = On_X and then Data.N < 4
+         then T1
+      elsif Now = On_X
+         then T2
+      else None)
+   with Post => Is_Selection (In_A'Result, Now);
+
+   procedure Fire (Chosen : Firing) is
+      procedure Exit_A is
+      begin
+         Self.N := 1;
+      end Exit_A;
+   begin
+      case Chosen is
+         when T1 =>
+            Exit_A;
+            Enter_B;
+         when T2 =>
+            null;
+      end case;
+      Self.Started := True;
+   end Fire;
+end P;
+"""
+
+
+@pytest.fixture(scope="module")
+def rich() -> Files:
+    """The rich chart's program."""
+    checked = steps.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
+    files = generate(checked.system, steps.bounds(checked))
+    return {n: t for n, t in files.items() if n.endswith((".ads", ".adb"))}
+
+
+def test_an_if_expression_is_read_with_its_conditions_and_values() -> None:
+    one = subprogram(ADA, "In_A")
+    assert one is not None and one.is_expression and one.line == 2
+    found = [(b.head.of(ADA), b.body.of(ADA)) for b in branches(ADA, one.inner)]
+    assert found == [("Now = On_X and then Data.N < 4", "T1"), ("Now = On_X", "T2"), ("", "None")]
+    first = branches(ADA, one.inner)[0].head
+    assert [s.of(ADA) for s in conjuncts(ADA, first)] == ["Now = On_X", "Data.N < 4"]
+
+
+def test_a_body_is_read_with_its_statements_and_arms() -> None:
+    one = subprogram(ADA, "Fire")
+    assert one is not None and not one.is_expression
+    case, last = statements(ADA, one.inner)
+    assert last.of(ADA) == "Self.Started := True;"
+    rows = arms(ADA, case)
+    assert [r.head.of(ADA) for r in rows] == ["T1", "T2"]
+    assert [s.of(ADA) for s in statements(ADA, rows[0].body)] == ["Exit_A;", "Enter_B;"]
+
+
+def test_every_kind_but_codecs_has_mutants_in_the_rich_chart(rich: Files) -> None:
+    assert set(KINDS) - {m.kind for m in mutants_of(rich)} == {"codec"}
+
+
+def test_codecs_have_mutants_in_the_robot() -> None:
+    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    files = generate(checked.system, steps.bounds(checked))
+    rules = {(m.kind, m.rule) for m in mutants_of(files) if m.kind == "codec"}
+    assert rules == {("codec", "bit"), ("codec", "offset"), ("codec", "width")}
+
+
+def test_each_mutant_is_another_text_and_the_same_every_time(rich: Files) -> None:
+    mutants = mutants_of(rich)
+    texts = {(m.file, m.applied(rich[m.file])) for m in mutants}
+    assert len({m.key for m in mutants}) == len(mutants) == len(texts)
+    assert all(m.applied(rich[m.file]) != rich[m.file] for m in mutants)
+    assert mutants == mutants_of(dict(reversed(list(rich.items()))))
+
+
+def test_each_mutant_of_a_region_is_found_in_the_program_for_simulation(rich: Files) -> None:
+    checked = steps.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
+    noted = simulation(checked.system)
+    twins = {m.key: m for m in mutants_of(noted)}
+    for mutant in mutants_of(rich):
+        if "-plant-" in mutant.file:
+            twin = twins[mutant.key]
+            assert _replacements(twin, noted) == _replacements(mutant, rich), mutant.name
+
+
+def _replacements(mutant: Mutant, files: Files) -> list[tuple[str, str]]:
+    return [(e.span.of(files[mutant.file]), e.text) for e in mutant.edits]
+
+
+def test_a_sample_has_some_of_each_kind_and_depends_on_the_seed_alone(rich: Files) -> None:
+    mutants = mutants_of(rich)
+    chosen = sampled(mutants, 2, seed=1)
+    assert chosen == sampled(mutants, 2, seed=1) != sampled(mutants, 2, seed=2)
+    assert {m.kind for m in chosen} == {m.kind for m in mutants}
+    groups = {(m.kind, m.declared) for m in chosen}
+    assert all(sum((m.kind, m.declared) == g for m in chosen) <= 2 for g in groups)
+    assert sampled(mutants, None, seed=1) == mutants
+
+
+def test_an_explanation_counts_only_while_the_text_is_the_same(rich: Files, tmp_path: Path) -> None:
+    mutant = mutants_of(rich)[0]
+    diff = mutant.diff(rich[mutant.file])
+    path = tmp_path / "explained.toml"
+    row = f'[[equivalent]]\nsubject = "rich"\nplace = "{mutant.place}"\n'
+    path.write_text(f"{row}reason = 'it does the same'\ndiff = '''\n{diff}\n'''\n")
+    known = explanations(path)
+    assert reason_of(known, "rich", mutant, diff) == "it does the same"
+    assert reason_of(known, "rich", mutant, diff.replace("Enter", "Exit")) == ""
+    assert reason_of(known, "robot", mutant, diff) == ""
+
+
+def test_the_report_counts_by_kind_and_shows_what_survived(rich: Files) -> None:
+    first, second = mutants_of(rich)[:2]
+    outcomes = [
+        Outcome("rich", first, "-a\n+b", Verdict("gnatprove", "postcondition might fail")),
+        Outcome("rich", second, "-c\n+d", Verdict(None)),
+    ]
+    last = table(outcomes).splitlines()[-1].split()
+    assert last == ["all", "2", "0", "1", "0", "0", "0", "1"]
+    assert survivors(outcomes).endswith("-c\n+d") and "-a" not in survivors(outcomes)
+    found = json.loads(as_json(outcomes))
+    assert found["kinds"]["target"]["survived"] == 1
+    assert [m["caught_by"] for m in found["mutants"]] == ["gnatprove", None]

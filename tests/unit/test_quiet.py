@@ -1,0 +1,37 @@
+"""Which models have conditions that the compiler decides, and warns of."""
+
+from __future__ import annotations
+
+import pytest
+
+from gen.emit.quiet import has_decided_conditions
+from tests.support.interpreted import component_system
+
+PART = """
+events: [Go]
+regions:
+  Main:
+    period: 10 ms
+    wcet: 1 us
+    queue: 2
+    initial: Whole
+    states:
+      Whole: {initial: A, states: {A: {}, B: {}}}%s
+    transitions:
+      go: {from: A, to: B, on: Go}
+      back: {from: B, to: A, on: Go}%s
+activities:
+  work: {period: 10 ms, wcet: 1 us, while: Main.%s, body: [{raise: Go}]}
+"""
+OUTSIDE = ("\n      Rest: {}", "\n      rest: {from: Whole, to: Rest, after: 1 s}")
+
+
+@pytest.mark.parametrize(
+    ("more", "state", "decided"),
+    [(("", ""), "Whole", True), (("", ""), "A", False), (OUTSIDE, "Whole", False)],
+)
+def test_do_activity_of_a_state_around_everything_always_works(
+    more: tuple[str, str], state: str, decided: bool
+) -> None:
+    system = component_system(PART % (*more, state), "[unit.Main, unit.work]")
+    assert has_decided_conditions(system) == decided
