@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from ..model import When
 from .ada import (
     FALSE,
@@ -170,7 +168,7 @@ def _fire_params(shape: RegionShape) -> tuple[Param, ...]:
         idle.add("Ins")
     filled = Moves(shape.component, shape.region, shape.scope("Self.Data")).fills_outbox()
     kept = (
-        replace(p, mode="out") if filled and p.name == "Box" else p
+        p._replace(mode="out") if filled and p.name == "Box" else p
         for p in step_params(shape)
         if p.name not in idle
     )

@@ -29,7 +29,7 @@ def _expected(case: Path) -> dict[str, Any]:
 @pytest.fixture
 def folder(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """A copy of the case."""
-    copy = tmp_path / request.param.name
+    copy: Path = tmp_path / request.param.name
     shutil.copytree(request.param, copy)
     return copy
 
