@@ -156,13 +156,20 @@ class Rows(Site):
         run = Subprogram(f"Run_{name}", declarations=tuple(declarations), body=tuple(body))
         return [step, run]
 
+    def _parameter(self, name: str) -> Expr | None:
+        """The value that the instance gives a parameter; None for what is none."""
+        for parameter, given in self.instance.parameters:
+            if parameter == name:
+                component = self.instance.component
+                of_type = next(p.type for p in component.parameters if p.name == name)
+                return scalar(self.system, of_type, given)
+        return None
+
     def _copy_in(self, name: str, target: str) -> Stmt:
         """Read what ``name`` denotes into ``target``."""
         component = self.instance.component
-        for parameter, given in self.instance.parameters:
-            if parameter == name:
-                of_type = next(p.type for p in component.parameters if p.name == name)
-                return Assign(target, scalar(self.system, of_type, given))
+        if (given := self._parameter(name)) is not None:
+            return Assign(target, given)
         if any(d.name == name for d in component.data) and not self._has_object(name):
             return Assign(target, Ref(f"{ada_case(name)}_Own"))
         return Do(f"{ada_case(name)}_Board.Read", arguments(Ref(target)))
@@ -280,8 +287,14 @@ class Rows(Site):
             declarations.append(Object("Visit", "Ravenchart.Event_Count"))
             before.append(do(f"{ada_case(activity.name)}_Visit_Board.Read", Ref("Visit")))
         for name in reads:
+            read_as = reading_type(self.system, component, name)
+            constant = self._parameter(name)
+            if constant is not None and read_as == "Boolean":
+                #  the compiler warns of a variable that it knows to be true
+                args.append(Arg(ada_case(name), constant))
+                continue
             local = f"{ada_case(name)}_Value"
-            declarations.append(Object(local, reading_type(self.system, component, name)))
+            declarations.append(Object(local, read_as))
             before.append(self._copy_in(name, local))
             args.append(Arg(ada_case(name), Ref(local)))
         for name in activity.writes:

@@ -154,7 +154,12 @@ class Workbench:
         self._run(["gprbuild", "-p", "-q", "-j1", "-P", self.project])
 
     def prove(self, units: Sequence[str], only: str | None = None, *, jobs: int = 1) -> None:
-        """Prove units, or one subprogram of one; ToolFailed with what is left."""
+        """Prove units, or one subprogram of one; ToolFailed with what is left.
+
+        What earlier runs left unproved would count again: their results go first.
+        """
+        for old in self.folder.rglob("*.spark"):
+            old.unlink()
         command = ["gnatprove", "-P", self.project, "-q", "--output=oneline", *PROOF]
         command += [f"-j{jobs}", "-u", *units]
         if only is not None:

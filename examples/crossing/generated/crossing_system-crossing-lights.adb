@@ -411,7 +411,7 @@ is
       end if;
    end Poll;
 
-   procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
+   procedure Fire (Self : in out Region; Chosen : Firing)
    with
      Pre =>
        (if Chosen = Initial_Entry
@@ -1143,7 +1143,7 @@ is
         Post => Self.Started and then Fired.Count > 0
       is
       begin
-         Fire (Self, Item, T);
+         Fire (Self, T);
          Note (T);
       end Fire_Whole;
    begin

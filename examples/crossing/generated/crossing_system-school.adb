@@ -291,7 +291,6 @@ is
       Walkers_See_Value : Crossing_System.Walk_Light;
       Requested_Value : Boolean;
       Road_Free_Value : Boolean;
-      Has_Sign_Value : Boolean;
       Car_Lamp_Value : Crossing_System.Car_Light;
       Send_Car_Lamp_Asked : Boolean;
       Walk_Lamp_Value : Crossing_System.Walk_Light;
@@ -303,13 +302,12 @@ is
       Walkers_See_Board.Read (Walkers_See_Value);
       Requested_Board.Read (Requested_Value);
       Road_Free_Board.Read (Road_Free_Value);
-      Has_Sign_Value := True;
       Crossing.Flows.Show
         (Cars_See => Cars_See_Value,
          Walkers_See => Walkers_See_Value,
          Requested => Requested_Value,
          Road_Free => Road_Free_Value,
-         Has_Sign => Has_Sign_Value,
+         Has_Sign => True,
          Car_Lamp => Car_Lamp_Value,
          Send_Car_Lamp => Send_Car_Lamp_Asked,
          Walk_Lamp => Walk_Lamp_Value,

@@ -518,8 +518,11 @@ is
    --  Does an active state defer it?
 
    function Is_Deferral (T : Selection) return Boolean is
-     (T
-      in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test | Defer_New_Portion_In_Alarm);
+     (T = Defer_New_Portion_In_Loading
+      or else T = Defer_New_Portion_In_Filling
+      or else T = Defer_New_Portion_In_Self_Test
+      or else T = Defer_New_Volume_In_Self_Test
+      or else T = Defer_New_Portion_In_Alarm);
 
    procedure Tick (Self : in out Region)
    with

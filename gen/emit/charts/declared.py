@@ -316,7 +316,7 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
                 f"Leaves_{ada_case(state)}",
                 (Param("T", "in", "Selection"),),
                 "Boolean",
-                expression=member(Ref("T"), " | ".join(names)),
+                expression=_one_of("T", names),
             ),
             Comment(f"Does it leave {state} from inside? Then it fires alone there."),
         ]
@@ -355,6 +355,11 @@ def _is_selection(name: str, domain: str, count: int, params: tuple[Param, ...])
         aspects=(Aspect("Ghost"),),
         expression=rule,
     )
+
+
+def _one_of(what: str, names: list[str]) -> Expr:
+    """Is it one of these? In a form that can go on to the next line."""
+    return chain("or else", [equal(Ref(what), Ref(name)) for name in names])
 
 
 def _passing(shape: RegionShape) -> list[Decl]:
@@ -398,9 +403,8 @@ def _deferred(shape: RegionShape) -> list[Decl]:
             "Is_Deferral",
             (Param("T", "in", "Selection"),),
             "Boolean",
-            expression=member(
-                Ref("T"),
-                " | ".join(ada_case(f.name) for f in shape.firings if f.kind is Kind.DEFERRAL),
+            expression=_one_of(
+                "T", [ada_case(f.name) for f in shape.firings if f.kind is Kind.DEFERRAL]
             ),
         ),
     ]

@@ -134,7 +134,9 @@ class Moves:
     def fire_params(self) -> tuple[Param, ...]:
         """Self, what behaviours read, the outbox, and the transition."""
         reads = behaviour_names(self.region) & set(self.shape.inputs)
-        params = [p for p in self.shape.step_params() if p.name != "Ins" or reads]
+        idle = set() if reads else {"Ins"}
+        idle |= set() if self.shape.fires_with_item else {"Item"}
+        params = [p for p in self.shape.step_params() if p.name not in idle]
         if self._fills_outbox():
             params = [p._replace(mode="out") if p.name == "Box" else p for p in params]
         return (*params, Param("Chosen", "in", "Firing"))

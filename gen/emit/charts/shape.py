@@ -383,9 +383,14 @@ class RegionShape(Places):
     @cached_property
     def takes_item(self) -> bool:
         """Does a step need the event itself, for its value?"""
+        asked = any(asks_event(guard) for guard in guards_of(self.region))
+        return self.fires_with_item or asked
+
+    @cached_property
+    def fires_with_item(self) -> bool:
+        """Does a behaviour ask for the event's value, or is the event kept?"""
         flows = (e for flow in flows_of(self.region) for e in expressions_in(flow))
-        asked = any(asks_event(e) for e in (*guards_of(self.region), *flows))
-        return carries(self.component) and (asked or self.deferring)
+        return carries(self.component) and (any(map(asks_event, flows)) or self.deferring)
 
     def choice_params(self) -> tuple[Param, ...]:
         """What a selection is made over."""
