@@ -107,7 +107,7 @@ procedure Test_Regions is
       Ravenchart.Timers.Disarm (Timers (1));
       Ravenchart.Timers.Take_Due (Timers, Due);
       Facts.Check ("a disarmed timer is not due", Due = 0);
-      Timers (1) := (True, Ravenchart.Timers.Remaining_Count'First);
+      Timers (1) := (True, Ravenchart.Timers.Remaining_Count'First, 0);
       Ravenchart.Timers.Tick (Timers);
       Facts.Check
         ("a timer stops counting at the end of its range",
@@ -115,6 +115,14 @@ procedure Test_Regions is
       Ravenchart.Timers.Arm (Timers (1), 0);
       Ravenchart.Timers.Take_Due (Timers, Due);
       Facts.Check ("a timer of 0 is due at once", Due = 1);
+      Ravenchart.Timers.Arm (Timers (1), 1, Period => 2);
+      for I in 1 .. 4 loop
+         Ravenchart.Timers.Tick (Timers);
+      end loop;
+      Ravenchart.Timers.Take_Due (Timers, Due);
+      Facts.Check
+        ("a repeating timer starts again without drift",
+         Due = 1 and then Timers (1).Armed and then Timers (1).Remaining = -1);
    end Check_Timers;
 
    -----------------
