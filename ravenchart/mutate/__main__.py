@@ -58,7 +58,7 @@ def tried(
             reason = "" if verdict.by else reason_of(known, subject.name, mutant, diff)
             outcome = Outcome(subject.name, mutant, diff, verdict, reason)
             what = verdict.by or ("explained" if reason else "SURVIVED")
-            print(f"{subject.name}: {outcome.part}: {mutant.name}: {what}", flush=True)
+            print(f"{subject.name}: {mutant.row}: {mutant.name}: {what}", flush=True)
             return outcome
 
         with ThreadPoolExecutor(jobs) as pool:
@@ -66,10 +66,15 @@ def tried(
 
 
 def mutants(subject: Subject, limit: int | None, seed: int, kinds: Sequence[str]) -> list[Mutant]:
-    """The chosen mutants of a subject."""
+    """The chosen mutants of a subject; of its model only where the interpreter can run it."""
     with tempfile.TemporaryDirectory(prefix="ravenchart-mutate-") as place:
         files = Workbench(subject.model, Path(place), Observer).files
-    return sampled([m for m in mutants_of(files) if m.kind in kinds], limit, seed)
+    wanted = [
+        m
+        for m in mutants_of(files)
+        if m.kind in kinds and (m.part != "model" or subject.observer is Simulated)
+    ]
+    return sampled(wanted, limit, seed)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

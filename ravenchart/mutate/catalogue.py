@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from . import firing_rules, program_rules, selection_rules
-from .mutants import Files, Mutant, Rule, numbered
+from . import firing_rules, model_rules, program_rules, selection_rules
+from .mutants import Files, Mutant, Part, Rule, numbered
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +16,7 @@ class Entry:
     kind: str
     rule: Rule
     looks_at: Callable[[str, str], bool]
-    declared: bool = False
+    part: Part = "code"
 
 
 def _region_body(name: str, text: str) -> bool:
@@ -47,30 +47,43 @@ def _codec_spec(name: str, _text: str) -> bool:
     return name.endswith("-codecs.ads")
 
 
+def _model(name: str, _text: str) -> bool:
+    return name.endswith(".yaml")
+
+
 ENTRIES = (
     Entry("target", firing_rules.target_in_code, _region_body),
-    Entry("target", firing_rules.target_declared, _region_spec, declared=True),
+    Entry("target", firing_rules.target_declared, _region_spec, "declared"),
     Entry("source", selection_rules.source_in_code, _region_body),
-    Entry("source", selection_rules.source_declared, _region_spec, declared=True),
+    Entry("source", selection_rules.source_declared, _region_spec, "declared"),
     Entry("trigger", selection_rules.trigger_in_code, _region_body),
-    Entry("trigger", selection_rules.trigger_declared, _region_spec, declared=True),
+    Entry("trigger", selection_rules.trigger_declared, _region_spec, "declared"),
     Entry("guard", selection_rules.guard_in_code, _region_body),
-    Entry("guard", selection_rules.guard_declared, _region_spec, declared=True),
+    Entry("guard", selection_rules.guard_declared, _region_spec, "declared"),
     Entry("priority", selection_rules.priority_in_code, _region_body),
-    Entry("priority", selection_rules.priority_declared, _region_spec, declared=True),
+    Entry("priority", selection_rules.priority_declared, _region_spec, "declared"),
     Entry("order", firing_rules.order, _region_body),
     Entry("missing action", firing_rules.missing, _region_body),
     Entry("history", firing_rules.history_in_code, _region_body),
-    Entry("history", firing_rules.history_declared, _region_spec, declared=True),
+    Entry("history", firing_rules.history_declared, _region_spec, "declared"),
     Entry("deferral", firing_rules.deferral, _region_body),
-    Entry("deferral", firing_rules.deferral_declared, _region_spec, declared=True),
+    Entry("deferral", firing_rules.deferral_declared, _region_spec, "declared"),
     Entry("time-out", firing_rules.timeout, _region_body),
     Entry("completion", firing_rules.completion, _region_body),
     Entry("ceiling", program_rules.ceiling, _ceilings),
     Entry("period", program_rules.period, _processor),
     Entry("certificate", program_rules.certificate, _certificate),
     Entry("codec", program_rules.codec_in_code, _codecs),
-    Entry("codec", program_rules.codec_declared, _codec_spec, declared=True),
+    Entry("codec", program_rules.codec_declared, _codec_spec, "declared"),
+    Entry("target", model_rules.target, _model, "model"),
+    Entry("source", model_rules.source, _model, "model"),
+    Entry("trigger", model_rules.trigger, _model, "model"),
+    Entry("guard", model_rules.guard, _model, "model"),
+    Entry("history", model_rules.history, _model, "model"),
+    Entry("deferral", model_rules.deferral, _model, "model"),
+    Entry("time-out", model_rules.timeout, _model, "model"),
+    Entry("period", model_rules.period, _model, "model"),
+    Entry("certificate", model_rules.certificate, _model, "model"),
 )
 """In the order of the report."""
 
@@ -83,7 +96,7 @@ def mutants_of(files: Files) -> list[Mutant]:
     for entry in ENTRIES:
         for name in sorted(files):
             if entry.looks_at(name, files[name]):
-                made = numbered(entry.kind, entry.declared, name, entry.rule(name, files))
+                made = numbered(entry.kind, entry.part, name, entry.rule(name, files))
                 for mutant in made:
                     found.setdefault((name, mutant.applied(files[name])), mutant)
     return list(found.values())

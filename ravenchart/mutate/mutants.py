@@ -6,8 +6,12 @@ import difflib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
+from typing import Literal
 
 from .source import Span
+
+Part = Literal["code", "declared", "model"]
+"""What is broken: generated code, the chart as it is declared there, or the model."""
 
 Files = Mapping[str, str]
 """File name to text: the generated program."""
@@ -26,7 +30,7 @@ class Edit:
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """One small break: its kind, in which part, and the edits of one file.
+    """One small break: its kind, its part, and the edits of one file.
 
     ``place`` names the subprogram or declaration; ``ordinal`` counts the mutants that
     one rule makes of one place, so that the same break is found in the program for
@@ -34,7 +38,7 @@ class Mutant:
     """
 
     kind: str
-    declared: bool
+    part: Part
     file: str
     place: str
     rule: str
@@ -45,6 +49,11 @@ class Mutant:
     def key(self) -> tuple[str, str, str, str, int]:
         """What tells it from the others."""
         return (self.kind, self.file, self.place, self.rule, self.ordinal)
+
+    @property
+    def row(self) -> str:
+        """Kind and part, as the report has them."""
+        return self.kind if self.part == "code" else f"{self.kind}, {self.part}"
 
     @property
     def name(self) -> str:
@@ -71,14 +80,14 @@ Rule = Callable[[str, Files], Iterator[Found]]
 """Finds its places in the file of that name; same text, same order."""
 
 
-def numbered(kind: str, declared: bool, file: str, found: Iterator[Found]) -> list[Mutant]:
+def numbered(kind: str, part: Part, file: str, found: Iterator[Found]) -> list[Mutant]:
     """Mutants of what a rule found, counted by place and rule."""
     counts: dict[tuple[str, str], int] = {}
     made = []
     for place, rule, edits in found:
         ordinal = counts.get((place, rule), 0) + 1
         counts[(place, rule)] = ordinal
-        made.append(Mutant(kind, declared, file, place, rule, ordinal, edits))
+        made.append(Mutant(kind, part, file, place, rule, ordinal, edits))
     return made
 
 
@@ -86,12 +95,12 @@ def sampled(mutants: Sequence[Mutant], limit: int | None, seed: int) -> list[Mut
     """At most ``limit`` of each kind and part, always the same for a seed, in order."""
     if limit is None:
         return list(mutants)
-    groups: dict[tuple[str, bool], list[int]] = {}
+    groups: dict[str, list[int]] = {}
     for index, mutant in enumerate(mutants):
-        groups.setdefault((mutant.kind, mutant.declared), []).append(index)
+        groups.setdefault(mutant.row, []).append(index)
     chosen: list[int] = []
-    for (kind, declared), group in sorted(groups.items()):
-        rng = Random(f"{seed} {kind} {declared}")
+    for row, group in sorted(groups.items()):
+        rng = Random(f"{seed} {row}")
         chosen += rng.sample(group, min(limit, len(group)))
     return [mutants[i] for i in sorted(chosen)]
 

@@ -7,11 +7,12 @@ import signal
 import subprocess
 import time
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from random import Random
 
 from analysis.observed import Observation, TraceError, read_map, read_trace
+from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
 from behaviour.stimuli import Arrived, Raised, Stimuli
 from behaviour.traces import Record
@@ -43,6 +44,10 @@ class Observer:
 
     def differs(self, mutant: Mutant, executable: Path) -> str:
         """How the broken program differs; empty when it does not."""
+        raise NotImplementedError
+
+    def model_differs(self, system: System) -> str:
+        """How a broken model differs; empty when it does not."""
         raise NotImplementedError
 
 
@@ -134,9 +139,19 @@ class Simulated(Observer):
         if done.returncode != 0:
             raise ToolFailed(done.stderr or done.stdout)
 
+    def model_differs(self, system: System) -> str:
+        """The first step of the interpreter that differs."""
+        try:
+            return self._compared(lambda stimuli: Machine(system).run(stimuli))
+        except Stuck as stuck:
+            return str(stuck)
+
     def _difference(self) -> str:
+        return self._compared(lambda s: simulate.run_simulation(self.system, self.program, s))
+
+    def _compared(self, run: Callable[[Stimuli], Iterable[Record]]) -> str:
         for stimuli, expected in zip(self.stimuli, self.expected, strict=True):
-            found = _records(simulate.run_simulation(self.system, self.program, stimuli))
+            found = _records(run(stimuli))
             for one, other in zip(found, expected, strict=False):
                 if one != other:
                     return f"{one}, not {other}"

@@ -31,7 +31,8 @@ def period(file: str, files: Files) -> Iterator[Found]:
     for match in _matches(text, r"Divisor => (\d+), Phase"):
         yield "Table", "divisor", replaced(Span(*match.span(1)), str(int(match.group(1)) + 1))
     for match in _matches(text, r"Cycle => (\d+)"):
-        yield "Processor", "cycle", replaced(Span(*match.span(1)), str(int(match.group(1)) + 1))
+        if match.group(1) != "1":
+            yield "Processor", "cycle", replaced(Span(*match.span(1)), str(int(match.group(1)) + 1))
 
 
 def certificate(file: str, files: Files) -> Iterator[Found]:

@@ -32,11 +32,6 @@ class Outcome:
         """Neither caught nor explained."""
         return self.verdict.by is None and not self.reason
 
-    @property
-    def part(self) -> str:
-        """Kind, and whether the declared form was broken."""
-        return f"{self.mutant.kind}, declared" if self.mutant.declared else self.mutant.kind
-
 
 @dataclass(frozen=True, slots=True)
 class Explained:
@@ -52,7 +47,7 @@ def explanations(path: Path) -> list[Explained]:
     """The file of explained mutants."""
     found = tomllib.loads(path.read_text(encoding="utf-8"))
     return [
-        Explained(e["subject"], e["place"], e["diff"].strip("\n"), e["reason"])
+        Explained(e["subject"], e["place"], _trimmed(e["diff"]), e["reason"].strip())
         for e in found.get("equivalent", ())
     ]
 
@@ -60,20 +55,25 @@ def explanations(path: Path) -> list[Explained]:
 def reason_of(known: Sequence[Explained], subject: str, mutant: Mutant, diff: str) -> str:
     """The reason, as long as the mutant's text is the one that was explained."""
     for one in known:
-        if (one.subject, one.place, one.diff) == (subject, mutant.place, diff.strip("\n")):
+        if (one.subject, one.place, one.diff) == (subject, mutant.place, _trimmed(diff)):
             return one.reason
     return ""
+
+
+def _trimmed(diff: str) -> str:
+    """Without space at the ends of lines."""
+    return "\n".join(line.rstrip() for line in diff.splitlines()).strip("\n")
 
 
 def table(outcomes: Sequence[Outcome]) -> str:
     """Rows of kinds, columns of catchers."""
     columns = ("made", *CATCHERS, "explained", "survived")
     rows = [f"{'kind':<26}" + "".join(f"{c:>13}" for c in columns)]
-    parts = [p for k in KINDS for p in (k, f"{k}, declared")]
-    known = {o.part for o in outcomes}
-    for part in [*(p for p in parts if p in known), *sorted(known - set(parts)), "all"]:
-        own = [o for o in outcomes if part in (o.part, "all")]
-        rows.append(f"{part:<26}" + "".join(f"{n:>13}" for n in _counts(own).values()))
+    order = [row for k in KINDS for row in (k, f"{k}, declared", f"{k}, model")]
+    known = {o.mutant.row for o in outcomes}
+    for row in [*(r for r in order if r in known), "all"]:
+        own = [o for o in outcomes if row in (o.mutant.row, "all")]
+        rows.append(f"{row:<26}" + "".join(f"{n:>13}" for n in _counts(own).values()))
     return "\n".join(rows)
 
 
@@ -92,7 +92,10 @@ def survivors(outcomes: Sequence[Outcome]) -> str:
     lines: list[str] = []
     for one in outcomes:
         if one.survived:
-            lines += [f"{one.subject}: {one.part}: {one.mutant.file}: {one.mutant.name}", one.diff]
+            lines += [
+                f"{one.subject}: {one.mutant.row}: {one.mutant.file}: {one.mutant.name}",
+                one.diff,
+            ]
     return "\n".join(lines)
 
 
@@ -101,14 +104,14 @@ def as_json(outcomes: Sequence[Outcome]) -> str:
     return json.dumps(
         {
             "kinds": {
-                part: _counts([o for o in outcomes if o.part == part])
-                for part in dict.fromkeys(o.part for o in outcomes)
+                row: _counts([o for o in outcomes if o.mutant.row == row])
+                for row in dict.fromkeys(o.mutant.row for o in outcomes)
             },
             "mutants": [
                 {
                     "subject": o.subject,
                     "kind": o.mutant.kind,
-                    "declared": o.mutant.declared,
+                    "part": o.mutant.part,
                     "file": o.mutant.file,
                     "place": o.mutant.place,
                     "rule": f"{o.mutant.rule} {o.mutant.ordinal}",

@@ -10,9 +10,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import yaml
+
 from gen.generate import generate, user_units
 
 from .. import steps
+from ..steps import Refused
 from ..toolchain import ROOT, ToolFailed, ToolMissing, have
 from .mutants import Files, Mutant
 from .observing import Observer, Simulated
@@ -43,7 +46,11 @@ class Workbench:
         self.folder = folder
         self.driver = steps.default_driver(checked)
         files = dict(generate(checked.system, steps.bounds(checked)))
-        self.files: Files = {n: t for n, t in files.items() if n.endswith((".ads", ".adb"))}
+        self.model = checked.path
+        self.files: Files = {
+            **{n: t for n, t in files.items() if n.endswith((".ads", ".adb"))},
+            **_model_files(checked.path),
+        }
         self.source = folder / "model" / "generated"
         self._copy(checked, files)
         self.project = f"{checked.stem}.gpr"
@@ -66,7 +73,8 @@ class Workbench:
     def prepare(self, units: Sequence[str]) -> None:
         """Compile, prove and run the unbroken program; ToolFailed when it is not clean."""
         self._compile()
-        self.prove(units)
+        if units:
+            self.prove(units)
         self.observer.prepare(self.executable)
 
     @property
@@ -78,9 +86,11 @@ class Workbench:
 
     def try_mutant(self, mutant: Mutant) -> Verdict:
         """Break, ask the compiler, gnatprove and the tests in turn, restore."""
-        path = self.source / mutant.file
         text = self.files[mutant.file]
         broken = mutant.applied(text)
+        if mutant.part == "model":
+            return self._judged_model(mutant.file, broken)
+        path = self.source / mutant.file
         path.write_text(broken)
         try:
             return self._judged(mutant, broken)
@@ -102,16 +112,28 @@ class Workbench:
         seen = self.observer.differs(mutant, self.executable)
         return Verdict("tests", seen) if seen else Verdict(None)
 
+    def _judged_model(self, file: str, broken: str) -> Verdict:
+        folder = self.folder / "broken"
+        folder.mkdir(exist_ok=True)
+        for name, text in _model_files(self.model).items():
+            (folder / name).write_text(broken if name == file else text)
+        try:
+            checked = steps.check(folder / self.model.name)
+        except Refused as refused:
+            return Verdict("model rules", _first_error(str(refused)))
+        seen = self.observer.model_differs(checked.system)
+        return Verdict("tests", seen) if seen else Verdict(None)
+
     def _is_modular(self, mutant: Mutant) -> bool:
         """Is all that the mutant can falsify in the subprograms of its focus? Each has a
         contract, and callers know no more."""
         body = subprogram(self.files[mutant.file], mutant.place)
-        return not mutant.declared and body is not None and "-codecs" not in mutant.file
+        return mutant.part == "code" and body is not None and "-codecs" not in mutant.file
 
     def _focus(self, mutant: Mutant) -> list[str]:
         """The subprograms that are asked first."""
         text = self.files.get(_body(mutant.file), "")
-        if not mutant.declared:
+        if mutant.part == "code":
             names = [mutant.place]
             if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
                 names.append("Fire")
@@ -142,6 +164,8 @@ class Workbench:
 
     def units_of(self, mutant: Mutant) -> list[str]:
         """What is proved again: the unit; for ceilings and periods the tasks and the main."""
+        if mutant.part == "model":
+            return []
         if mutant.kind in ("ceiling", "period"):
             tasks = [_body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t]
             return [*tasks, f"{self.main}.adb"]
@@ -185,6 +209,22 @@ class Workbench:
         )
         if done.returncode != 0:
             raise ToolFailed(done.stdout)
+
+
+def _model_files(model: Path) -> dict[str, str]:
+    """The model's file and those that it includes."""
+    text = model.read_text(encoding="utf-8")
+    others = yaml.safe_load(text).get("include", ())
+    return {
+        model.name: text,
+        **{name: (model.parent / name).read_text(encoding="utf-8") for name in others},
+    }
+
+
+def _first_error(words: str) -> str:
+    """The first error of the model rules, without its place."""
+    found = re.search(r"error: .*", words)
+    return found.group(0) if found else "refused"
 
 
 def _plain(project: str) -> str:
