@@ -11,7 +11,6 @@ from ...statechart import Region, When
 from ..ada import (
     FALSE,
     SPARK,
-    Aggregate,
     Arg,
     Aspect,
     Call,
@@ -19,22 +18,16 @@ from ..ada import (
     Chain,
     Comment,
     Decl,
-    EnumType,
     Expr,
     ForAll,
     ForSome,
     IfExpr,
-    Instance,
     Package,
     Param,
-    PlainType,
     Prefix,
-    RecordType,
     Ref,
     Subprogram,
     Unit,
-    UseType,
-    arguments,
     both,
     call,
     chain,
@@ -42,17 +35,16 @@ from ..ada import (
     member,
     number,
 )
-from ..ada import Component as Field
-from ..components import reading_type
-from ..events import name_of, null_event
-from ..naming import ada_case, default_value, type_name, value
+from ..events import name_of
+from ..naming import ada_case
 from ..terms import emit_expression
 from .compound import PASSED, Firing, Kind
 from .history import restored_functions, restored_place
+from .operations import operations
 from .places import flat
-from .shape import START, RegionShape, guard_operators, guards_of, plain_args
+from .records import region_types
+from .shape import START, RegionShape, plain_args
 from .stepping import body_of
-from .working import done_types, notices, work_fields
 
 
 def emit_region(
@@ -68,152 +60,8 @@ def emit_region(
     return Unit(header, tuple(withs), spec), Unit(header, seen, body)
 
 
-# --- Types -------------------------------------------------------------------
-
-
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
-    names = tuple(ada_case(f.name) for f in shape.firings)
-    path = f"{shape.component.name}.{shape.region.name}"
-    items: list[Decl] = _use_types(shape)
-    items += [
-        Comment(f"[{path}] what a step can be made for"),
-        EnumType("Occurrence", shape.occurrences()),
-        Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
-        EnumType("Selection", ("None", START, *names)),
-        PlainType("Firing", f"Selection range {START} .. {names[-1]}", subtype=True),
-        PlainType("Transition", f"Selection range {names[0]} .. {names[-1]}", subtype=True),
-    ]
-    if not shape.single:
-        items += _lane_types(shape)
-    items += _records(shape)
-    items += _declared(shape)
-    items += _operations(shape)
-    return tuple(items)
-
-
-def _use_types(shape: RegionShape) -> list[Decl]:
-    """The types whose operators the declared chart uses."""
-    region = shape.region
-    own = {f"{shape.states}.{shape.lane_type(n)}" for n in shape.lanes}
-    if not shape.single:
-        own.add(shape.place_type)
-    ordered = [f"{shape.states}.Leaf", *sorted(own - {f"{shape.states}.Leaf"})]
-    return [
-        UseType(n)
-        for n in (
-            *ordered,
-            *sorted(guard_operators(region)),
-            *sorted(shape.compared_in(guards_of(region))),
-        )
-    ]
-
-
-def _lane_types(shape: RegionShape) -> list[Decl]:
-    items: list[Decl] = []
-    fields: list[Field] = []
-    for lane in shape.busy_lanes:
-        own = [ada_case(f.name) for f in shape.firings if f.lane == lane]
-        name = shape.lane_name(lane)
-        items.append(
-            PlainType(f"{name}_Transition", f"Selection range {own[0]} .. {own[-1]}", subtype=True)
-        )
-        fields.append(Field(name, "Selection", Ref("None")))
-    items += [
-        Comment("What one occurrence fires: at most one transition in each lane."),
-        RecordType("Choice", tuple(fields)),
-    ]
-    return items
-
-
-def _records(shape: RegionShape) -> list[Decl]:
-    region, component = shape.region, shape.component
-    items: list[Decl] = []
-    if region.writes:
-        rows = tuple(
-            Field(
-                ada_case(d.name),
-                type_name(shape.system, d.type),
-                value(shape.system, d.type, d.initial),
-            )
-            for d in component.data
-            if d.name in region.writes
-        )
-        items += [Comment("The data that this region alone writes."), RecordType("Variables", rows)]
-    if shape.inputs:
-        rows = tuple(
-            Field(ada_case(n), reading_type(shape.system, component, n)) for n in shape.inputs
-        )
-        items += [
-            Comment("What it reads, copied in once per execution."),
-            RecordType("Inputs", rows),
-        ]
-    if shape.has_box:
-        sent: list[Field] = [Field("Raised", "Event_Lists.List")] if region.raises else []
-        for port in component.outputs():
-            if port.name in region.sends:
-                name = ada_case(port.name)
-                of_type = type_name(shape.system, port.type)
-                sent.append(Field(name, of_type, default_value(shape.system, port.type)))
-                sent.append(Field(f"{name}_Sent", "Boolean", FALSE))
-        items += [Comment("What one step sends and raises."), RecordType("Outbox", tuple(sent))]
-    if shape.memories:
-        past: list[Field] = []
-        for one in shape.memories:
-            first = next(iter(shape.literals_in(one.place)))
-            past.append(Field(one.last, shape.memory_type(one), Ref(shape.literal(first))))
-            past.append(Field(one.known, "Boolean", FALSE))
-        items += [
-            Comment("What histories ask for: the last leaf left in a region, if any."),
-            RecordType("Memory", tuple(past)),
-        ]
-    if shape.deferring:
-        items.append(
-            Instance(
-                "Deferrals",
-                "Ravenchart.Event_Lists",
-                arguments(
-                    Event=Ref(f"{ada_case(component.name)}.Event"),
-                    Null_Event=null_event(component),
-                    Capacity=number(region.deferral_depth),
-                ),
-            )
-        )
-    if shape.listed:
-        most = shape.most_firings
-        none = Aggregate((Arg("others", Ref("None")),))
-        items += [
-            PlainType("Firing_Array", f"array (1 .. {most}) of Selection"),
-            Comment("What one step has fired, in order; None behind the last."),
-            RecordType(
-                "Firing_List",
-                (
-                    Field("Count", f"Natural range 0 .. {most}", number(0)),
-                    Field("Items", "Firing_Array", none),
-                ),
-            ),
-        ]
-    items += done_types(shape)
-    items += [Comment("The region's own state."), RecordType("Region", _region_fields(shape))]
-    return items
-
-
-def _region_fields(shape: RegionShape) -> tuple[Field, ...]:
-    rows = [
-        Field("Started", "Boolean", FALSE),
-        Field(shape.place, shape.place_type, shape.initial() if shape.single else None),
-    ]
-    if shape.memories:
-        rows.append(Field("Past", "Memory"))
-    if shape.timers:
-        rows.append(Field("Timers", f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"))
-    rows += [Field(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
-    rows += work_fields(shape)
-    if shape.deferring:
-        rows.append(Field("Deferred", "Deferrals.List"))
-        rows.append(Field("Lost", "Boolean", FALSE))
-    if shape.region.writes:
-        rows.append(Field("Data", "Variables"))
-    return tuple(rows)
+    return (*region_types(shape), *_declared(shape), *operations(shape))
 
 
 # --- The chart as declared ---------------------------------------------------
@@ -408,108 +256,3 @@ def _deferred(shape: RegionShape) -> list[Decl]:
             ),
         ),
     ]
-
-
-# --- Operations --------------------------------------------------------------
-
-
-def _operations(shape: RegionShape) -> list[Decl]:
-    self_out = Param("Self", "in out", "Region")
-    held = f"Self.{shape.place}"
-    same = both(
-        equal(Ref(held), Ref(f"{held}'Old")),
-        equal(Ref("Self.Started"), Ref("Self.Started'Old")),
-    )
-    items: list[Decl] = []
-    if shape.timers:
-        items += [
-            Subprogram("Tick", (self_out,), aspects=(Aspect("Post", same),)),
-            Comment("One more execution: the time-outs come nearer."),
-        ]
-    items += notices(shape, same)
-    due = equal(equal(Ref("Now"), Ref("Start_Of_Region")), Prefix("not", Ref("Self.Started")))
-    post: list[Expr] = [same, due] if shape.polls_out else [due]
-    if shape.completing:
-        rows = tuple(
-            (
-                Ref(f"Self.{shape.completed(s)}'Old"),
-                equal(Ref("Now"), Ref(f"Completion_Of_{ada_case(s)}")),
-            )
-            for s in shape.completing
-        )
-        post.append(IfExpr(((Ref("Self.Started"), IfExpr(rows, None)),), None))
-    items += [
-        Subprogram(
-            "Poll",
-            shape.poll_params(),
-            aspects=(Aspect("Post", both(*post)),),
-        ),
-        Comment(_POLLS if shape.polls_more else _POLLS_TIME),
-    ]
-    if shape.region.events():
-        rows_of = tuple((shape.event(e), Ref(f"On_{ada_case(e)}")) for e in shape.region.events())
-        if len(rows_of) < len(shape.component.events):
-            rows_of += (("others", Ref("Conditions")),)
-        items += [
-            Subprogram(
-                "To_Occurrence",
-                (Param("Item", "in", "Event"),),
-                "Occurrence",
-                expression=CaseExpr(Ref(name_of(shape.component, "Item")), rows_of),
-            ),
-        ]
-    fired = "Firing_List" if shape.listed else "Selection"
-    params = shape.step_params()
-    items += [
-        Subprogram(
-            "Step",
-            (
-                params[0],
-                Param("Now", "in", "Occurrence"),
-                *params[1:],
-                Param("Fired", "out", fired),
-            ),
-            aspects=(
-                Aspect("Pre", due),
-                Aspect("Post", both(Ref("Self.Started"), *_stepped(shape))),
-            ),
-        ),
-        Comment("One run-to-completion step."),
-    ]
-    return items
-
-
-_POLLS_TIME = "Its start, or the time-out that is due; Conditions when there is neither."
-_POLLS = (
-    "Its start, a completion, the time-out that is due or a deferred event that is due again; "
-    "Conditions when there is none."
-)
-
-
-def _stepped(shape: RegionShape) -> list[Expr]:
-    """What a step achieves, in terms of the chart as declared."""
-    held = f"Self.{shape.place}"
-    kept = equal(Ref(held), Ref(f"{held}'Old"))
-    if not shape.listed:
-        chosen = Call("Is_Selection", (Arg(None, Ref("Fired")), *shape.choice_args(old=True)))
-        none = equal(Ref("Fired"), Ref("None"))
-        moved = equal(Ref(held), shape.target("Fired"))
-        started = equal(Ref("Fired"), Ref(START))
-        return [
-            IfExpr(((equal(Ref("Now"), Ref("Start_Of_Region")), started),), chosen),
-            IfExpr(((none, kept),), moved),
-        ]
-    facts: list[Expr] = [
-        IfExpr(((equal(Ref("Fired.Count"), number(0)), kept),), None),
-    ]
-    if shape.passes:
-        rests = equal(call("Segments_Left", Ref(f"{held}'Old")), number(0))
-        still = equal(call("Segments_Left", Ref(held)), number(0))
-        facts.append(IfExpr(((rests, still),), None))
-    if shape.single:
-        first = equal(Ref("Now"), Ref("Start_Of_Region"))
-        chosen = Call(
-            "Is_Selection", (Arg(None, Ref("Fired.Items (1)")), *shape.choice_args(old=True))
-        )
-        facts.append(IfExpr(((first, equal(Ref("Fired.Items (1)"), Ref(START))),), chosen))
-    return facts

@@ -1,0 +1,168 @@
+"""The types of a region's package: what a step reads, keeps, sends and remembers."""
+
+from __future__ import annotations
+
+from ..ada import (
+    FALSE,
+    Aggregate,
+    Arg,
+    Comment,
+    Decl,
+    EnumType,
+    Instance,
+    PlainType,
+    RecordType,
+    Ref,
+    UseType,
+    arguments,
+    number,
+)
+from ..ada import Component as Field
+from ..components import reading_type
+from ..events import null_event
+from ..naming import ada_case, default_value, type_name, value
+from .shape import START, RegionShape, guard_operators, guards_of
+from .working import done_types, work_fields
+
+
+def region_types(shape: RegionShape) -> list[Decl]:
+    """All types of the package, and the operators that its chart uses."""
+    names = tuple(ada_case(f.name) for f in shape.firings)
+    path = f"{shape.component.name}.{shape.region.name}"
+    items: list[Decl] = _use_types(shape)
+    items += [
+        Comment(f"[{path}] what a step can be made for"),
+        EnumType("Occurrence", shape.occurrences()),
+        Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
+        EnumType("Selection", ("None", START, *names)),
+        PlainType("Firing", f"Selection range {START} .. {names[-1]}", subtype=True),
+        PlainType("Transition", f"Selection range {names[0]} .. {names[-1]}", subtype=True),
+    ]
+    if not shape.single:
+        items += _lane_types(shape)
+    return items + _records(shape)
+
+
+def _use_types(shape: RegionShape) -> list[Decl]:
+    """The types whose operators the declared chart uses."""
+    region = shape.region
+    own = {f"{shape.states}.{shape.lane_type(n)}" for n in shape.lanes}
+    if not shape.single:
+        own.add(shape.place_type)
+    ordered = [f"{shape.states}.Leaf", *sorted(own - {f"{shape.states}.Leaf"})]
+    return [
+        UseType(n)
+        for n in (
+            *ordered,
+            *sorted(guard_operators(region)),
+            *sorted(shape.compared_in(guards_of(region))),
+        )
+    ]
+
+
+def _lane_types(shape: RegionShape) -> list[Decl]:
+    items: list[Decl] = []
+    fields: list[Field] = []
+    for lane in shape.busy_lanes:
+        own = [ada_case(f.name) for f in shape.firings if f.lane == lane]
+        name = shape.lane_name(lane)
+        items.append(
+            PlainType(f"{name}_Transition", f"Selection range {own[0]} .. {own[-1]}", subtype=True)
+        )
+        fields.append(Field(name, "Selection", Ref("None")))
+    items += [
+        Comment("What one occurrence fires: at most one transition in each lane."),
+        RecordType("Choice", tuple(fields)),
+    ]
+    return items
+
+
+def _records(shape: RegionShape) -> list[Decl]:
+    region, component = shape.region, shape.component
+    items: list[Decl] = []
+    if region.writes:
+        rows = tuple(
+            Field(
+                ada_case(d.name),
+                type_name(shape.system, d.type),
+                value(shape.system, d.type, d.initial),
+            )
+            for d in component.data
+            if d.name in region.writes
+        )
+        items += [Comment("The data that this region alone writes."), RecordType("Variables", rows)]
+    if shape.inputs:
+        rows = tuple(
+            Field(ada_case(n), reading_type(shape.system, component, n)) for n in shape.inputs
+        )
+        items += [
+            Comment("What it reads, copied in once per execution."),
+            RecordType("Inputs", rows),
+        ]
+    if shape.has_box:
+        sent: list[Field] = [Field("Raised", "Event_Lists.List")] if region.raises else []
+        for port in component.outputs():
+            if port.name in region.sends:
+                name = ada_case(port.name)
+                of_type = type_name(shape.system, port.type)
+                sent.append(Field(name, of_type, default_value(shape.system, port.type)))
+                sent.append(Field(f"{name}_Sent", "Boolean", FALSE))
+        items += [Comment("What one step sends and raises."), RecordType("Outbox", tuple(sent))]
+    if shape.memories:
+        past: list[Field] = []
+        for one in shape.memories:
+            first = next(iter(shape.literals_in(one.place)))
+            past.append(Field(one.last, shape.memory_type(one), Ref(shape.literal(first))))
+            past.append(Field(one.known, "Boolean", FALSE))
+        items += [
+            Comment("What histories ask for: the last leaf left in a region, if any."),
+            RecordType("Memory", tuple(past)),
+        ]
+    if shape.deferring:
+        items.append(
+            Instance(
+                "Deferrals",
+                "Ravenchart.Event_Lists",
+                arguments(
+                    Event=Ref(f"{ada_case(component.name)}.Event"),
+                    Null_Event=null_event(component),
+                    Capacity=number(region.deferral_depth),
+                ),
+            )
+        )
+    if shape.listed:
+        most = shape.most_firings
+        none = Aggregate((Arg("others", Ref("None")),))
+        items += [
+            PlainType("Firing_Array", f"array (1 .. {most}) of Selection"),
+            Comment("What one step has fired, in order; None behind the last."),
+            RecordType(
+                "Firing_List",
+                (
+                    Field("Count", f"Natural range 0 .. {most}", number(0)),
+                    Field("Items", "Firing_Array", none),
+                ),
+            ),
+        ]
+    items += done_types(shape)
+    items += [Comment("The region's own state."), RecordType("Region", _region_fields(shape))]
+    return items
+
+
+def _region_fields(shape: RegionShape) -> tuple[Field, ...]:
+    rows = [
+        Field("Started", "Boolean", FALSE),
+        Field(shape.place, shape.place_type, shape.initial() if shape.single else None),
+    ]
+    if shape.memories:
+        rows.append(Field("Past", "Memory"))
+    if shape.timers:
+        rows.append(Field("Timers", f"Ravenchart.Timers.Timer_Array (1 .. {len(shape.timers)})"))
+    rows += [Field(shape.completed(s), "Boolean", FALSE) for s in shape.completing]
+    rows += work_fields(shape)
+    if shape.deferring:
+        rows.append(Field("Deferred", "Deferrals.List"))
+        rows.append(Field("Lost", "Boolean", FALSE))
+    if shape.region.writes:
+        rows.append(Field("Data", "Variables"))
+    return tuple(rows)
