@@ -30,9 +30,8 @@ def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]
             for item in _of_component(component, system, clock):
                 found.append(item)
         except OutOfTime:
-            found.append(
-                _limit(component, f"looked at {clock.situations} situations in {seconds:g} s")
-            )
+            looked = f"looked at {clock.situations} situations in {seconds:g} s of processor time"
+            found.append(_limit(component, looked))
             break
         except TooManyWays:
             found.append(_limit(component, "one of its steps has too many outcomes"))

@@ -22,6 +22,34 @@ is
    type Timer_Array is array (Positive range <>) of Timer;
    --  All time-outs of a region, in model order.
 
+   Stopped : constant Timer := (Armed => False, Remaining => 0, Period => 0);
+   --  Of a state that is not active, or taken.
+
+   function Started
+     (Executions : Execution_Count; Period : Execution_Count := 0) return Timer
+   is (Armed     => True,
+       Remaining => Remaining_Count (Executions),
+       Period    => Period)
+   with Global => null;
+   --  Expires after so many ticks, and then once in each Period.
+
+   function Moved
+     (T               : Timer;
+      Spanned         : Boolean;
+      Before, After   : Boolean;
+      Fresh           : Timer) return Timer
+   is (if not Spanned
+       then T
+       elsif After
+       then Fresh
+       elsif Before
+       then Stopped
+       else T)
+   with Global => null;
+   --  T of a state after a transition: the state was active Before, it is
+   --  active After, and where the transition Spanned it, it was left and
+   --  entered; then T starts again as Fresh.
+
    function Is_Due (T : Timer) return Boolean
    is (T.Armed and then T.Remaining <= 0)
    with Global => null;
@@ -38,7 +66,7 @@ is
 
    function Expired (T : Timer) return Timer
    is (if T.Period = 0
-       then (Armed => False, Remaining => 0, Period => 0)
+       then Stopped
        else (Armed     => T.Armed,
              Remaining => T.Remaining + Remaining_Count (T.Period),
              Period    => T.Period))
@@ -57,22 +85,33 @@ is
      Pre    => Left in Timers'Range and then Right in Timers'Range;
    --  Did Left expire before Right, or with it and stands no later?
 
+   function Is_Taken (Before, After : Timer_Array; Due : Natural) return Boolean
+   is (Due in Before'Range
+       and then Is_Due (Before (Due))
+       and then (for all I in Before'Range =>
+                   (if Is_Due (Before (I)) then Precedes (Before, Due, I)))
+       and then After (Due) = Expired (Before (Due))
+       and then (for all I in Before'Range =>
+                   (if I /= Due then After (I) = Before (I))))
+   with
+     Global => null,
+     Pre    =>
+       Before'First = After'First and then Before'Last = After'Last;
+   --  Is Due the one that expired earliest, and the only one changed?
+
    procedure Arm
      (T          : out Timer;
       Executions : Execution_Count;
       Period     : Execution_Count := 0)
    with
      Global => null,
-     Post   =>
-       T = (Armed     => True,
-            Remaining => Remaining_Count (Executions),
-            Period    => Period);
+     Post   => T = Started (Executions, Period);
    --  Let T expire after so many ticks, and then once in each Period.
 
    procedure Disarm (T : out Timer)
    with
      Global => null,
-     Post   => T = (Armed => False, Remaining => 0, Period => 0);
+     Post   => T = Stopped;
    --  Cancel T.
 
    procedure Tick (Timers : in out Timer_Array)
@@ -87,14 +126,7 @@ is
      Global         => null,
      Contract_Cases =>
        ((for some T of Timers => Is_Due (T)) =>
-          Due in Timers'Range
-          and then Is_Due (Timers'Old (Due))
-          and then (for all I in Timers'Range =>
-                      (if Is_Due (Timers'Old (I))
-                       then Precedes (Timers'Old, Due, I)))
-          and then Timers (Due) = Expired (Timers'Old (Due))
-          and then (for all I in Timers'Range =>
-                      (if I /= Due then Timers (I) = Timers'Old (I))),
+          Is_Taken (Timers'Old, Timers, Due),
         others                               =>
           Due = 0 and then Timers = Timers'Old);
    --  Take the timer that expired earliest and say which; 0 when none is due.

@@ -40,9 +40,9 @@ def _rings() -> System:
 
 def test_ten_regions_of_ten_states_take_ten_seconds_at_most() -> None:
     system = _rings()
-    start = time.perf_counter()
+    start = time.process_time()
     found = findings(system)
-    assert time.perf_counter() - start < SECONDS + 2
+    assert time.process_time() - start < SECONDS + 2
     assert "RV-1110" not in [item.code for item in found]
 
 

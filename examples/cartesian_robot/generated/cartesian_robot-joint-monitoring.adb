@@ -58,6 +58,10 @@ is
       function Active_In (Leaf : Monitoring_States.Leaf) return Node_Set is
         ((Watching => Leaf = Monitoring_States.Watching,
           Alarmed => Leaf = Monitoring_States.Alarmed));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when others => Alarmed);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -90,7 +94,17 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started
+       and then Self.Leaf = Target (Chosen)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Leaf'Old,
+                  Self.Leaf,
+                  Self.Timers'Old (I)))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -107,6 +121,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Watching and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Watching) := False;
@@ -118,6 +133,10 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Alarmed and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Alarmed
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -130,6 +149,7 @@ is
           Self.Leaf = Monitoring_States.Watching
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Watching or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Monitoring_States.Watching;
@@ -142,6 +162,10 @@ is
           Self.Leaf = Monitoring_States.Alarmed
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Alarmed or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (50)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Alarmed
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Leaf := Monitoring_States.Alarmed;

@@ -317,6 +317,10 @@ is
           Fault => Leaf in Motion_States.Fault,
           Limit => Leaf = Motion_States.Limit,
           Drive => Leaf = Motion_States.Drive));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when others => Homing);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -346,7 +350,17 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started
+       and then Self.Leaf = Target (Chosen)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Leaf'Old,
+                  Self.Leaf,
+                  Self.Timers'Old (I)))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -367,6 +381,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.Operational and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Operational) := False;
@@ -378,6 +393,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Idle and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Idle) := False;
@@ -392,6 +408,10 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Homing and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Homing
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -404,6 +424,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Seeking and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Seeking) := False;
@@ -416,6 +437,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.Backing_Off and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Backing_Off) := False;
@@ -430,6 +452,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Moving and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Moving) := False;
@@ -442,6 +465,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.Accelerating and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Accelerating) := False;
@@ -453,6 +477,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Cruising and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Cruising) := False;
@@ -464,6 +489,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Braking and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Braking) := False;
@@ -478,6 +504,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Fault and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Fault) := False;
@@ -489,6 +516,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Limit and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Limit) := False;
@@ -500,6 +528,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Drive and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Drive) := False;
@@ -516,6 +545,7 @@ is
                 Active (N)
                 = (N not in Chart.Limit .. Chart.Drive
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          case Motion_States.Fault'(Self.Leaf) is
@@ -537,6 +567,7 @@ is
                 Active (N)
                 = (N not in Chart.Accelerating .. Chart.Braking
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          case Motion_States.Moving'(Self.Leaf) is
@@ -560,6 +591,7 @@ is
                 Active (N)
                 = (N not in Chart.Seeking .. Chart.Backing_Off
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          case Motion_States.Homing'(Self.Leaf) is
@@ -581,6 +613,12 @@ is
                 Active (N)
                 = (N not in Chart.Idle .. Chart.Braking
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Idle .. Chart.Braking
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Motion_States.Operational'(Self.Leaf) is
@@ -601,6 +639,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Operational or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Operational) := True;
@@ -615,6 +654,7 @@ is
           Self.Leaf = Motion_States.Idle
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Idle or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Idle;
@@ -631,6 +671,10 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Homing or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (1_000)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Homing
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
@@ -646,6 +690,7 @@ is
           Self.Leaf = Motion_States.Seeking
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Seeking or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Seeking;
@@ -663,6 +708,7 @@ is
           Self.Leaf = Motion_States.Backing_Off
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Backing_Off or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Backing_Off;
@@ -679,6 +725,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Moving or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Moving) := True;
@@ -698,6 +745,7 @@ is
           Self.Leaf = Motion_States.Accelerating
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Accelerating or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Accelerating;
@@ -713,6 +761,7 @@ is
           Self.Leaf = Motion_States.Cruising
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Cruising or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Cruising;
@@ -728,6 +777,7 @@ is
           Self.Leaf = Motion_States.Braking
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Braking or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Braking;
@@ -740,6 +790,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Fault or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Fault) := True;
@@ -756,6 +807,7 @@ is
           Self.Leaf = Motion_States.Limit
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Limit or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Limit;
@@ -771,6 +823,7 @@ is
           Self.Leaf = Motion_States.Drive
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Drive or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Motion_States.Drive;

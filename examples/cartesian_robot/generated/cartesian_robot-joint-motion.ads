@@ -8,6 +8,8 @@ package Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
    use type Motion_States.Leaf;
+   use type Ravenchart.Timers.Timer;
+   use type Ravenchart.Timers.Timer_Array;
    use type Ravenchart.Freshness;
 
    --  [Joint.Motion] what a step can be made for
@@ -176,6 +178,59 @@ is
         when Reset => Motion_States.Idle);
    --  The leaf it leads to; that of a composite is its default.
 
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing,
+      Inside_Operational,
+      Inside_Homing,
+      Inside_Moving,
+      Inside_Fault,
+      Everything,
+      Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when End_Found => Inside_Homing,
+        when End_Left => Inside_Operational,
+        when At_Speed => Inside_Moving,
+        when No_Cruise => Inside_Moving,
+        when Brake => Inside_Moving,
+        when Start_Homing => Inside_Operational,
+        when No_End => Everything,
+        when Start_Move => Inside_Operational,
+        when Arrived => Inside_Operational,
+        when Halt => Everything,
+        when Lost => Everything,
+        when Failed => Everything,
+        when Strayed => Everything,
+        when Limit => Everything,
+        when Reset => Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
+   function Timer_After
+     (I      : Positive;
+      D      : Domain;
+      Before : Motion_States.Leaf;
+      After  : Motion_States.Leaf;
+      Timer  : Ravenchart.Timers.Timer)
+     return Ravenchart.Timers.Timer is
+     (case I is
+        when 1 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Operational
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning and then Before in Motion_States.Homing,
+              After in Motion_States.Homing,
+              Ravenchart.Timers.Started (1_000)),
+        when others => Timer);
+   --  Each time-out: cancelled when its state is left, started when it is
+   --  entered.
+
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Motion_States.Leaf;
@@ -197,16 +252,11 @@ is
    procedure Tick (Self : in out Region)
    with
      Post =>
-       Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-   --  One more execution: the time-outs come nearer.
-
-   procedure Poll (Self : in out Region; Now : out Occurrence)
-   with
-     Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
-       and then (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
+   --  One more execution: the time-outs come nearer.
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
@@ -215,6 +265,23 @@ is
         when Drive_Failed => On_Drive_Failed,
         when Strayed => On_Strayed,
         when Limit_Hit => On_Limit_Hit);
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
+   with
+     Post =>
+       (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
+       and then (case Now is
+            when Expiry_Of_No_End =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
+            when others => Self.Timers'Old = Self.Timers)
+       and then (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started
+             then (if (for some I in Self.Timers'Range =>
+                        Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
+                    then Now in Expiry_Of_No_End
+                 else Now = Conditions));
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;
@@ -230,6 +297,14 @@ is
           else Is_Selection (Fired, Self.Leaf'Old, Now, Self.Data'Old, Ins))
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
-          else Self.Leaf = Target (Fired));
+          else Self.Leaf = Target (Fired)
+             and then (for all I in Self.Timers'Range =>
+                   Self.Timers (I)
+                   = Timer_After
+                       (I,
+                        Domain_Of (Fired),
+                        Self.Leaf'Old,
+                        Self.Leaf,
+                        Self.Timers'Old (I))));
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Motion;

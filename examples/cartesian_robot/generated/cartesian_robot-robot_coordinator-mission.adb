@@ -208,6 +208,10 @@ is
           Stopped => Leaf in Mission_States.Stopped,
           Failed => Leaf = Mission_States.Failed,
           Shut_Down => Leaf = Mission_States.Shut_Down));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when others => Departing);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -241,7 +245,17 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started
+       and then Self.Leaf = Target (Chosen)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Leaf'Old,
+                  Self.Leaf,
+                  Self.Timers'Old (I)))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -261,6 +275,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Active and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Active) := False;
@@ -272,6 +287,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Waiting and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Waiting) := False;
@@ -283,6 +299,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Homing and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Homing) := False;
@@ -294,6 +311,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Ready and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Ready) := False;
@@ -308,6 +326,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Travelling and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Travelling) := False;
@@ -319,6 +338,10 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Departing and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Departing
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -331,6 +354,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Under_Way and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Under_Way) := False;
@@ -345,6 +369,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Stopped and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Stopped) := False;
@@ -356,6 +381,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Failed and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Failed) := False;
@@ -372,6 +398,12 @@ is
                 Active (N)
                 = (N not in Chart.Departing .. Chart.Under_Way
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Departing .. Chart.Under_Way
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Mission_States.Travelling'(Self.Leaf) is
@@ -393,6 +425,12 @@ is
                 Active (N)
                 = (N not in Chart.Waiting .. Chart.Under_Way
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Waiting .. Chart.Under_Way
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Mission_States.Active'(Self.Leaf) is
@@ -414,6 +452,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Active or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Active) := True;
@@ -428,6 +467,7 @@ is
           Self.Leaf = Mission_States.Waiting
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Waiting or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Mission_States.Waiting;
@@ -443,6 +483,7 @@ is
           Self.Leaf = Mission_States.Homing
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Homing or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Mission_States.Homing;
@@ -470,6 +511,7 @@ is
           Self.Leaf = Mission_States.Ready
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Ready or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Mission_States.Ready;
@@ -485,6 +527,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Travelling or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Travelling) := True;
@@ -511,6 +554,10 @@ is
           Self.Leaf = Mission_States.Departing
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Departing or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (5)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Departing
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Leaf := Mission_States.Departing;
@@ -527,6 +574,7 @@ is
           Self.Leaf = Mission_States.Under_Way
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Under_Way or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Mission_States.Under_Way;
@@ -539,6 +587,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Stopped or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Stopped) := True;
@@ -565,6 +614,7 @@ is
           Self.Leaf = Mission_States.Failed
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Failed or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Mission_States.Failed;
@@ -580,6 +630,7 @@ is
           Self.Leaf = Mission_States.Shut_Down
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Shut_Down or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Mission_States.Shut_Down;

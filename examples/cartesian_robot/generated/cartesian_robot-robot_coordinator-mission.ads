@@ -8,6 +8,8 @@ package Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
    use type Mission_States.Leaf;
+   use type Ravenchart.Timers.Timer;
+   use type Ravenchart.Timers.Timer_Array;
 
    --  [Robot_Coordinator.Mission] what a step can be made for
    type Occurrence is
@@ -166,6 +168,57 @@ is
         when Shut_Down => Mission_States.Shut_Down);
    --  The leaf it leads to; that of a composite is its default.
 
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing,
+      Inside_Active,
+      Inside_Travelling,
+      Inside_Stopped,
+      Everything,
+      Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Under_Way => Inside_Travelling,
+        when Arrived => Inside_Active,
+        when Home => Inside_Active,
+        when Home_Again => Inside_Active,
+        when Homed => Inside_Active,
+        when Move => Inside_Active,
+        when Halt => Everything,
+        when Halt_Homing => Everything,
+        when Shut_Down_Failed => Inside_Stopped,
+        when Recover => Everything,
+        when Joint_Failed => Everything,
+        when Joint_Lost => Everything,
+        when Shut_Down => Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
+   function Timer_After
+     (I      : Positive;
+      D      : Domain;
+      Before : Mission_States.Leaf;
+      After  : Mission_States.Leaf;
+      Timer  : Ravenchart.Timers.Timer)
+     return Ravenchart.Timers.Timer is
+     (case I is
+        when 1 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Travelling
+              or else D = Inside_Active
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning and then Before = Mission_States.Departing,
+              After = Mission_States.Departing,
+              Ravenchart.Timers.Started (5)),
+        when others => Timer);
+   --  Each time-out: cancelled when its state is left, started when it is
+   --  entered.
+
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Mission_States.Leaf;
@@ -185,22 +238,34 @@ is
    procedure Tick (Self : in out Region)
    with
      Post =>
-       Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-   --  One more execution: the time-outs come nearer.
-
-   procedure Poll (Self : in out Region; Now : out Occurrence)
-   with
-     Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
-       and then (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
+   --  One more execution: the time-outs come nearer.
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Commanded => On_Commanded,
         when Joint_Lost => On_Joint_Lost,
         when Shutdown => On_Shutdown);
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
+   with
+     Post =>
+       (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
+       and then (case Now is
+            when Expiry_Of_Under_Way =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
+            when others => Self.Timers'Old = Self.Timers)
+       and then (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started
+             then (if (for some I in Self.Timers'Range =>
+                        Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
+                    then Now in Expiry_Of_Under_Way
+                 else Now = Conditions));
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;
@@ -217,6 +282,14 @@ is
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
-          else Self.Leaf = Target (Fired));
+          else Self.Leaf = Target (Fired)
+             and then (for all I in Self.Timers'Range =>
+                   Self.Timers (I)
+                   = Timer_After
+                       (I,
+                        Domain_Of (Fired),
+                        Self.Leaf'Old,
+                        Self.Leaf,
+                        Self.Timers'Old (I))));
    --  One run-to-completion step.
 end Cartesian_Robot.Robot_Coordinator.Mission;

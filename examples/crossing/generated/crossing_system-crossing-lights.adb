@@ -293,9 +293,7 @@ is
       Now   : Occurrence;
       Data  : Variables;
       Item  : Event)
-     return Choice
-   with Post => Is_Choice (Choose'Result, Place, Now, Data, Item)
-   is
+     return Choice is
       C : Choice;
    begin
       C.Cars := Select_Cars (Place, Now, Data, Item);
@@ -376,6 +374,16 @@ is
           Leaving =>
             Place.Top = Lights_States.Working
             and then Place.In_Walkers = Lights_States.Leaving));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when 1 => Blinking,
+           when 2 => Stopping,
+           when 3 => Red_Yellow,
+           when 4 => Least,
+           when 5 => Yellow,
+           when 6 => Walking,
+           when others => On_The_Road);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -418,7 +426,16 @@ is
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Place)),
      Post =>
-       Self.Started and then Self.Place = Target (Chosen, Self.Place'Old)
+       Self.Started
+       and then Self.Place = Target (Chosen, Self.Place'Old)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Place'Old,
+                  Self.Place,
+                  Self.Timers'Old (I)))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -435,6 +452,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Blinking and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Blinking
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -450,6 +471,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Working and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Working) := False;
@@ -464,6 +486,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Red and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Red) := False;
@@ -475,6 +498,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Stopping and then Active'Old (N)))
+          and then Self.Timers (2) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Stopping
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
@@ -487,6 +514,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Held and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Data.Cars_Stopped := False;
@@ -499,6 +527,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Red_Yellow and then Active'Old (N)))
+          and then Self.Timers (3) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Red_Yellow
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
@@ -514,6 +546,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Green and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Green) := False;
@@ -525,6 +558,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Least and then Active'Old (N)))
+          and then Self.Timers (4) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Least
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (4));
@@ -537,6 +574,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Longer and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Longer) := False;
@@ -548,6 +586,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Yellow and then Active'Old (N)))
+          and then Self.Timers (5) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Yellow
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (5));
@@ -563,6 +605,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Dont_Walk and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Dont_Walk) := False;
@@ -574,6 +617,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Nobody and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Nobody) := False;
@@ -585,6 +629,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Waiting and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Waiting) := False;
@@ -600,6 +645,10 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.On_The_Road and then Active'Old (N)))
+          and then Self.Timers (7) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.On_The_Road
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Data.Road_Free := True;
@@ -613,6 +662,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Walking and then Active'Old (N)))
+          and then Self.Timers (6) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Walking
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (6));
@@ -625,6 +678,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Leaving and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Leaving) := False;
@@ -642,6 +696,12 @@ is
                 Active (N)
                 = (N not in Chart.Walking .. Chart.Leaving
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Walking .. Chart.Leaving
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Lights_States.On_The_Road'(Self.Place.In_Walkers) is
@@ -664,6 +724,7 @@ is
                 Active (N)
                 = (N not in Chart.Nobody .. Chart.Waiting
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          case Lights_States.Dont_Walk'(Self.Place.In_Walkers) is
@@ -686,6 +747,12 @@ is
                 Active (N)
                 = (N not in Chart.Least .. Chart.Longer
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Least .. Chart.Longer
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Lights_States.Green'(Self.Place.In_Cars) is
@@ -708,6 +775,12 @@ is
                 Active (N)
                 = (N not in Chart.Stopping .. Chart.Held
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Stopping .. Chart.Held
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Lights_States.Red'(Self.Place.In_Cars) is
@@ -729,6 +802,12 @@ is
                 Active (N)
                 = (N not in Chart.Red .. Chart.Yellow
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Red .. Chart.Yellow
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Self.Place.In_Cars is
@@ -756,6 +835,12 @@ is
                 Active (N)
                 = (N not in Chart.Dont_Walk .. Chart.Leaving
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Dont_Walk .. Chart.Leaving
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
       is
       begin
          case Self.Place.In_Walkers is
@@ -777,6 +862,10 @@ is
              In_Cars => Self.Place'Old.In_Cars)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Blinking or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (5, 5)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Blinking
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Place.Top := Lights_States.Blinking;
@@ -795,6 +884,7 @@ is
              In_Cars => Lights_States.Stopping)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Working or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Place.Top := Lights_States.Working;
@@ -812,6 +902,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Red or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Red) := True;
@@ -830,6 +921,10 @@ is
              In_Cars => Lights_States.Stopping)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Stopping or else Active'Old (N)))
+          and then Self.Timers (2) = Ravenchart.Timers.Started (20)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Stopping
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Place.In_Cars := Lights_States.Stopping;
@@ -849,6 +944,7 @@ is
              In_Cars => Lights_States.Held)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Held or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Held;
@@ -868,6 +964,10 @@ is
              In_Cars => Lights_States.Red_Yellow)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Red_Yellow or else Active'Old (N)))
+          and then Self.Timers (3) = Ravenchart.Timers.Started (10)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Red_Yellow
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Place.In_Cars := Lights_States.Red_Yellow;
@@ -885,6 +985,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Green or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Green) := True;
@@ -903,6 +1004,10 @@ is
              In_Cars => Lights_States.Least)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Least or else Active'Old (N)))
+          and then Self.Timers (4) = Ravenchart.Timers.Started (100)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Least
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Place.In_Cars := Lights_States.Least;
@@ -922,6 +1027,7 @@ is
              In_Cars => Lights_States.Longer)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Longer or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Longer;
@@ -940,6 +1046,10 @@ is
              In_Cars => Lights_States.Yellow)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Yellow or else Active'Old (N)))
+          and then Self.Timers (5) = Ravenchart.Timers.Started (30)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Yellow
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Place.In_Cars := Lights_States.Yellow;
@@ -957,6 +1067,7 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Dont_Walk or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Dont_Walk) := True;
@@ -975,6 +1086,7 @@ is
              In_Cars => Self.Place'Old.In_Cars)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Nobody or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Nobody;
@@ -994,6 +1106,7 @@ is
              In_Cars => Self.Place'Old.In_Cars)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Waiting or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Waiting;
@@ -1010,6 +1123,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.On_The_Road or else Active'Old (N)))
+          and then Self.Timers (7) = Ravenchart.Timers.Started (100)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.On_The_Road
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
@@ -1029,6 +1146,10 @@ is
              In_Cars => Self.Place'Old.In_Cars)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Walking or else Active'Old (N)))
+          and then Self.Timers (6) = Ravenchart.Timers.Started (60)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Walking
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Place.In_Walkers := Lights_States.Walking;
@@ -1049,6 +1170,7 @@ is
              In_Cars => Self.Place'Old.In_Cars)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Leaving or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Leaving;
@@ -1125,26 +1247,25 @@ is
       Item  : Event;
       Fired : out Firing_List) is
       C : Choice;
-      procedure Note (T : Firing)
-      with Post => Fired.Count > 0
-      is
-      begin
-         if Fired.Count < 2 then
-            Fired.Count := Fired.Count + 1;
-            Fired.Items (Fired.Count) := T;
-         end if;
-      end Note;
       procedure Fire_Whole (T : Firing)
       with
         Pre =>
           (if T = Initial_Entry
               then not Self.Started
-           else Self.Started and then In_Source (T, Self.Place)),
-        Post => Self.Started and then Fired.Count > 0
+           else Self.Started and then In_Source (T, Self.Place))
+          and then Fired.Count <= 2,
+        Post =>
+          Fired.Count = Fired.Count'Old + 1
+          and then Self.Started
+          and then Fired.Items (Fired.Count'Old + 1) = T
+          and then (for all J in 1 .. Fired.Count'Old =>
+                Fired.Items (J) = Fired.Items'Old (J))
+          and then Self.Place = Target (T, Self.Place'Old)
       is
       begin
          Fire (Self, T);
-         Note (T);
+         Fired.Count := Fired.Count + 1;
+         Fired.Items (Fired.Count) := T;
       end Fire_Whole;
    begin
       Fired := (Count => 0, Items => (others => None));
@@ -1155,12 +1276,39 @@ is
          if C.Cars /= None then
             Fire_Whole (C.Cars);
          end if;
+         pragma Assert
+           (Fired.Count <= 1
+            and then (for all I in 1 .. Fired.Count =>
+                  Fired.Items (I) <= Cars_Transition'Last
+                  and then Fired.Items (I) = C.Cars)
+            and then Is_Ordered (Fired)
+            and then (if C.Cars /= None then Has (Fired, C.Cars)));
          if C.Walkers /= None then
             Fire_Whole (C.Walkers);
          end if;
+         pragma Assert
+           (Fired.Count <= 2
+            and then (for all I in 1 .. Fired.Count =>
+                  Fired.Items (I) <= Walkers_Transition'Last
+                  and then (Fired.Items (I) = C.Cars
+                     or else Fired.Items (I) = C.Walkers))
+            and then Is_Ordered (Fired)
+            and then (if C.Cars /= None then Has (Fired, C.Cars))
+            and then (if C.Walkers /= None then Has (Fired, C.Walkers)));
          if C.Top /= None then
             Fire_Whole (C.Top);
          end if;
+         pragma Assert
+           (Fired.Count <= 3
+            and then (for all I in 1 .. Fired.Count =>
+                  Fired.Items (I) <= Top_Transition'Last
+                  and then (Fired.Items (I) = C.Cars
+                     or else Fired.Items (I) = C.Walkers
+                     or else Fired.Items (I) = C.Top))
+            and then Is_Ordered (Fired)
+            and then (if C.Cars /= None then Has (Fired, C.Cars))
+            and then (if C.Walkers /= None then Has (Fired, C.Walkers))
+            and then (if C.Top /= None then Has (Fired, C.Top)));
       end if;
    end Step;
 end Crossing_System.Crossing.Lights;

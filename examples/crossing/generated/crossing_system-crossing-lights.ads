@@ -16,6 +16,8 @@ is
    use type Lights_States.Cars_Leaf;
    use type Lights_States.Configuration;
    use type Lights_States.Walkers_Leaf;
+   use type Ravenchart.Timers.Timer;
+   use type Ravenchart.Timers.Timer_Array;
 
    --  [Crossing.Lights] what a step can be made for
    type Occurrence is
@@ -72,11 +74,11 @@ is
       Cars_Stopped : Boolean := False;
    end record;
 
-   type Firing_Array is array (1 .. 2) of Selection;
+   type Firing_Array is array (1 .. 3) of Selection;
 
    --  What one step has fired, in order; None behind the last.
    type Firing_List is record
-      Count : Natural range 0 .. 2 := 0;
+      Count : Natural range 0 .. 3 := 0;
       Items : Firing_Array := (others => None);
    end record;
 
@@ -252,6 +254,128 @@ is
         when Blink => Place);
    --  The leaves it leads to; those of a composite are its defaults.
 
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing,
+      Inside_Cars,
+      Inside_Walkers,
+      Inside_Red,
+      Inside_Green,
+      Inside_Dont_Walk,
+      Inside_On_The_Road,
+      Everything,
+      Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Stopped => Inside_Red,
+        when Get_Ready => Inside_Cars,
+        when Long_Enough => Inside_Green,
+        when Slow_Down => Inside_Cars,
+        when Start => Inside_Cars,
+        when Stop => Inside_Cars,
+        when Ask => Inside_Dont_Walk,
+        when Walk => Inside_Walkers,
+        when Last_Call => Inside_On_The_Road,
+        when Gone => Inside_Walkers,
+        when Into_Service => Everything,
+        when Out_Of_Service => Everything,
+        when Blink => Nothing);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
+   function Timer_After
+     (I      : Positive;
+      D      : Domain;
+      Before : Lights_States.Configuration;
+      After  : Lights_States.Configuration;
+      Timer  : Ravenchart.Timers.Timer)
+     return Ravenchart.Timers.Timer is
+     (case I is
+        when 1 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Everything or else D = Beginning,
+              D /= Beginning and then Before.Top = Lights_States.Blinking,
+              After.Top = Lights_States.Blinking,
+              Ravenchart.Timers.Started (5, 5)),
+        when 2 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Red
+              or else D = Inside_Cars
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning
+              and then Before.Top = Lights_States.Working
+              and then Before.In_Cars = Lights_States.Stopping,
+              After.Top = Lights_States.Working
+              and then After.In_Cars = Lights_States.Stopping,
+              Ravenchart.Timers.Started (20)),
+        when 3 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Cars or else D = Everything or else D = Beginning,
+              D /= Beginning
+              and then Before.Top = Lights_States.Working
+              and then Before.In_Cars = Lights_States.Red_Yellow,
+              After.Top = Lights_States.Working
+              and then After.In_Cars = Lights_States.Red_Yellow,
+              Ravenchart.Timers.Started (10)),
+        when 4 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Green
+              or else D = Inside_Cars
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning
+              and then Before.Top = Lights_States.Working
+              and then Before.In_Cars = Lights_States.Least,
+              After.Top = Lights_States.Working
+              and then After.In_Cars = Lights_States.Least,
+              Ravenchart.Timers.Started (100)),
+        when 5 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Cars or else D = Everything or else D = Beginning,
+              D /= Beginning
+              and then Before.Top = Lights_States.Working
+              and then Before.In_Cars = Lights_States.Yellow,
+              After.Top = Lights_States.Working
+              and then After.In_Cars = Lights_States.Yellow,
+              Ravenchart.Timers.Started (30)),
+        when 6 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_On_The_Road
+              or else D = Inside_Walkers
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning
+              and then Before.Top = Lights_States.Working
+              and then Before.In_Walkers = Lights_States.Walking,
+              After.Top = Lights_States.Working
+              and then After.In_Walkers = Lights_States.Walking,
+              Ravenchart.Timers.Started (60)),
+        when 7 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Walkers
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning
+              and then Before.Top = Lights_States.Working
+              and then Before.In_Walkers in Lights_States.On_The_Road,
+              After.Top = Lights_States.Working
+              and then After.In_Walkers in Lights_States.On_The_Road,
+              Ravenchart.Timers.Started (100)),
+        when others => Timer);
+   --  Each time-out: cancelled when its state is left, started when it is
+   --  entered.
+
    function Is_Cars_Selection
      (Chosen : Selection;
       Place  : Lights_States.Configuration;
@@ -320,24 +444,86 @@ is
    with Ghost;
    --  Each lane's first; none where a lane inside it has one.
 
+   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
+     (Fired.Count = 1 and then Fired.Items (1) = T)
+   with Ghost;
+   --  Is that fired, with the segments of its way, and nothing else?
+
+   function Choose
+     (Place : Lights_States.Configuration;
+      Now   : Occurrence;
+      Data  : Variables;
+      Item  : Event)
+     return Choice
+   with Post => Is_Choice (Choose'Result, Place, Now, Data, Item);
+   --  The transitions that one occurrence asks for.
+
+   function Has (Fired : Firing_List; T : Selection) return Boolean is
+     (for some I in 1 .. Fired.Count => Fired.Items (I) = T)
+   with Ghost;
+
+   function Is_Ordered (Fired : Firing_List) return Boolean is
+     (for all I in 1 .. Fired.Count =>
+         (for all J in 1 .. I - 1 => Fired.Items (J) < Fired.Items (I)))
+   with Ghost;
+   --  Do the lanes fire in their order?
+
+   function Follows (Fired : Firing_List; C : Choice) return Boolean is
+     ((for all I in 1 .. Fired.Count =>
+          Fired.Items (I) = C.Cars
+          or else Fired.Items (I) = C.Walkers
+          or else Fired.Items (I) = C.Top)
+      and then Is_Ordered (Fired)
+      and then (if C.Cars /= None then Has (Fired, C.Cars))
+      and then (if C.Walkers /= None then Has (Fired, C.Walkers))
+      and then (if C.Top /= None then Has (Fired, C.Top)))
+   with Ghost;
+   --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
+   --  lane, and nothing else; a lane inside a state that transitions leave
+   --  may be overtaken by an earlier one.
+
    procedure Tick (Self : in out Region)
    with
      Post =>
-       Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old;
-   --  One more execution: the time-outs come nearer.
-
-   procedure Poll (Self : in out Region; Now : out Occurrence)
-   with
-     Post =>
        (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
-       and then (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
+   --  One more execution: the time-outs come nearer.
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item.Name is
         when Ordered => On_Ordered,
         when Wish => On_Wish);
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
+   with
+     Post =>
+       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       and then (case Now is
+            when Expiry_Of_Blink =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
+            when Expiry_Of_Stopped =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 2),
+            when Expiry_Of_Start =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 3),
+            when Expiry_Of_Long_Enough =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 4),
+            when Expiry_Of_Stop =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 5),
+            when Expiry_Of_Last_Call =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 6),
+            when Expiry_Of_Gone =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 7),
+            when others => Self.Timers'Old = Self.Timers)
+       and then (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started
+             then (if (for some I in Self.Timers'Range =>
+                        Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
+                    then Now in Expiry_Of_Blink .. Expiry_Of_Gone
+                 else Now = Conditions));
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;
@@ -348,6 +534,11 @@ is
      Pre => (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
-       and then (if Fired.Count = 0 then Self.Place = Self.Place'Old);
+       and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
+       and then (if Now = Start_Of_Region
+             then Is_Only (Fired, Initial_Entry)
+          else Follows
+               (Fired,
+                Choose (Self.Place'Old, Now, Self.Data'Old, Item)));
    --  One run-to-completion step.
 end Crossing_System.Crossing.Lights;

@@ -11,6 +11,7 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    use type Ravenchart.Event_Count;
+   use type Deferrals.List;
 
    function In_Turning
      (Place : Infusion_States.Configuration;
@@ -646,7 +647,8 @@ is
           Past,
           Data,
           Ins,
-          Item);
+          Item)
+       and then Is_Segment (Select_Segment'Result);
 
    function Choose
      (Place : Infusion_States.Configuration;
@@ -655,9 +657,7 @@ is
       Data  : Variables;
       Ins   : Inputs;
       Item  : Event)
-     return Choice
-   with Post => Is_Choice (Choose'Result, Place, Now, Past, Data, Ins, Item)
-   is
+     return Choice is
       C : Choice;
    begin
       C.Motor := Select_Motor (Place, Now, Past, Data, Ins, Item);
@@ -720,6 +720,12 @@ is
           Alarm => Place.Top in Infusion_States.Alarm,
           Sounding => Place.Top = Infusion_States.Sounding,
           Silent => Place.Top = Infusion_States.Silent));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when 1 => Self_Test,
+           when 2 => Giving,
+           when others => Silent);
    end Chart;
 
    procedure Notice_Turning
@@ -761,6 +767,7 @@ is
       Now  : out Occurrence;
       Item : out Event) is
       Due : Natural;
+      Released : Natural;
    begin
       Item := Pump.No_Event;
       if not Self.Started then
@@ -788,18 +795,31 @@ is
                Now := Expiry_Of_Remind;
             when others =>
                Now := Conditions;
+               Released := 0;
                for I in 1 .. Deferrals.Count (Self.Deferred) loop
+                  pragma Loop_Invariant
+                    (Released = 0
+                     and then (for all J in 1 .. I - 1 =>
+                           Is_Deferred
+                             (Deferrals.Element (Self.Deferred, J),
+                              Self.Place)));
                   if not Is_Deferred
                        (Deferrals.Element (Self.Deferred, I),
                         Self.Place)
                   then
-                     Now :=
-                       To_Occurrence (Deferrals.Element (Self.Deferred, I));
-                     Item := Deferrals.Element (Self.Deferred, I);
-                     Deferrals.Remove (Self.Deferred, I);
+                     Released := I;
                      exit;
                   end if;
                end loop;
+               if Released > 0 then
+                  pragma Assert
+                    (Is_Released (Self.Deferred, Self.Place, Released));
+                  Now :=
+                    To_Occurrence
+                      (Deferrals.Element (Self.Deferred, Released));
+                  Item := Deferrals.Element (Self.Deferred, Released);
+                  Deferrals.Remove (Self.Deferred, Released);
+               end if;
          end case;
       end if;
    end Poll;
@@ -817,6 +837,21 @@ is
      Post =>
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old, Self.Past'Old)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Place'Old,
+                  Self.Place,
+                  Self.Timers'Old (I)))
+       and then (if Self.Started'Old
+             then Self.Past
+                = Remembered
+                    (Domain_Of (Chosen),
+                     Self.Place'Old,
+                     Self.Past'Old)
+          else Self.Past = Self.Past'Old)
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -837,6 +872,13 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Self_Test and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Self_Test
+                    then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -850,6 +892,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Turning and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Data.Speed := 0;
@@ -863,6 +909,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Motor_Good and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Motor_Good) := False;
@@ -874,6 +924,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Listening and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Listening) := False;
@@ -886,6 +940,10 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.Sensor_Good and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Sensor_Good) := False;
@@ -898,6 +956,10 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.Programming and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Programming) := False;
@@ -912,6 +974,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Infusing and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Data.Speed := 0;
@@ -927,6 +993,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Running and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Completed_Running := False;
@@ -939,6 +1009,12 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Filling and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = (Last_In_Infusing => Infusion_States.Filling,
+               Known_In_Infusing => True)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Completed_Filling := False;
@@ -956,6 +1032,13 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Giving and then Active'Old (N)))
+          and then Self.Timers (2) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Giving
+                    then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
@@ -968,6 +1051,12 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Loading and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = (Last_In_Infusing => Infusion_States.Loading,
+               Known_In_Infusing => True)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Loading;
@@ -982,6 +1071,12 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.Maintaining and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = (Last_In_Infusing => Infusion_States.Maintaining,
+               Known_In_Infusing => True)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Maintaining;
@@ -995,6 +1090,12 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.All_Given and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = (Last_In_Infusing => Infusion_States.All_Given,
+               Known_In_Infusing => True)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.All_Given;
@@ -1008,6 +1109,12 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Trickling and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = (Last_In_Infusing => Infusion_States.Trickling,
+               Known_In_Infusing => True)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Trickling;
@@ -1024,6 +1131,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Alarm and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Data.Buzzer := False;
@@ -1036,6 +1147,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Sounding and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Sounding) := False;
@@ -1047,6 +1162,13 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Silent and then Active'Old (N)))
+          and then Self.Timers (3) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Silent
+                    then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
@@ -1064,6 +1186,16 @@ is
                 Active (N)
                 = (N not in Chart.Sounding .. Chart.Silent
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Sounding .. Chart.Silent
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
+          and then Self.Past
+            = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          case Infusion_States.Alarm'(Self.Place.Top) is
@@ -1085,6 +1217,11 @@ is
                 Active (N)
                 = (N not in Chart.Loading .. Chart.Maintaining
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          case Infusion_States.Giving'(Self.Place.Top) is
@@ -1106,6 +1243,16 @@ is
                 Active (N)
                 = (N not in Chart.Filling .. Chart.All_Given
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Filling .. Chart.All_Given
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
+          and then Self.Past
+            = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          case Infusion_States.Running'(Self.Place.Top) is
@@ -1130,6 +1277,16 @@ is
                 Active (N)
                 = (N not in Chart.Running .. Chart.Trickling
                    and then Active'Old (N)))
+          and then (for all I in Self.Timers'Range =>
+                Self.Timers (I)
+                = (if Chart.Holder (I) in Chart.Running .. Chart.Trickling
+                      and then Active'Old (Chart.Holder (I))
+                      then Ravenchart.Timers.Stopped
+                   else Self.Timers'Old (I)))
+          and then Self.Past
+            = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          case Infusion_States.Infusing'(Self.Place.Top) is
@@ -1154,6 +1311,11 @@ is
                 Active (N)
                 = (N not in Chart.Turning .. Chart.Motor_Good
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          case Self.Place.In_Motor is
@@ -1175,6 +1337,11 @@ is
                 Active (N)
                 = (N not in Chart.Listening .. Chart.Sensor_Good
                    and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past
+            = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          case Self.Place.In_Sensor is
@@ -1194,6 +1361,13 @@ is
              In_Motor => Infusion_States.Turning)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Self_Test or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (100)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Self_Test
+                    then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Self_Test;
@@ -1216,6 +1390,10 @@ is
              In_Motor => Infusion_States.Turning)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Turning or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.In_Motor := Infusion_States.Turning;
@@ -1237,6 +1415,10 @@ is
              In_Motor => Infusion_States.Motor_Good)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Motor_Good or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.In_Motor := Infusion_States.Motor_Good;
@@ -1258,6 +1440,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Listening or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.In_Sensor := Infusion_States.Listening;
@@ -1276,6 +1462,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Sensor_Good or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.In_Sensor := Infusion_States.Sensor_Good;
@@ -1294,6 +1484,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Programming or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Programming;
@@ -1307,6 +1501,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Infusing or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Infusing) := True;
@@ -1322,6 +1520,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Running or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Running) := True;
@@ -1339,6 +1541,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Filling or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Filling;
@@ -1357,6 +1563,13 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Giving or else Active'Old (N)))
+          and then Self.Timers (2) = Ravenchart.Timers.Started (20, 20)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Giving
+                    then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (2), 20, 20);
@@ -1375,6 +1588,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Loading or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Loading;
@@ -1395,6 +1612,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Maintaining or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Maintaining;
@@ -1414,6 +1635,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.All_Given or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.All_Given;
@@ -1433,6 +1658,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Trickling or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Trickling;
@@ -1446,6 +1675,10 @@ is
           Self.Place = Self.Place'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Alarm or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Active (Chart.Alarm) := True;
@@ -1464,6 +1697,10 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Sounding or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Sounding;
@@ -1483,6 +1720,13 @@ is
              In_Motor => Self.Place'Old.In_Motor)
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Silent or else Active'Old (N)))
+          and then Self.Timers (3) = Ravenchart.Timers.Started (600)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Silent
+                    then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Silent;
@@ -1502,6 +1746,10 @@ is
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
           and then Active = Active'Old
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.Where_It_Was;
@@ -1515,6 +1763,10 @@ is
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
           and then Active = Active'Old
+          and then Self.Timers = Self.Timers'Old
+          and then Self.Past = Self.Past'Old
+          and then Self.Deferred = Self.Deferred'Old
+          and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Place.Top := Infusion_States.May_Go_On;
@@ -1689,34 +1941,38 @@ is
       Item  : Event;
       Fired : out Firing_List) is
       C : Choice;
-      procedure Note (T : Firing)
-      with Post => Fired.Count > 0
-      is
-      begin
-         if Fired.Count < 6 then
-            Fired.Count := Fired.Count + 1;
-            Fired.Items (Fired.Count) := T;
-         end if;
-      end Note;
       procedure Fire_Whole (T : Firing)
       with
         Pre =>
           (if T = Initial_Entry
               then not Self.Started
-           else Self.Started and then In_Source (T, Self.Place)),
+           else Self.Started and then In_Source (T, Self.Place))
+          and then Fired.Count <= 6,
         Post =>
-          Self.Started
-          and then Fired.Count > 0
+          Fired.Count in Fired.Count'Old + 1 .. Fired.Count'Old + 3
+          and then Self.Started
+          and then Fired.Items (Fired.Count'Old + 1) = T
+          and then (for all J in 1 .. Fired.Count'Old =>
+                Fired.Items (J) = Fired.Items'Old (J))
+          and then (for all J in Fired.Count'Old + 2 .. Fired.Count =>
+                Is_Segment (Fired.Items (J)))
           and then Segments_Left (Self.Place) = 0
       is
+         Before : constant Firing_List := Fired with Ghost;
          Segment : Selection;
       begin
          Fire (Self, Ins, Item, T);
-         Note (T);
+         Fired.Count := Fired.Count + 1;
+         Fired.Items (Fired.Count) := T;
          for I in 1 .. 2 loop
             pragma Loop_Invariant
-              (Self.Started
-               and then Fired.Count > 0
+              (Fired.Count = Before.Count + I
+               and then Self.Started
+               and then Fired.Items (Before.Count + 1) = T
+               and then (for all J in 1 .. Before.Count =>
+                     Fired.Items (J) = Before.Items (J))
+               and then (for all J in Before.Count + 2 .. Fired.Count =>
+                     Is_Segment (Fired.Items (J)))
                and then Segments_Left (Self.Place) <= (3 - I));
             if Segments_Left (Self.Place) = 0 then
                exit;
@@ -1724,7 +1980,8 @@ is
             Segment :=
               Select_Segment (Self.Place, Self.Past, Self.Data, Ins, Item);
             Fire (Self, Ins, Item, Segment);
-            Note (Segment);
+            Fired.Count := Fired.Count + 1;
+            Fired.Items (Fired.Count) := Segment;
          end loop;
       end Fire_Whole;
    begin
@@ -1743,12 +2000,48 @@ is
             if C.Motor /= None then
                Fire_Whole (C.Motor);
             end if;
-            if C.Sensor /= None then
+            pragma Assert
+              (Fired.Count <= 3
+               and then (for all I in 1 .. Fired.Count =>
+                     Is_Segment (Fired.Items (I))
+                     or else (Fired.Items (I) <= Motor_Transition'Last
+                        and then Fired.Items (I) = C.Motor))
+               and then Is_Ordered (Fired)
+               and then (if C.Motor /= None then Has (Fired, C.Motor)));
+            if C.Sensor /= None and then In_Source (C.Sensor, Self.Place)
+            then
                Fire_Whole (C.Sensor);
             end if;
-            if C.Top /= None then
+            pragma Assert
+              (Fired.Count <= 6
+               and then (for all I in 1 .. Fired.Count =>
+                     Is_Segment (Fired.Items (I))
+                     or else (Fired.Items (I) <= Sensor_Transition'Last
+                        and then (Fired.Items (I) = C.Motor
+                           or else Fired.Items (I) = C.Sensor)))
+               and then Is_Ordered (Fired)
+               and then (if C.Motor /= None then Has (Fired, C.Motor))
+               and then (if C.Sensor /= None and then C.Motor = None
+                     then Has (Fired, C.Sensor)));
+            if C.Top /= None and then In_Source (C.Top, Self.Place) then
                Fire_Whole (C.Top);
             end if;
+            pragma Assert
+              (Fired.Count <= 9
+               and then (for all I in 1 .. Fired.Count =>
+                     Is_Segment (Fired.Items (I))
+                     or else (Fired.Items (I) <= Top_Transition'Last
+                        and then (Fired.Items (I) = C.Motor
+                           or else Fired.Items (I) = C.Sensor
+                           or else Fired.Items (I) = C.Top)))
+               and then Is_Ordered (Fired)
+               and then (if C.Motor /= None then Has (Fired, C.Motor))
+               and then (if C.Sensor /= None and then C.Motor = None
+                     then Has (Fired, C.Sensor))
+               and then (if C.Top /= None
+                     and then C.Motor = None
+                     and then C.Sensor = None
+                     then Has (Fired, C.Top)));
          end if;
       end if;
    end Step;

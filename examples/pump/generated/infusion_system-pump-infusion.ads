@@ -17,6 +17,8 @@ is
    use type Infusion_States.Configuration;
    use type Infusion_States.Motor_Leaf;
    use type Infusion_States.Sensor_Leaf;
+   use type Ravenchart.Timers.Timer;
+   use type Ravenchart.Timers.Timer_Array;
    use type Ravenchart.Freshness;
 
    --  [Pump.Infusion] what a step can be made for
@@ -116,11 +118,11 @@ is
       Null_Event => Pump.No_Event,
       Capacity => 4);
 
-   type Firing_Array is array (1 .. 6) of Selection;
+   type Firing_Array is array (1 .. 9) of Selection;
 
    --  What one step has fired, in order; None behind the last.
    type Firing_List is record
-      Count : Natural range 0 .. 6 := 0;
+      Count : Natural range 0 .. 9 := 0;
       Items : Firing_Array := (others => None);
    end record;
 
@@ -413,6 +415,116 @@ is
             In_Motor => Place.In_Motor));
    --  The leaves it leads to; those of a composite are its defaults.
 
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is
+     (Nothing,
+      Inside_Motor,
+      Inside_Sensor,
+      Inside_Infusing,
+      Inside_Running,
+      Inside_Giving,
+      Inside_Alarm,
+      Everything,
+      Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Turned => Inside_Motor,
+        when Heard => Inside_Sensor,
+        when Loaded => Inside_Giving,
+        when Change => Inside_Giving,
+        when Defer_New_Portion_In_Loading => Nothing,
+        when Filled_Up => Inside_Running,
+        when Beat => Nothing,
+        when Enough => Inside_Running,
+        when Defer_New_Portion_In_Filling => Nothing,
+        when Finished => Inside_Infusing,
+        when Hush => Inside_Alarm,
+        when Remind => Inside_Alarm,
+        when Restore_Where_It_Was => Inside_Infusing,
+        when Default_Of_Where_It_Was => Inside_Infusing,
+        when Ready => Everything,
+        when Again => Everything,
+        when Order_Portion => Nothing,
+        when Order_Volume => Nothing,
+        when Start => Everything,
+        when Stop => Everything,
+        when Lost => Everything,
+        when Trouble => Everything,
+        when Resume => Everything,
+        when Give_Up => Everything,
+        when Defer_New_Portion_In_Self_Test => Nothing,
+        when Defer_New_Volume_In_Self_Test => Nothing,
+        when Defer_New_Portion_In_Alarm => Nothing,
+        when Go_On => Everything,
+        when Not_Yet => Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
+   function Timer_After
+     (I      : Positive;
+      D      : Domain;
+      Before : Infusion_States.Configuration;
+      After  : Infusion_States.Configuration;
+      Timer  : Ravenchart.Timers.Timer)
+     return Ravenchart.Timers.Timer is
+     (case I is
+        when 1 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Everything or else D = Beginning,
+              D /= Beginning and then Before.Top = Infusion_States.Self_Test,
+              After.Top = Infusion_States.Self_Test,
+              Ravenchart.Timers.Started (100)),
+        when 2 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Running
+              or else D = Inside_Infusing
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning and then Before.Top in Infusion_States.Giving,
+              After.Top in Infusion_States.Giving,
+              Ravenchart.Timers.Started (20, 20)),
+        when 3 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Alarm or else D = Everything or else D = Beginning,
+              D /= Beginning and then Before.Top = Infusion_States.Silent,
+              After.Top = Infusion_States.Silent,
+              Ravenchart.Timers.Started (600)),
+        when others => Timer);
+   --  Each time-out: cancelled when its state is left, started when it is
+   --  entered.
+
+   function Remembered
+     (D     : Domain;
+      Place : Infusion_States.Configuration;
+      Past  : Memory)
+     return Memory is
+     ((Last_In_Infusing =>
+         (if (D = Inside_Running
+              or else D = Inside_Giving
+              or else D = Inside_Infusing
+              or else D = Everything)
+             and then Place.Top in Infusion_States.Infusing
+             and then Place.Top /= Infusion_States.Where_It_Was
+             then Place.Top
+          else Past.Last_In_Infusing),
+       Known_In_Infusing =>
+         (if (D = Inside_Running
+              or else D = Inside_Giving
+              or else D = Inside_Infusing
+              or else D = Everything)
+             and then Place.Top in Infusion_States.Infusing
+             and then Place.Top /= Infusion_States.Where_It_Was
+             then True
+          else Past.Known_In_Infusing)));
+   --  What histories know then: the leaf that was left, nothing after a
+   --  final state.
+
    function Is_Motor_Selection
      (Chosen : Selection;
       Place  : Infusion_States.Configuration;
@@ -517,6 +629,18 @@ is
         when others => False);
    --  Does an active state defer it?
 
+   function Is_Released
+     (Kept  : Deferrals.List;
+      Place : Infusion_States.Configuration;
+      I     : Positive)
+     return Boolean is
+     (I <= Deferrals.Count (Kept)
+      and then not Is_Deferred (Deferrals.Element (Kept, I), Place)
+      and then (for all J in 1 .. I - 1 =>
+            Is_Deferred (Deferrals.Element (Kept, J), Place)))
+   with Ghost;
+   --  Is it the oldest that no active state defers any more?
+
    function Is_Deferral (T : Selection) return Boolean is
      (T = Defer_New_Portion_In_Loading
       or else T = Defer_New_Portion_In_Filling
@@ -524,10 +648,77 @@ is
       or else T = Defer_New_Volume_In_Self_Test
       or else T = Defer_New_Portion_In_Alarm);
 
+   function Is_Segment (T : Selection) return Boolean is
+     (T = Restore_Where_It_Was
+      or else T = Default_Of_Where_It_Was
+      or else T = Go_On
+      or else T = Not_Yet);
+   --  Does it go on from a choice or history?
+
+   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
+     (Fired.Count > 0
+      and then Fired.Items (1) = T
+      and then (for all I in 2 .. Fired.Count =>
+            Is_Segment (Fired.Items (I))))
+   with Ghost;
+   --  Is that fired, with the segments of its way, and nothing else?
+
+   function Choose
+     (Place : Infusion_States.Configuration;
+      Now   : Occurrence;
+      Past  : Memory;
+      Data  : Variables;
+      Ins   : Inputs;
+      Item  : Event)
+     return Choice
+   with Post => Is_Choice (Choose'Result, Place, Now, Past, Data, Ins, Item);
+   --  The transitions that one occurrence asks for.
+
+   function Has (Fired : Firing_List; T : Selection) return Boolean is
+     (for some I in 1 .. Fired.Count => Fired.Items (I) = T)
+   with Ghost;
+
+   function Is_Ordered (Fired : Firing_List) return Boolean is
+     (for all I in 1 .. Fired.Count =>
+         Is_Segment (Fired.Items (I))
+         or else (for all J in 1 .. I - 1 =>
+               Is_Segment (Fired.Items (J))
+               or else Fired.Items (J) < Fired.Items (I)))
+   with Ghost;
+   --  Do the lanes fire in their order?
+
+   function Follows (Fired : Firing_List; C : Choice) return Boolean is
+     (if Is_Deferral (C.Motor)
+         then Is_Only (Fired, C.Motor)
+      elsif Is_Deferral (C.Sensor)
+         then Is_Only (Fired, C.Sensor)
+      elsif Is_Deferral (C.Top)
+         then Is_Only (Fired, C.Top)
+      else (for all I in 1 .. Fired.Count =>
+             Is_Segment (Fired.Items (I))
+             or else (Fired.Items (I) = C.Motor
+                or else Fired.Items (I) = C.Sensor
+                or else Fired.Items (I) = C.Top))
+         and then Is_Ordered (Fired)
+         and then (if C.Motor /= None then Has (Fired, C.Motor))
+         and then (if C.Sensor /= None and then C.Motor = None
+               then Has (Fired, C.Sensor))
+         and then (if C.Top /= None
+               and then C.Motor = None
+               and then C.Sensor = None
+               then Has (Fired, C.Top)))
+   with Ghost;
+   --  A deferral is fired alone. Otherwise what is chosen is fired, lane by
+   --  lane, and nothing else; a lane inside a state that transitions leave
+   --  may be overtaken by an earlier one.
+
    procedure Tick (Self : in out Region)
    with
      Post =>
-       Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old;
+       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
    --  One more execution: the time-outs come nearer.
 
    procedure Notice_Turning
@@ -546,26 +737,6 @@ is
        Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old;
    --  A do activity of Filling was done in that visit.
 
-   procedure Poll
-     (Self : in out Region;
-      Now  : out Occurrence;
-      Item : out Event)
-   with
-     Post =>
-       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
-       and then (Now = Start_Of_Region) = not Self.Started
-       and then (if Self.Started
-             then (if Self.Completed_Self_Test'Old
-                    then Now = Completion_Of_Self_Test
-                 elsif Self.Completed_Turning'Old
-                    then Now = Completion_Of_Turning
-                 elsif Self.Completed_Running'Old
-                    then Now = Completion_Of_Running
-                 elsif Self.Completed_Filling'Old
-                    then Now = Completion_Of_Filling));
-   --  Its start, a completion, the time-out that is due or a deferred event
-   --  that is due again; Conditions when there is none.
-
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item.Name is
         when New_Portion => On_New_Portion,
@@ -576,6 +747,63 @@ is
         when Silence => On_Silence,
         when Resume => On_Resume,
         when others => Conditions);
+
+   procedure Poll
+     (Self : in out Region;
+      Now  : out Occurrence;
+      Item : out Event)
+   with
+     Post =>
+       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       and then Self.Completed_Self_Test
+         = (Self.Completed_Self_Test'Old
+            and then Now /= Completion_Of_Self_Test)
+       and then Self.Completed_Turning
+         = (Self.Completed_Turning'Old and then Now /= Completion_Of_Turning)
+       and then Self.Completed_Running
+         = (Self.Completed_Running'Old and then Now /= Completion_Of_Running)
+       and then Self.Completed_Filling
+         = (Self.Completed_Filling'Old and then Now /= Completion_Of_Filling)
+       and then (case Now is
+            when Expiry_Of_Again =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
+            when Expiry_Of_Beat =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 2),
+            when Expiry_Of_Remind =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 3),
+            when others => Self.Timers'Old = Self.Timers)
+       and then (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started
+             then (if Self.Completed_Self_Test'Old
+                    then Now = Completion_Of_Self_Test
+                 elsif Self.Completed_Turning'Old
+                    then Now = Completion_Of_Turning
+                 elsif Self.Completed_Running'Old
+                    then Now = Completion_Of_Running
+                 elsif Self.Completed_Filling'Old
+                    then Now = Completion_Of_Filling
+                 elsif (for some I in Self.Timers'Range =>
+                        Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
+                    then Now in Expiry_Of_Again .. Expiry_Of_Remind
+                 elsif (for some I in 1 .. 4 =>
+                        Is_Released (Self.Deferred'Old, Self.Place, I))
+                    then (for all I in 1 .. 4 =>
+                           (if Is_Released
+                                 (Self.Deferred'Old,
+                                  Self.Place,
+                                  I)
+                               then Now
+                                  = To_Occurrence
+                                      (Deferrals.Element
+                                         (Self.Deferred'Old,
+                                          I))
+                                  and then Item
+                                    = Deferrals.Element
+                                        (Self.Deferred'Old,
+                                         I)))
+                 else Now = Conditions));
+   --  Its start, a completion, the time-out that is due or a deferred event
+   --  that is due again; Conditions when there is none.
 
    procedure Step
      (Self  : in out Region;
@@ -589,6 +817,17 @@ is
        Self.Started
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (if Segments_Left (Self.Place'Old) = 0
-             then Segments_Left (Self.Place) = 0);
+             then Segments_Left (Self.Place) = 0)
+       and then (if Now = Start_Of_Region
+             then Is_Only (Fired, Initial_Entry)
+          else Follows
+               (Fired,
+                Choose
+                  (Self.Place'Old,
+                   Now,
+                   Self.Past'Old,
+                   Self.Data'Old,
+                   Ins,
+                   Item)));
    --  One run-to-completion step.
 end Infusion_System.Pump.Infusion;

@@ -182,7 +182,9 @@ is
       else In_S21_Init (Passing, Data))
    with
      Pre => Segments_Left (Leaf) > 0,
-     Post => Enabled (Select_Segment'Result, Leaf, Passing, Data);
+     Post =>
+       Enabled (Select_Segment'Result, Leaf, Passing, Data)
+       and then Is_Segment (Select_Segment'Result);
 
    package Chart
    with Ghost

@@ -197,10 +197,17 @@ is
       else 0);
    --  How many segments follow at most; none but in a choice or history.
 
-   procedure Poll (Self : Region; Now : out Occurrence)
-   with Post => (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
+   function Is_Segment (T : Selection) return Boolean is
+     (T = S21_Init or else T = S1_Init or else T = S_Init);
+   --  Does it go on from a choice or history?
+
+   function Is_Only (Fired : Firing_List; T : Selection) return Boolean is
+     (Fired.Count > 0
+      and then Fired.Items (1) = T
+      and then (for all I in 2 .. Fired.Count =>
+            Is_Segment (Fired.Items (I))))
+   with Ghost;
+   --  Is that fired, with the segments of its way, and nothing else?
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item.Name is
@@ -214,6 +221,14 @@ is
         when G => On_G,
         when H => On_H,
         when others => Conditions);
+
+   procedure Poll (Self : Region; Now : out Occurrence)
+   with
+     Post =>
+       (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started then Now = Conditions);
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;
@@ -232,6 +247,7 @@ is
                (Fired.Items (1),
                 Self.Leaf'Old,
                 Now,
-                Self.Data'Old));
+                Self.Data'Old))
+       and then (if Fired.Count > 0 then Is_Only (Fired, Fired.Items (1)));
    --  One run-to-completion step.
 end Qhsm_Test.Qhsm.Chart;

@@ -73,15 +73,18 @@ is
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
-   procedure Poll (Self : Region; Now : out Occurrence)
-   with Post => (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
-
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item.Name is
         when Pressed => On_Pressed,
         when others => Conditions);
+
+   procedure Poll (Self : Region; Now : out Occurrence)
+   with
+     Post =>
+       (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started then Now = Conditions);
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;

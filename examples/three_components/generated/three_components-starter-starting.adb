@@ -37,6 +37,10 @@ is
       function Active_In (Leaf : Starting_States.Leaf) return Node_Set is
         ((Before => Leaf = Starting_States.Before,
           After_Start => Leaf = Starting_States.After_Start));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when others => Before);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -70,7 +74,17 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started
+       and then Self.Leaf = Target (Chosen)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Leaf'Old,
+                  Self.Leaf,
+                  Self.Timers'Old (I)))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -87,6 +101,10 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Before and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Before
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -100,6 +118,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N /= Chart.After_Start and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.After_Start) := False;
@@ -111,6 +130,10 @@ is
           Self.Leaf = Starting_States.Before
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Before or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (2)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Before
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Leaf := Starting_States.Before;
@@ -124,6 +147,7 @@ is
           Self.Leaf = Starting_States.After_Start
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.After_Start or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Starting_States.After_Start;

@@ -81,15 +81,18 @@ is
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 
-   procedure Poll (Self : Region; Now : out Occurrence)
-   with Post => (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
-
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Token_Came => On_Token_Came,
         when Worked => On_Worked);
+
+   procedure Poll (Self : Region; Now : out Occurrence)
+   with
+     Post =>
+       (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started then Now = Conditions);
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;

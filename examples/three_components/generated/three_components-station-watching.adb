@@ -32,6 +32,10 @@ is
       function Active_In (Leaf : Watching_States.Leaf) return Node_Set is
         ((Quiet => Leaf = Watching_States.Quiet,
           Busy => Leaf = Watching_States.Busy));
+
+      function Holder (I : Positive) return Node is
+        (case I is
+           when others => Busy);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -61,7 +65,17 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started
+       and then Self.Leaf = Target (Chosen)
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Timer_After
+                 (I,
+                  Domain_Of (Chosen),
+                  Self.Leaf'Old,
+                  Self.Leaf,
+                  Self.Timers'Old (I)))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -78,6 +92,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Quiet and then Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Active (Chart.Quiet) := False;
@@ -89,6 +104,10 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Busy and then Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Busy
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -101,6 +120,7 @@ is
           Self.Leaf = Watching_States.Quiet
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Quiet or else Active'Old (N)))
+          and then Self.Timers = Self.Timers'Old
       is
       begin
          Self.Leaf := Watching_States.Quiet;
@@ -113,6 +133,10 @@ is
           Self.Leaf = Watching_States.Busy
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Busy or else Active'Old (N)))
+          and then Self.Timers (1) = Ravenchart.Timers.Started (2)
+          and then (for all I in Self.Timers'Range =>
+                (if Chart.Holder (I) /= Chart.Busy
+                    then Self.Timers (I) = Self.Timers'Old (I)))
       is
       begin
          Self.Leaf := Watching_States.Busy;

@@ -8,6 +8,8 @@ package Three_Components.Station.Watching
 with SPARK_Mode
 is
    use type Watching_States.Leaf;
+   use type Ravenchart.Timers.Timer;
+   use type Ravenchart.Timers.Timer_Array;
 
    --  [Station.Watching] what a step can be made for
    type Occurrence is
@@ -58,6 +60,37 @@ is
         when Calm => Watching_States.Quiet);
    --  The leaf it leads to; that of a composite is its default.
 
+   --  The innermost region that holds all that a transition leaves and
+   --  enters.
+   type Domain is (Nothing, Everything, Beginning);
+
+   function Domain_Of (T : Firing) return Domain is
+     (case T is
+        when Initial_Entry => Beginning,
+        when Seen => Everything,
+        when Calm => Everything);
+   --  Everything active inside it is left, and what is active then is
+   --  entered.
+
+   function Timer_After
+     (I      : Positive;
+      D      : Domain;
+      Before : Watching_States.Leaf;
+      After  : Watching_States.Leaf;
+      Timer  : Ravenchart.Timers.Timer)
+     return Ravenchart.Timers.Timer is
+     (case I is
+        when 1 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Everything or else D = Beginning,
+              D /= Beginning and then Before = Watching_States.Busy,
+              After = Watching_States.Busy,
+              Ravenchart.Timers.Started (2)),
+        when others => Timer);
+   --  Each time-out: cancelled when its state is left, started when it is
+   --  entered.
+
    function Is_Selection
      (Chosen : Selection;
       Leaf   : Watching_States.Leaf;
@@ -76,21 +109,33 @@ is
    procedure Tick (Self : in out Region)
    with
      Post =>
-       Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old;
-   --  One more execution: the time-outs come nearer.
-
-   procedure Poll (Self : in out Region; Now : out Occurrence)
-   with
-     Post =>
        (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
-       and then (Now = Start_Of_Region) = not Self.Started;
-   --  Its start, or the time-out that is due; Conditions when there is
-   --  neither.
+       and then (for all I in Self.Timers'Range =>
+             Self.Timers (I)
+             = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
+   --  One more execution: the time-outs come nearer.
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Token_Came => On_Token_Came,
         when others => Conditions);
+
+   procedure Poll (Self : in out Region; Now : out Occurrence)
+   with
+     Post =>
+       (Self.Leaf = Self.Leaf'Old and then Self.Started = Self.Started'Old)
+       and then (case Now is
+            when Expiry_Of_Calm =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
+            when others => Self.Timers'Old = Self.Timers)
+       and then (Now = Start_Of_Region) = not Self.Started
+       and then (if Self.Started
+             then (if (for some I in Self.Timers'Range =>
+                        Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
+                    then Now in Expiry_Of_Calm
+                 else Now = Conditions));
+   --  Its start, or the time-out that is due; Conditions when there is
+   --  neither.
 
    procedure Step
      (Self  : in out Region;
@@ -105,6 +150,14 @@ is
           else Is_Selection (Fired, Self.Leaf'Old, Now))
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
-          else Self.Leaf = Target (Fired));
+          else Self.Leaf = Target (Fired)
+             and then (for all I in Self.Timers'Range =>
+                   Self.Timers (I)
+                   = Timer_After
+                       (I,
+                        Domain_Of (Fired),
+                        Self.Leaf'Old,
+                        Self.Leaf,
+                        Self.Timers'Old (I))));
    --  One run-to-completion step.
 end Three_Components.Station.Watching;

@@ -40,6 +40,8 @@ from ..naming import ada_case
 from ..terms import emit_expression
 from .compound import PASSED, Firing, Kind
 from .history import restored_functions, restored_place
+from .lanes import declared_lanes
+from .lasting import declared_domains
 from .operations import operations
 from .places import flat
 from .records import region_types
@@ -94,10 +96,13 @@ def _declared(shape: RegionShape) -> list[Decl]:
             else "The leaves it leads to; those of a composite are its defaults."
         ),
     ]
+    items += declared_domains(shape)
     items += _selections(shape, params)
     items += _passing(shape)
     if shape.deferring:
         items += _deferred(shape)
+    if shape.listed:
+        items += declared_lanes(shape)
     return items
 
 
@@ -247,6 +252,8 @@ def _deferred(shape: RegionShape) -> list[Decl]:
             expression=CaseExpr(Ref(name_of(shape.component, "Item")), tuple(rows)),
         ),
         Comment("Does an active state defer it?"),
+        _is_released(place),
+        Comment("Is it the oldest that no active state defers any more?"),
         Subprogram(
             "Is_Deferral",
             (Param("T", "in", "Selection"),),
@@ -256,3 +263,21 @@ def _deferred(shape: RegionShape) -> list[Decl]:
             ),
         ),
     ]
+
+
+def _is_released(place: Param) -> Subprogram:
+    def deferred(index: str) -> Expr:
+        item = call("Deferrals.Element", Ref("Kept"), Ref(index))
+        return call("Is_Deferred", item, Ref(place.name))
+
+    return Subprogram(
+        "Is_Released",
+        (Param("Kept", "in", "Deferrals.List"), place, Param("I", "in", "Positive")),
+        "Boolean",
+        aspects=(Aspect("Ghost"),),
+        expression=both(
+            Chain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept")))),
+            Prefix("not", deferred("I")),
+            ForAll("J", "1 .. I - 1", deferred("J")),
+        ),
+    )

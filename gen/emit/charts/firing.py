@@ -8,7 +8,7 @@ else. The order then follows from the preconditions.
 
 from __future__ import annotations
 
-from ...statechart import After, Every, PseudoKind, Transition
+from ...statechart import After, Every, PseudoKind
 from ...terms import Flow
 from ..ada import (
     FALSE,
@@ -48,6 +48,7 @@ from ..naming import ada_case
 from ..terms import certain_sends, emit_flow
 from .compound import TOP, Effect, Enter, Firing, Kind, Place, Step
 from .history import Restoring
+from .lasting import Lasting, terminates
 from .places import flat
 from .shape import START, RegionShape, behaviour_names
 
@@ -62,6 +63,7 @@ class Moves:
         self.region = shape.region
         self.scope = shape.scope("Self.Data")
         self.held = f"Self.{shape.place}"
+        self.lasting = Lasting(shape)
         self._exited: set[str] = set()
         self._entered: set[str] = set()
         self._left: set[Place] = set()
@@ -84,6 +86,7 @@ class Moves:
                     "Node_Set",
                     expression=Aggregate(rows),
                 ),
+                *self.lasting.ghosts(),
             ),
             (Aspect("Ghost"),),
         )
@@ -103,7 +106,8 @@ class Moves:
             ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
             both(Ref("Self.Started"), call("In_Source", Ref("Chosen"), Ref(self.held))),
         )
-        done = both(Ref("Self.Started"), equal(Ref(self.held), shape.target("Chosen")))
+        moved = equal(Ref(self.held), shape.target("Chosen"))
+        done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"))
         before = IfExpr(
             ((Ref("Self.Started"), self.active_in(self.held)),),
             Aggregate((Arg("others", FALSE),)),
@@ -174,7 +178,7 @@ class Moves:
         assert firing.domain is not None
         out = self._leave(firing)
         claim = (self._claim(firing.domain),) if effect else ()
-        if self._terminates(firing):
+        if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
             return (*out, *claim, *effect, *entered, *self._stop(firing))
         if firing.kind is Kind.RESTORE:
@@ -191,11 +195,10 @@ class Moves:
             Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
             for lane, leaf in goal.items()
         ]
+        if self.shape.timers:
+            stopped = Aggregate((Arg("others", Ref("Ravenchart.Timers.Stopped")),))
+            stops.append(Assign("Self.Timers", stopped))
         return (*stops, Assign("Active", Aggregate((Arg("others", FALSE),))))
-
-    def _terminates(self, firing: Firing) -> bool:
-        pseudo = self.region.pseudostate(firing.goal) if firing.goal else None
-        return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
         return tuple(
@@ -312,10 +315,6 @@ class Moves:
     def _kept(self) -> Expr:
         return equal(Ref(self.held), Ref(f"{self.held}'Old"))
 
-    def _timed(self, state: str) -> list[tuple[int, Transition]]:
-        timers = enumerate(self.shape.timers, 1)
-        return [(i, t) for i, t in timers if t.source == state]
-
     def _exit(self, state: str) -> Subprogram:
         node = f"Chart.{ada_case(state)}"
         at = self.region.state(state)
@@ -326,7 +325,7 @@ class Moves:
         after = ForAll("N", _NODES, equal(Ref("Active (N)"), left))
         stops = tuple(
             Do("Ravenchart.Timers.Disarm", arguments(Ref(f"Self.Timers ({i})")))
-            for i, _ in self._timed(state)
+            for i in self.lasting.timed(state)
         )
         undone = (
             (Assign(f"Self.{self.shape.completed(state)}", FALSE),)
@@ -338,7 +337,7 @@ class Moves:
             f"Exit_{ada_case(state)}",
             aspects=(
                 Aspect("Pre", chain("and then", ready)),
-                Aspect("Post", both(self._kept(), after)),
+                Aspect("Post", both(self._kept(), after, *self.lasting.exited(state))),
             ),
             body=(
                 *note,
@@ -351,18 +350,11 @@ class Moves:
         )
 
     def _remember(self, leaf: str) -> tuple[Stmt, ...]:
-        if not self.shape.is_literal(leaf):
-            return ()
         found: list[Stmt] = []
-        lane = self.region.lane(leaf)
-        for memory in self.shape.memories:
-            around = self.shape.compounds.places(leaf)
-            if memory.place not in around or self.shape.lane_of(memory.place) != lane:
-                continue
-            own_final = self.region.state(leaf).final and around[0] == memory.place
-            if not own_final:
+        for memory, goes_on in self.lasting.remembered(leaf):
+            if goes_on:
                 found.append(Assign(f"Self.Past.{memory.last}", Ref(self.shape.literal(leaf))))
-            found.append(Assign(f"Self.Past.{memory.known}", FALSE if own_final else TRUE))
+            found.append(Assign(f"Self.Past.{memory.known}", TRUE if goes_on else FALSE))
         return tuple(found)
 
     def _entry(self, vertex: str) -> Subprogram:
@@ -385,18 +377,22 @@ class Moves:
             same = equal(Ref("Active"), Ref("Active'Old"))
             return Subprogram(
                 f"Enter_{ada_case(vertex)}",
-                aspects=(Aspect("Pre", both(*flat(ready))), Aspect("Post", both(moved, same))),
+                aspects=(
+                    Aspect("Pre", both(*flat(ready))),
+                    Aspect("Post", both(moved, same, *self.lasting.entered(vertex))),
+                ),
                 body=here,
             )
         node = f"Chart.{ada_case(vertex)}"
         state = self.region.state(vertex)
         added = Chain("or else", (equal(Ref("N"), Ref(node)), Ref("Active'Old (N)")))
+        grown = ForAll("N", _NODES, equal(Ref("Active (N)"), added))
         note = () if state.final else self.shape.note(f"{vertex}.entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
             aspects=(
                 Aspect("Pre", both(*flat(ready))),
-                Aspect("Post", both(moved, ForAll("N", _NODES, equal(Ref("Active (N)"), added)))),
+                Aspect("Post", both(moved, grown, *self.lasting.entered(vertex))),
             ),
             body=(
                 *here,
@@ -411,8 +407,8 @@ class Moves:
 
     def _arm(self, state: str) -> tuple[Stmt, ...]:
         found: list[Stmt] = []
-        for i, transition in self._timed(state):
-            trigger = transition.trigger
+        for i in self.lasting.timed(state):
+            trigger = self.shape.timers[i - 1].trigger
             assert isinstance(trigger, After | Every)
             args = [Ref(f"Self.Timers ({i})"), number(trigger.executions)]
             if isinstance(trigger, Every):
@@ -474,7 +470,7 @@ class Moves:
             self._leave_name(place),
             aspects=(
                 Aspect("Pre", both(*flat([shape.in_state(self.held, place.owner), agrees]))),
-                Aspect("Post", both(self._kept(), after)),
+                Aspect("Post", both(self._kept(), after, *self.lasting.left(place, nodes))),
             ),
             body=(Case(Ref(leaf), tuple(rows)),),
         )

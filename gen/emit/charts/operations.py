@@ -10,9 +10,12 @@ from ..ada import (
     Aspect,
     Call,
     CaseExpr,
+    Chain,
     Comment,
     Decl,
     Expr,
+    ForAll,
+    ForSome,
     IfExpr,
     Param,
     Prefix,
@@ -21,10 +24,13 @@ from ..ada import (
     both,
     call,
     equal,
+    member,
     number,
 )
 from ..events import name_of
 from ..naming import ada_case
+from .lanes import followed
+from .lasting import Lasting
 from .shape import START, RegionShape
 from .working import notices
 
@@ -38,30 +44,13 @@ def operations(shape: RegionShape) -> list[Decl]:
     )
     items: list[Decl] = []
     if shape.timers:
+        ticked = call("Ravenchart.Timers.Ticked", Ref("Self.Timers'Old (I)"))
+        nearer = ForAll("I", "Self.Timers'Range", equal(Ref("Self.Timers (I)"), ticked))
         items += [
-            Subprogram("Tick", (self_out,), aspects=(Aspect("Post", same),)),
+            Subprogram("Tick", (self_out,), aspects=(Aspect("Post", both(same, nearer)),)),
             Comment("One more execution: the time-outs come nearer."),
         ]
     items += notices(shape, same)
-    due = equal(equal(Ref("Now"), Ref("Start_Of_Region")), Prefix("not", Ref("Self.Started")))
-    post: list[Expr] = [same, due] if shape.polls_out else [due]
-    if shape.completing:
-        rows = tuple(
-            (
-                Ref(f"Self.{shape.completed(s)}'Old"),
-                equal(Ref("Now"), Ref(f"Completion_Of_{ada_case(s)}")),
-            )
-            for s in shape.completing
-        )
-        post.append(IfExpr(((Ref("Self.Started"), IfExpr(rows, None)),), None))
-    items += [
-        Subprogram(
-            "Poll",
-            shape.poll_params(),
-            aspects=(Aspect("Post", both(*post)),),
-        ),
-        Comment(_POLLS if shape.polls_more else _POLLS_TIME),
-    ]
     if shape.region.events():
         rows_of = tuple((shape.event(e), Ref(f"On_{ada_case(e)}")) for e in shape.region.events())
         if len(rows_of) < len(shape.component.events):
@@ -74,6 +63,16 @@ def operations(shape: RegionShape) -> list[Decl]:
                 expression=CaseExpr(Ref(name_of(shape.component, "Item")), rows_of),
             ),
         ]
+    due = equal(equal(Ref("Now"), Ref("Start_Of_Region")), Prefix("not", Ref("Self.Started")))
+    post = [same, *_taken(shape)] if shape.polls_out else []
+    items += [
+        Subprogram(
+            "Poll",
+            shape.poll_params(),
+            aspects=(Aspect("Post", both(*post, due, *_next(shape))),),
+        ),
+        Comment(_POLLS if shape.polls_more else _POLLS_TIME),
+    ]
     fired = "Firing_List" if shape.listed else "Selection"
     params = shape.step_params()
     items += [
@@ -102,30 +101,81 @@ _POLLS = (
 )
 
 
+def _next(shape: RegionShape) -> list[Expr]:
+    """Which occurrence comes next, once the region has started."""
+    now = Ref("Now")
+    rows: list[tuple[Expr, Expr]] = [
+        (
+            Ref(f"Self.{shape.completed(s)}'Old"),
+            equal(now, Ref(f"Completion_Of_{ada_case(s)}")),
+        )
+        for s in shape.completing
+    ]
+    if shape.timers:
+        names = [f"Expiry_Of_{ada_case(t.name)}" for t in shape.timers]
+        due = ForSome("I", "Self.Timers'Range", call(_IS_DUE, Ref("Self.Timers'Old (I)")))
+        rows.append((due, member(now, " .. ".join(dict.fromkeys((names[0], names[-1]))))))
+    if shape.deferring:
+        rows.append(_released(shape))
+    rest = equal(now, Ref("Conditions"))
+    polled = IfExpr(tuple(rows), rest) if rows else rest
+    return [IfExpr(((Ref("Self.Started"), polled),), None)]
+
+
+_IS_DUE = "Ravenchart.Timers.Is_Due"
+
+
+def _released(shape: RegionShape) -> tuple[Expr, Expr]:
+    """When an event is released from deferral, it comes next."""
+    each = f"1 .. {shape.region.deferral_depth}"
+    kept = Ref("Self.Deferred'Old")
+    released = call("Is_Released", kept, Ref(f"Self.{shape.place}"), Ref("I"))
+    item = call("Deferrals.Element", kept, Ref("I"))
+    comes = [equal(Ref("Now"), call("To_Occurrence", item))]
+    comes += [equal(Ref("Item"), item)] if shape.takes_item else []
+    then = IfExpr(((released, both(*comes)),), None)
+    return ForSome("I", each, released), ForAll("I", each, then)
+
+
+def _taken(shape: RegionShape) -> list[Expr]:
+    """What is taken is gone, and nothing else."""
+    facts: list[Expr] = []
+    for state in shape.completing:
+        flag = f"Self.{shape.completed(state)}"
+        other = Chain("/=", (Ref("Now"), Ref(f"Completion_Of_{ada_case(state)}")))
+        facts.append(equal(Ref(flag), both(Ref(f"{flag}'Old"), other)))
+    if shape.timers:
+        times = Ref("Self.Timers'Old"), Ref("Self.Timers")
+        rows = [
+            (
+                f"Expiry_Of_{ada_case(t.name)}",
+                call("Ravenchart.Timers.Is_Taken", *times, number(i)),
+            )
+            for i, t in enumerate(shape.timers, 1)
+        ]
+        facts.append(CaseExpr(Ref("Now"), (*rows, ("others", equal(*times)))))
+    return facts
+
+
 def _stepped(shape: RegionShape) -> list[Expr]:
     """What a step achieves, in terms of the chart as declared."""
     held = f"Self.{shape.place}"
     kept = equal(Ref(held), Ref(f"{held}'Old"))
+    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    first = "Fired.Items (1)" if shape.listed else "Fired"
+    chosen = Call("Is_Selection", (Arg(None, Ref(first)), *shape.choice_args(old=True)))
+    started = equal(Ref(first), Ref(START))
     if not shape.listed:
-        chosen = Call("Is_Selection", (Arg(None, Ref("Fired")), *shape.choice_args(old=True)))
         none = equal(Ref("Fired"), Ref("None"))
-        moved = equal(Ref(held), shape.target("Fired"))
-        started = equal(Ref("Fired"), Ref(START))
-        return [
-            IfExpr(((equal(Ref("Now"), Ref("Start_Of_Region")), started),), chosen),
-            IfExpr(((none, kept),), moved),
-        ]
-    facts: list[Expr] = [
-        IfExpr(((equal(Ref("Fired.Count"), number(0)), kept),), None),
-    ]
+        moved = both(equal(Ref(held), shape.target("Fired")), *Lasting(shape).fired("Fired"))
+        return [IfExpr(((begun, started),), chosen), IfExpr(((none, kept),), moved)]
+    facts: list[Expr] = [IfExpr(((equal(Ref("Fired.Count"), number(0)), kept),), None)]
     if shape.passes:
         rests = equal(call("Segments_Left", Ref(f"{held}'Old")), number(0))
         still = equal(call("Segments_Left", Ref(held)), number(0))
         facts.append(IfExpr(((rests, still),), None))
-    if shape.single:
-        first = equal(Ref("Now"), Ref("Start_Of_Region"))
-        chosen = Call(
-            "Is_Selection", (Arg(None, Ref("Fired.Items (1)")), *shape.choice_args(old=True))
-        )
-        facts.append(IfExpr(((first, equal(Ref("Fired.Items (1)"), Ref(START))),), chosen))
-    return facts
+    if not shape.single:
+        return [*facts, followed(shape)]
+    only = call("Is_Only", Ref("Fired"), Ref(first))
+    some = IfExpr(((Chain(">", (Ref("Fired.Count"), number(0))), only),), None)
+    return [*facts, IfExpr(((begun, started),), chosen), some]

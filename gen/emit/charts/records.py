@@ -24,6 +24,9 @@ from ..naming import ada_case, default_value, type_name, value
 from .shape import START, RegionShape, guard_operators, guards_of
 from .working import done_types, work_fields
 
+TIMED = ("Ravenchart.Timers.Timer", "Ravenchart.Timers.Timer_Array")
+"""The types whose equality the contracts of time-outs use."""
+
 
 def region_types(shape: RegionShape) -> list[Decl]:
     """All types of the package, and the operators that its chart uses."""
@@ -54,6 +57,7 @@ def _use_types(shape: RegionShape) -> list[Decl]:
         UseType(n)
         for n in (
             *ordered,
+            *(TIMED if shape.timers else ()),
             *sorted(guard_operators(region)),
             *sorted(shape.compared_in(guards_of(region))),
         )

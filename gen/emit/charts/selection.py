@@ -57,7 +57,11 @@ def _segments(shape: RegionShape) -> list[Decl]:
     rows = [(shape.in_state(shape.place, p), Call(f"In_{ada_case(p)}", args)) for p in passed]
     chosen: Expr = IfExpr(tuple(rows[:-1]), rows[-1][1]) if rows[1:] else rows[0][1]
     waits = Chain(">", (call("Segments_Left", Ref(shape.place)), number(0)))
-    post = Call("Enabled", (Arg(None, Ref("Select_Segment'Result")), *all_args))
+    result = Ref("Select_Segment'Result")
+    post = both(
+        Call("Enabled", (Arg(None, result), *all_args)),
+        call("Is_Segment", result),
+    )
     return [
         Subprogram(
             "Select_Segment",
@@ -175,12 +179,10 @@ def _choose(shape: RegionShape) -> Subprogram:
         take = Assign(f"C.{name}", Call(f"Select_{name}", args))
         idle = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in shape.inner_lanes(lane)]
         steps.append(If(((chain("and then", idle), (take,)),)) if idle else take)
-    post = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *args))
     return Subprogram(
         "Choose",
         params,
         "Choice",
-        aspects=(Aspect("Post", post),),
         declarations=(Object("C", "Choice"),),
         body=(*steps, Return(Ref("C"))),
     )

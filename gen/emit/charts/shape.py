@@ -42,7 +42,8 @@ PASSING = "Passing"
 """The occurrence that takes an execution on from a choice or history."""
 
 _TYPES = "occurrence selection firing transition variables inputs outbox region item chart memory"
-TYPES = frozenset((*_TYPES.split(), "done_states"))
+_MORE = "done_states choice domain firing_list firing_array"
+TYPES = frozenset((*_TYPES.split(), *_MORE.split()))
 """What hides an event of the same name inside a region's package."""
 
 HELD = frozenset(("Leaf", "Place", "Data", "Past", "Done_In"))
@@ -186,8 +187,7 @@ class RegionShape(Places):
     def most_firings(self) -> int:
         """The most that one step fires."""
         ranks = [self.rank(p.name) for p in self.region.pseudostates if p.kind in PASSED]
-        lanes = [n for n in self.busy_lanes if not self.inner_lanes(n)]
-        return max(1, len(lanes)) * (1 + max(ranks, default=0))
+        return max(1, len(self.busy_lanes)) * (1 + max(ranks, default=0))
 
     def rank(self, pseudo: str) -> int:
         """The most segments that follow when an execution is in a choice or history."""

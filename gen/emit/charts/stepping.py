@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from ...statechart import Lane
 from ..ada import (
-    Aggregate,
-    Arg,
-    Aspect,
     Assign,
     Call,
     Case,
@@ -14,8 +10,8 @@ from ..ada import (
     Decl,
     Do,
     Expr,
+    ForAll,
     If,
-    IfExpr,
     Loop,
     Object,
     Param,
@@ -29,16 +25,14 @@ from ..ada import (
     arguments,
     both,
     call,
-    chain,
-    do,
     equal,
     number,
 )
 from ..events import null_event
 from ..naming import ada_case
 from ..terms import expressions_in
-from .compound import PASSED
 from .firing import Moves
+from .lanes import fire, lane_step, nothing, ranks
 from .selection import segment, selectors
 from .shape import (
     START,
@@ -59,6 +53,7 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     more += ["Ravenchart.Event_Count"] if shape.working else []
     more += sorted(shape.compared_in(flows) - shape.compared_in(guards_of(region)))
     moves = Moves(shape)
+    more += ["Deferrals.List"] if shape.deferring else []
     return (
         *(UseType(name) for name in more),
         *selectors(shape),
@@ -87,6 +82,7 @@ def _polling(shape: RegionShape) -> list[Decl]:
         occurs = Assign("Now", Ref(f"Completion_Of_{ada_case(state)}"))
         branches.append((Ref(done), (Assign(done, Ref("False")), occurs)))
     declarations: list[Decl] = [Object("Due", "Natural")] if shape.timers else []
+    declarations += [Object("Released", "Natural")] if shape.deferring else []
     params = shape.poll_params()
     before: tuple[Stmt, ...] = ()
     if len(params) > 2:
@@ -114,29 +110,36 @@ def _polling(shape: RegionShape) -> list[Decl]:
 
 def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
     """The oldest deferred event that no active state defers any more."""
-    item = call("Deferrals.Element", Ref("Self.Deferred"), Ref("I"))
-    taken = (Assign("Item", item),) if shape.takes_item else ()
-    free = Prefix("not", call("Is_Deferred", item, Ref(f"Self.{shape.place}")))
+    place = Ref(f"Self.{shape.place}")
+
+    def item(index: str) -> Expr:
+        return call("Deferrals.Element", Ref("Self.Deferred"), Ref(index))
+
+    def deferred(index: str) -> Expr:
+        return call("Is_Deferred", item(index), place)
+
+    none_yet = equal(Ref("Released"), number(0))
+    waiting = ForAll("J", "1 .. I - 1", deferred("J"))
+    search = Loop(
+        "for I in 1 .. Deferrals.Count (Self.Deferred)",
+        (
+            Pragma("Loop_Invariant", (both(none_yet, waiting),)),
+            If(((Prefix("not", deferred("I")), (Assign("Released", Ref("I")), Say("exit"))),)),
+        ),
+    )
+    claim = call("Is_Released", Ref("Self.Deferred"), place, Ref("Released"))
+    taken = (Assign("Item", item("Released")),) if shape.takes_item else ()
+    take = (
+        Pragma("Assert", (claim,)),
+        Assign("Now", call("To_Occurrence", item("Released"))),
+        *taken,
+        Do("Deferrals.Remove", arguments(Ref("Self.Deferred"), Ref("Released"))),
+    )
     return (
         Assign("Now", Ref("Conditions")),
-        Loop(
-            "for I in 1 .. Deferrals.Count (Self.Deferred)",
-            (
-                If(
-                    (
-                        (
-                            free,
-                            (
-                                Assign("Now", call("To_Occurrence", item)),
-                                *taken,
-                                Do("Deferrals.Remove", arguments(Ref("Self.Deferred"), Ref("I"))),
-                                Say("exit"),
-                            ),
-                        ),
-                    )
-                ),
-            ),
-        ),
+        Assign("Released", number(0)),
+        search,
+        If(((Chain(">", (Ref("Released"), number(0))), take),)),
     )
 
 
@@ -155,12 +158,7 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
         return Subprogram("Step", profile, body=_plain_step(shape, moves))
     if shape.single:
         return Subprogram("Step", profile, body=_passing_step(shape, moves))
-    return _lane_step(shape, moves, profile)
-
-
-def _fire(moves: Moves, chosen: str) -> Do:
-    names = (p.name for p in moves.fire_params())
-    return Do("Fire", arguments(*(Ref(chosen if n == "Chosen" else n) for n in names)))
+    return lane_step(shape, moves, profile)
 
 
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
@@ -168,13 +166,8 @@ def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     return (
         If(((begun, (Assign("Fired", Ref(START)),)),), (Assign("Fired", pick),)),
-        If(((Chain("/=", (Ref("Fired"), Ref("None"))), (_fire(moves, "Fired"),)),)),
+        If(((Chain("/=", (Ref("Fired"), Ref("None"))), (fire(moves, "Fired"),)),)),
     )
-
-
-def _ranks(shape: RegionShape) -> int:
-    ranks = (shape.rank(p.name) for p in shape.region.pseudostates if p.kind in PASSED)
-    return max(ranks, default=0)
 
 
 def _passing_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
@@ -182,122 +175,26 @@ def _passing_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
     pick = Call("Select_Transition", shape.choice_args())
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     first = Ref("Fired.Items (1)")
-    most = _ranks(shape)
+    most = ranks(shape)
     left = call("Segments_Left", Ref(f"Self.{shape.place}"))
     bound = Chain("<=", (left, Chain("-", (number(most + 2), Ref("I")))))
     counted = equal(Ref("Fired.Count"), Chain("-", (Ref("I"), number(1))))
-    fired = (_fire(moves, "Fired.Items (1)"), Assign("Fired.Count", number(1)))
+    fired = (fire(moves, "Fired.Items (1)"), Assign("Fired.Count", number(1)))
     loop = Loop(
         f"for I in 2 .. {most + 1}",
         (
             Pragma("Loop_Invariant", (both(Ref("Self.Started"), counted, bound),)),
             If(((equal(left, number(0)), (Say("exit"),)),)),
             Assign("Fired.Items (I)", segment(shape, "Self.")),
-            _fire(moves, "Fired.Items (I)"),
+            fire(moves, "Fired.Items (I)"),
             Assign("Fired.Count", Ref("I")),
         ),
     )
     return (
-        Assign("Fired", _nothing()),
+        Assign("Fired", nothing()),
         If(
             ((begun, (Assign("Fired.Items (1)", Ref(START)),)),),
             (Assign("Fired.Items (1)", pick),),
         ),
         If(((Chain("/=", (first, Ref("None"))), (*fired, loop)),)),
     )
-
-
-def _nothing() -> Aggregate:
-    """An empty list of firings."""
-    return Aggregate(
-        (Arg("Count", number(0)), Arg("Items", Aggregate((Arg("others", Ref("None")),))))
-    )
-
-
-def _lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
-    """Every lane's transition in order; what conflicts with an earlier one is dropped."""
-    choose = Call("Choose", shape.choice_args())
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    work: tuple[Stmt, ...] = tuple(_lane(shape, lane) for lane in shape.busy_lanes)
-    if shape.deferring:
-        fields = [f"C.{shape.lane_name(n)}" for n in shape.busy_lanes]
-        rows = [(call("Is_Deferral", Ref(f)), (do("Fire_Whole", Ref(f)),)) for f in fields]
-        work = (If(tuple(rows), work),)
-    return Subprogram(
-        "Step",
-        profile,
-        declarations=(Object("C", "Choice"), *_fire_whole(shape, moves)),
-        body=(
-            Assign("Fired", _nothing()),
-            If(((begun, (do("Fire_Whole", Ref(START)),)),), (Assign("C", choose), *work)),
-        ),
-    )
-
-
-def _lane(shape: RegionShape, lane: Lane) -> Stmt:
-    """Fire the transition of a lane, unless an earlier one left its state, or it would leave
-    a state in which an earlier one moved."""
-    chosen = Ref(f"C.{shape.lane_name(lane)}")
-    free: list[Expr] = [Chain("/=", (chosen, Ref("None")))]
-    around = [s for s in shape.watched if lane in shape.lanes_in(s)]
-    for state in around:
-        inside = shape.lanes_in(state)
-        earlier = inside[: inside.index(lane)]
-        if not earlier:
-            continue
-        name = ada_case(state)
-        still = [equal(Ref(f"C.{shape.lane_name(n)}"), Ref("None")) for n in earlier]
-        stays = Prefix("not", call(f"Leaves_{name}", chosen))
-        free.append(Prefix("not", call(f"Has_Left_{name}", Ref("Fired"))))
-        free.append(Chain("or else", (stays, chain("and then", still))))
-    if around:
-        free.append(call("In_Source", chosen, Ref(f"Self.{shape.place}")))
-    return If(((chain("and then", free), (do("Fire_Whole", chosen),)),))
-
-
-def _fire_whole(shape: RegionShape, moves: Moves) -> list[Decl]:
-    """A transition with the segments that its way passes, and note what fired."""
-    held = Ref(f"Self.{shape.place}")
-    started = IfExpr(
-        ((equal(Ref("T"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
-        both(Ref("Self.Started"), call("In_Source", Ref("T"), held)),
-    )
-    room = Chain("<", (Ref("Fired.Count"), number(shape.most_firings)))
-    grow = Assign("Fired.Count", Chain("+", (Ref("Fired.Count"), number(1))))
-    keep = Assign("Fired.Items (Fired.Count)", Ref("T"))
-    some = Chain(">", (Ref("Fired.Count"), number(0)))
-    note = Subprogram(
-        "Note",
-        (Param("T", "in", "Firing"),),
-        aspects=(Aspect("Post", some),),
-        body=(If(((room, (grow, keep)),)),),
-    )
-    most = _ranks(shape)
-    body: list[Stmt] = [_fire(moves, "T"), do("Note", Ref("T"))]
-    declarations: list[Decl] = []
-    facts: list[Expr] = [Ref("Self.Started"), some]
-    if most:
-        left = call("Segments_Left", held)
-        bound = Chain("<=", (left, Chain("-", (number(most + 1), Ref("I")))))
-        declarations.append(Object("Segment", "Selection"))
-        body.append(
-            Loop(
-                f"for I in 1 .. {most}",
-                (
-                    Pragma("Loop_Invariant", (both(*facts, bound),)),
-                    If(((equal(left, number(0)), (Say("exit"),)),)),
-                    Assign("Segment", segment(shape, "Self.")),
-                    _fire(moves, "Segment"),
-                    do("Note", Ref("Segment")),
-                ),
-            )
-        )
-        facts.append(equal(left, number(0)))
-    whole = Subprogram(
-        "Fire_Whole",
-        (Param("T", "in", "Firing"),),
-        aspects=(Aspect("Pre", started), Aspect("Post", both(*facts))),
-        declarations=tuple(declarations),
-        body=tuple(body),
-    )
-    return [note, whole]

@@ -1,0 +1,343 @@
+"""A step of several lanes: one transition in each, in order, each with its segments.
+
+`Follows` is the contract: what a step fires is what was chosen for the lanes, in
+their order, and a choice is dropped only when an earlier lane has fired.
+"""
+
+from __future__ import annotations
+
+from ...statechart import Lane
+from ..ada import (
+    Aggregate,
+    Arg,
+    Aspect,
+    Assign,
+    Call,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    Expr,
+    ForAll,
+    ForSome,
+    If,
+    IfExpr,
+    Loop,
+    Object,
+    Param,
+    Pragma,
+    Prefix,
+    Ref,
+    Say,
+    Stmt,
+    Subprogram,
+    arguments,
+    both,
+    call,
+    chain,
+    do,
+    equal,
+    member,
+    number,
+)
+from ..naming import ada_case
+from .compound import PASSED, Firing
+from .firing import Moves
+from .selection import segment
+from .shape import START, RegionShape, plain_args
+
+
+def fire(moves: Moves, chosen: str) -> Do:
+    names = (p.name for p in moves.fire_params())
+    return Do("Fire", arguments(*(Ref(chosen if n == "Chosen" else n) for n in names)))
+
+
+def ranks(shape: RegionShape) -> int:
+    ranks = (shape.rank(p.name) for p in shape.region.pseudostates if p.kind in PASSED)
+    return max(ranks, default=0)
+
+
+def nothing() -> Aggregate:
+    """An empty list of firings."""
+    return Aggregate(
+        (Arg("Count", number(0)), Arg("Items", Aggregate((Arg("others", Ref("None")),))))
+    )
+
+
+# --- The contract ------------------------------------------------------------
+
+
+def declared_lanes(shape: RegionShape) -> list[Decl]:
+    """Choose, and what a step may fire of a choice."""
+    fired = Param("Fired", "in", "Firing_List")
+    items: list[Decl] = [*_starts_with(shape, fired)]
+    if shape.single:
+        return items
+    params = shape.choice_params()
+    chosen = Call("Is_Choice", (Arg(None, Ref("Choose'Result")), *plain_args(params)))
+    found = ForSome("I", _FIRED, equal(Ref(_ITEM), Ref("T")))
+    earlier = Chain("<", (Ref("Fired.Items (J)"), Ref(_ITEM)))
+    pairs = ForAll("J", "1 .. I - 1", _unless_segment(shape, earlier, "J"))
+    ghost = (Aspect("Ghost"),)
+    return [
+        *items,
+        Subprogram("Choose", params, "Choice", aspects=(Aspect("Post", chosen),)),
+        Comment("The transitions that one occurrence asks for."),
+        Subprogram(
+            "Has",
+            (fired, Param("T", "in", "Selection")),
+            "Boolean",
+            aspects=ghost,
+            expression=found,
+        ),
+        Subprogram(
+            "Is_Ordered",
+            (fired,),
+            "Boolean",
+            aspects=ghost,
+            expression=ForAll("I", _FIRED, _unless_segment(shape, pairs, "I")),
+        ),
+        Comment("Do the lanes fire in their order?"),
+        Subprogram(
+            "Follows",
+            (fired, Param("C", "in", "Choice")),
+            "Boolean",
+            aspects=ghost,
+            expression=_follows(shape),
+        ),
+        Comment(_FOLLOWS),
+    ]
+
+
+_FIRED = "1 .. Fired.Count"
+_ITEM = "Fired.Items (I)"
+_FOLLOWS = (
+    "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
+    "a lane inside a state that transitions leave may be overtaken by an earlier one."
+)
+
+
+def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
+    first = [
+        Chain(">" if shape.passes else "=", (Ref("Fired.Count"), number(0 if shape.passes else 1))),
+        equal(Ref("Fired.Items (1)"), Ref("T")),
+    ]
+    items: list[Decl] = []
+    if shape.passes:
+        names = [ada_case(f.name) for f in shape.firings if is_segment(shape, f)]
+        items = [
+            Subprogram(
+                "Is_Segment",
+                (Param("T", "in", "Selection"),),
+                "Boolean",
+                expression=chain("or else", [equal(Ref("T"), Ref(n)) for n in names]),
+            ),
+            Comment("Does it go on from a choice or history?"),
+        ]
+        rest = call("Is_Segment", Ref(_ITEM))
+        first.append(ForAll("I", "2 .. Fired.Count", rest))
+    return [
+        *items,
+        Subprogram(
+            "Is_Only",
+            (fired, Param("T", "in", "Selection")),
+            "Boolean",
+            aspects=(Aspect("Ghost"),),
+            expression=both(*first),
+        ),
+        Comment("Is that fired, with the segments of its way, and nothing else?"),
+    ]
+
+
+def is_segment(shape: RegionShape, firing: Firing) -> bool:
+    """Does it go on from a choice or history?"""
+    return shape.region.pseudostate(firing.sources[0]) is not None
+
+
+def _unless_segment(shape: RegionShape, fact: Expr, index: str) -> Expr:
+    if not shape.passes:
+        return fact
+    return Chain("or else", (call("Is_Segment", Ref(f"Fired.Items ({index})")), fact))
+
+
+def _choice(shape: RegionShape, lane: Lane) -> Expr:
+    return Ref(f"C.{shape.lane_name(lane)}")
+
+
+def _follows(shape: RegionShape) -> Expr:
+    chosen = [equal(Ref(_ITEM), _choice(shape, n)) for n in shape.busy_lanes]
+    facts = [
+        ForAll("I", _FIRED, _unless_segment(shape, chain("or else", chosen), "I")),
+        call("Is_Ordered", Ref("Fired")),
+        *(_has(shape, lane) for lane in shape.busy_lanes),
+    ]
+    deferrals = tuple(
+        (
+            call("Is_Deferral", _choice(shape, n)),
+            call("Is_Only", Ref("Fired"), _choice(shape, n)),
+        )
+        for n in shape.busy_lanes
+        if shape.deferring
+    )
+    return IfExpr(deferrals, both(*facts)) if deferrals else both(*facts)
+
+
+def _has(shape: RegionShape, lane: Lane) -> Expr:
+    """What is chosen for a lane is fired, unless an earlier lane may have come between."""
+    none = Ref("None")
+    asked: list[Expr] = [Chain("/=", (_choice(shape, lane), none))]
+    if _overtaken(shape, lane):
+        before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
+        asked += [equal(_choice(shape, n), none) for n in before]
+    return IfExpr(((both(*asked), call("Has", Ref("Fired"), _choice(shape, lane))),), None)
+
+
+def _overtaken(shape: RegionShape, lane: Lane) -> bool:
+    """Can what earlier lanes fire disable what was chosen for this one? Where they go on from
+    choices and histories this is asked rather than proved."""
+    return shape.passes or any(lane in shape.lanes_in(s) for s in shape.watched)
+
+
+def followed(shape: RegionShape) -> Expr:
+    """What Step says of all that it has fired."""
+    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    choice = Call("Choose", shape.choice_args(old=True))
+    only = call("Is_Only", Ref("Fired"), Ref(START))
+    return IfExpr(((begun, only),), call("Follows", Ref("Fired"), choice))
+
+
+# --- The step ----------------------------------------------------------------
+
+
+def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
+    """Every lane's transition in order; what conflicts with an earlier one is dropped."""
+    choose = Call("Choose", shape.choice_args())
+    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    work: tuple[Stmt, ...] = tuple(
+        s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))
+    )
+    if shape.deferring:
+        fields = [f"C.{shape.lane_name(n)}" for n in shape.busy_lanes]
+        rows = [(call("Is_Deferral", Ref(f)), (do("Fire_Whole", Ref(f)),)) for f in fields]
+        work = (If(tuple(rows), work),)
+    return Subprogram(
+        "Step",
+        profile,
+        declarations=(Object("C", "Choice"), _fire_whole(shape, moves)),
+        body=(
+            Assign("Fired", nothing()),
+            If(((begun, (do("Fire_Whole", Ref(START)),)),), (Assign("C", choose), *work)),
+        ),
+    )
+
+
+def _lane(shape: RegionShape, lane: Lane) -> Stmt:
+    """Fire the transition of a lane, unless an earlier one left its state, or it would leave
+    a state in which an earlier one moved."""
+    chosen = _choice(shape, lane)
+    free: list[Expr] = [Chain("/=", (chosen, Ref("None")))]
+    around = [s for s in shape.watched if lane in shape.lanes_in(s)]
+    for state in around:
+        inside = shape.lanes_in(state)
+        earlier = inside[: inside.index(lane)]
+        if not earlier:
+            continue
+        name = ada_case(state)
+        still = [equal(_choice(shape, n), Ref("None")) for n in earlier]
+        stays = Prefix("not", call(f"Leaves_{name}", chosen))
+        free.append(Prefix("not", call(f"Has_Left_{name}", Ref("Fired"))))
+        free.append(Chain("or else", (stays, chain("and then", still))))
+    if lane != shape.busy_lanes[0] and _overtaken(shape, lane):
+        free.append(call("In_Source", chosen, Ref(f"Self.{shape.place}")))
+    return If(((chain("and then", free), (do("Fire_Whole", chosen),)),))
+
+
+def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
+    """What has been fired of the lanes up to this one."""
+    done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
+    last = Chain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
+    chosen = [equal(Ref(_ITEM), _choice(shape, n)) for n in done]
+    each = both(last, chain("or else", chosen))
+    most = number(len(done) * (1 + ranks(shape)))
+    facts = (
+        Chain("<=", (Ref("Fired.Count"), most)),
+        ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
+        call("Is_Ordered", Ref("Fired")),
+        *(_has(shape, n) for n in done),
+    )
+    return Pragma("Assert", (both(*facts),))
+
+
+def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
+    """A transition with the segments that its way passes, and note what fired."""
+    held = Ref(f"Self.{shape.place}")
+    started = IfExpr(
+        ((equal(Ref("T"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
+        both(Ref("Self.Started"), call("In_Source", Ref("T"), held)),
+    )
+    most = ranks(shape)
+    room = Chain("<=", (_COUNT, number(shape.most_firings - 1 - most)))
+    left = call("Segments_Left", held)
+    body: list[Stmt] = [fire(moves, "T"), *_note("T")]
+    declarations: tuple[Decl, ...] = ()
+    grown = equal(_COUNT, Ref("Fired.Count'Old + 1"))
+    settled: list[Expr] = []
+    if most:
+        ghost = (Aspect("Ghost"),)
+        declarations = (
+            Object("Before", "Firing_List", Ref("Fired"), constant=True, aspects=ghost),
+            Object("Segment", "Selection"),
+        )
+        bound = Chain("<=", (left, Chain("-", (number(most + 1), Ref("I")))))
+        counted = equal(_COUNT, Ref("Before.Count + I"))
+        noted = _noted(shape, "Before.Count", "Before.Items")
+        going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound),))
+        body.append(
+            Loop(
+                f"for I in 1 .. {most}",
+                (
+                    going_on,
+                    If(((equal(left, number(0)), (Say("exit"),)),)),
+                    Assign("Segment", segment(shape, "Self.")),
+                    fire(moves, "Segment"),
+                    *_note("Segment"),
+                ),
+            )
+        )
+        grown = member(_COUNT, f"Fired.Count'Old + 1 .. Fired.Count'Old + {most + 1}")
+        settled = [equal(left, number(0))]
+    else:
+        settled = [equal(held, shape.target("T"))]
+    facts = (grown, *_noted(shape, "Fired.Count'Old", "Fired.Items'Old"), *settled)
+    return Subprogram(
+        "Fire_Whole",
+        (Param("T", "in", "Firing"),),
+        aspects=(Aspect("Pre", both(started, room)), Aspect("Post", both(*facts))),
+        declarations=declarations,
+        body=tuple(body),
+    )
+
+
+_COUNT = Ref("Fired.Count")
+
+
+def _noted(shape: RegionShape, count: str, items: str) -> list[Expr]:
+    """The transition and its segments stand behind what was fired before."""
+    item = Ref("Fired.Items (J)")
+    facts: list[Expr] = [
+        Ref("Self.Started"),
+        equal(Ref(f"Fired.Items ({count} + 1)"), Ref("T")),
+        ForAll("J", f"1 .. {count}", equal(item, Ref(f"{items} (J)"))),
+    ]
+    if shape.passes:
+        segments = ForAll("J", f"{count} + 2 .. Fired.Count", call("Is_Segment", item))
+        facts.append(segments)
+    return facts
+
+
+def _note(fired: str) -> tuple[Stmt, ...]:
+    """It is the last that has fired."""
+    return (
+        Assign("Fired.Count", Chain("+", (_COUNT, number(1)))),
+        Assign("Fired.Items (Fired.Count)", Ref(fired)),
+    )

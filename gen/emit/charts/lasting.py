@@ -1,0 +1,333 @@
+"""What outlasts a firing: time-outs, the memory of histories, and what is deferred.
+
+The *domain* of a transition is the innermost region that holds all it leaves and
+enters (the "transition domain" of SCXML 3.13). Everything active inside it is left,
+and what is active inside it afterwards was entered. From the domain and the
+configurations before and after follow the time-outs that are cancelled and started,
+and the leaves that histories remember; `Timer_After` and `Remembered` declare it,
+and the contracts here say it of every exit, entry and firing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...statechart import After, Every, PseudoKind
+from ..ada import (
+    Aggregate,
+    Arg,
+    CaseExpr,
+    Chain,
+    Comment,
+    Decl,
+    EnumType,
+    Expr,
+    ForAll,
+    IfExpr,
+    Param,
+    Ref,
+    Subprogram,
+    both,
+    call,
+    chain,
+    equal,
+    number,
+)
+from ..naming import ada_case
+from .compound import TOP, Firing, Place
+from .places import flat
+from .shape import START, Memory, RegionShape
+
+_STOPPED = "Ravenchart.Timers.Stopped"
+
+
+def has_domains(shape: RegionShape) -> bool:
+    """Does anything outlast a firing that depends on what was left and entered?"""
+    return bool(shape.timers or shape.memories)
+
+
+def _inside(place: Place) -> str:
+    return "Everything" if place == TOP else f"Inside_{ada_case(place.region or place.owner or '')}"
+
+
+def terminates(shape: RegionShape, firing: Firing) -> bool:
+    """Does it stop the region?"""
+    pseudo = shape.region.pseudostate(firing.goal) if firing.goal else None
+    return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
+
+
+def _domain(shape: RegionShape, firing: Firing) -> str:
+    if terminates(shape, firing):
+        return "Ending"
+    return "Nothing" if firing.domain is None else _inside(firing.domain)
+
+
+# --- The chart as declared ---------------------------------------------------
+
+
+def declared_domains(shape: RegionShape) -> list[Decl]:
+    """Domain, Domain_Of, Timer_After and Remembered, as far as the chart needs them."""
+    if not has_domains(shape):
+        return []
+    rows = tuple((ada_case(f.name), Ref(_domain(shape, f))) for f in shape.firings)
+    regions = [Place(s.name, r.name) for s in shape.region.states for r in s.regions]
+    found = {_domain(shape, f) for f in shape.firings}
+    ends = ("Ending",) if "Ending" in found else ()
+    literals = ("Nothing", *map(_inside, regions), "Everything", "Beginning", *ends)
+    items: list[Decl] = [
+        Comment("The innermost region that holds all that a transition leaves and enters."),
+        EnumType("Domain", literals),
+        Subprogram(
+            "Domain_Of",
+            (Param("T", "in", "Firing"),),
+            "Domain",
+            expression=CaseExpr(Ref("T"), ((START, Ref("Beginning")), *rows)),
+        ),
+        Comment("Everything active inside it is left, and what is active then is entered."),
+    ]
+    if shape.timers:
+        items += _timer_after(shape, bool(ends))
+    if shape.memories:
+        items += _remembered(shape)
+    return items
+
+
+def _spans(places: list[Place], *more: str) -> Expr:
+    names = [_inside(p) for p in places] + list(more)
+    return chain("or else", [equal(Ref("D"), Ref(n)) for n in names])
+
+
+def _fresh(shape: RegionShape, index: int) -> Expr:
+    """The time-out with this number when its state has just been entered."""
+    trigger = shape.timers[index - 1].trigger
+    assert isinstance(trigger, After | Every)
+    count = number(trigger.executions)
+    args = (count, count) if isinstance(trigger, Every) else (count,)
+    return call("Ravenchart.Timers.Started", *args)
+
+
+def _timer_after(shape: RegionShape, ends: bool) -> list[Decl]:
+    rows = []
+    for i, timed in enumerate(shape.timers, 1):
+        places = shape.compounds.places(timed.source)
+        active = both(
+            *flat(
+                [Chain("/=", (Ref("D"), Ref("Beginning"))), shape.in_state("Before", timed.source)]
+            )
+        )
+        after = shape.in_state("After", timed.source)
+        spanned = _spans(places, "Beginning")
+        moved = call(
+            "Ravenchart.Timers.Moved", Ref("Timer"), spanned, active, after, _fresh(shape, i)
+        )
+        rows.append((str(i), moved))
+    choice: Expr = CaseExpr(Ref("I"), (*rows, ("others", Ref("Timer"))))
+    if ends:
+        choice = IfExpr(((equal(Ref("D"), Ref("Ending")), Ref(_STOPPED)),), choice)
+    return [
+        Subprogram(
+            "Timer_After",
+            (
+                Param("I", "in", "Positive"),
+                Param("D", "in", "Domain"),
+                Param("Before", "in", shape.place_type),
+                Param("After", "in", shape.place_type),
+                Param("Timer", "in", "Ravenchart.Timers.Timer"),
+            ),
+            "Ravenchart.Timers.Timer",
+            expression=choice,
+        ),
+        Comment("Each time-out: cancelled when its state is left, started when it is entered."),
+    ]
+
+
+def _remembered(shape: RegionShape) -> list[Decl]:
+    rows: list[Arg] = []
+    for memory in shape.memories:
+        leaf = Ref(shape.at(shape.place, shape.lane_of(memory.place)))
+        left = flat([_left(shape, memory), _active(shape, memory)])
+        children = shape.region.children(memory.place.owner, memory.place.region)
+        goes_on = [Chain("/=", (leaf, Ref(shape.literal(s.name)))) for s in children if s.final]
+        last = IfExpr(((both(*left, *goes_on), leaf),), Ref(f"Past.{memory.last}"))
+        known = IfExpr(((both(*left), both(*goes_on)),), Ref(f"Past.{memory.known}"))
+        rows += [Arg(memory.last, last), Arg(memory.known, known)]
+    return [
+        Subprogram(
+            "Remembered",
+            (
+                Param("D", "in", "Domain"),
+                Param(shape.place, "in", shape.place_type),
+                Param("Past", "in", "Memory"),
+            ),
+            "Memory",
+            expression=Aggregate(tuple(rows)),
+        ),
+        Comment("What histories know then: the leaf that was left, nothing after a final state."),
+    ]
+
+
+def _left(shape: RegionShape, memory: Memory) -> Expr:
+    """Is the leaf of the memory's region left, when there is one?"""
+    assert memory.place.owner is not None
+    around = [memory.place, *shape.compounds.places(memory.place.owner)]
+    lane = shape.lane_of(memory.place)
+    inner = [
+        p
+        for s in shape.region.states
+        for r in s.regions
+        for p in (Place(s.name, r.name),)
+        if p != memory.place
+        and shape.lane_of(p) == lane
+        and memory.place in shape.compounds.places(s.name)
+    ]
+    return _spans([*inner, *around])
+
+
+def _active(shape: RegionShape, memory: Memory) -> Expr:
+    """Is there a leaf in the memory's region? A pseudostate is not remembered."""
+    assert memory.place.owner is not None
+    passed = {p.name for p in shape.region.pseudostates}
+    leaf = shape.at(shape.place, shape.lane_of(memory.place))
+    not_left = [
+        Chain("/=", (Ref(leaf), Ref(shape.literal(v))))
+        for v in shape.literals_in(memory.place)
+        if v in passed
+    ]
+    return both(*flat([shape.in_state(shape.place, memory.place.owner), *not_left]))
+
+
+# --- The contracts of exits, entries and firings -----------------------------
+
+
+class Lasting:
+    """What one region's exits, entries and firings say of what outlasts them."""
+
+    def __init__(self, shape: RegionShape) -> None:
+        self.shape = shape
+        self.region = shape.region
+
+    def timed(self, state: str) -> list[int]:
+        """The numbers of a state's time-outs."""
+        return [i for i, t in enumerate(self.shape.timers, 1) if t.source == state]
+
+    def ghosts(self) -> tuple[Decl, ...]:
+        """The state of each time-out, among the ghosts of the chart."""
+        if not self.shape.timers:
+            return ()
+        rows = [(str(i), Ref(ada_case(t.source))) for i, t in enumerate(self.shape.timers, 1)]
+        last = rows.pop()
+        holder = CaseExpr(Ref("I"), (*rows, ("others", last[1])))
+        return (Subprogram("Holder", (Param("I", "in", "Positive"),), "Node", expression=holder),)
+
+    def remembered(self, leaf: str) -> list[tuple[Memory, bool]]:
+        """The memories that the exit of a leaf changes; False: there is nothing to remember."""
+        if not self.shape.is_literal(leaf):
+            return []
+        around = self.shape.compounds.places(leaf)
+        lane = self.region.lane(leaf)
+        final = self.region.state(leaf).final
+        return [
+            (m, not (final and around[0] == m.place))
+            for m in self.shape.memories
+            if m.place in around and self.shape.lane_of(m.place) == lane
+        ]
+
+    def exited(self, state: str) -> list[Expr]:
+        """After the exit of a state its time-outs are stopped and its leaf is remembered."""
+        stopped = [(i, Ref(_STOPPED)) for i in self.timed(state)]
+        return [
+            *self._times(state, stopped),
+            *self._memory(self.remembered(state), state),
+            *self._kept(),
+        ]
+
+    def entered(self, vertex: str) -> list[Expr]:
+        """After the entry of a state its time-outs run."""
+        started = [(i, _fresh(self.shape, i)) for i in self.timed(vertex)]
+        return [*self._times(vertex, started), *self._memory([], vertex), *self._kept()]
+
+    def left(self, place: Place, nodes: str) -> list[Expr]:
+        """After all in a region was left, the time-outs of what was active are stopped."""
+        facts: list[Expr] = []
+        inside = [
+            t.source for t in self.shape.timers if place in self.shape.compounds.places(t.source)
+        ]
+        if inside:
+            at = Ref("Chart.Holder (I)")
+            was = both(Chain("in", (at, Ref(nodes))), Ref("Active'Old (Chart.Holder (I))"))
+            each = IfExpr(((was, Ref(_STOPPED)),), Ref("Self.Timers'Old (I)"))
+            facts.append(self._each_timer(equal(Ref("Self.Timers (I)"), each)))
+        else:
+            facts += self._times("", [])
+        if self.shape.memories:
+            facts.append(self._recalled(_inside(place)))
+        return facts + self._kept()
+
+    def fired(self, chosen: str) -> list[Expr]:
+        """After a firing: what is declared; ``chosen`` names the transition."""
+        facts: list[Expr] = []
+        held = f"Self.{self.shape.place}"
+        domain = call("Domain_Of", Ref(chosen))
+        if self.shape.timers:
+            after = call(
+                "Timer_After",
+                Ref("I"),
+                domain,
+                Ref(f"{held}'Old"),
+                Ref(held),
+                Ref("Self.Timers'Old (I)"),
+            )
+            facts.append(self._each_timer(equal(Ref("Self.Timers (I)"), after)))
+        if self.shape.memories:
+            recalled = call("Remembered", domain, Ref(f"{held}'Old"), Ref("Self.Past'Old"))
+            facts.append(
+                IfExpr(
+                    ((Ref("Self.Started'Old"), equal(Ref("Self.Past"), recalled)),),
+                    equal(Ref("Self.Past"), Ref("Self.Past'Old")),
+                )
+            )
+        return facts
+
+    # --- parts
+
+    def _each_timer(self, fact: Expr) -> Expr:
+        return ForAll("I", "Self.Timers'Range", fact)
+
+    def _times(self, state: str, values: Sequence[tuple[int, Expr]]) -> list[Expr]:
+        if not self.shape.timers:
+            return []
+        if not values:
+            return [equal(Ref("Self.Timers"), Ref("Self.Timers'Old"))]
+        others = Chain("/=", (Ref("Chart.Holder (I)"), Ref(f"Chart.{ada_case(state)}")))
+        same = equal(Ref("Self.Timers (I)"), Ref("Self.Timers'Old (I)"))
+        return [
+            *(equal(Ref(f"Self.Timers ({i})"), value) for i, value in values),
+            self._each_timer(IfExpr(((others, same),), None)),
+        ]
+
+    def _memory(self, changed: list[tuple[Memory, bool]], leaf: str) -> list[Expr]:
+        if not self.shape.memories:
+            return []
+        if not changed:
+            return [equal(Ref("Self.Past"), Ref("Self.Past'Old"))]
+        new = dict(changed)
+        rows: list[Arg] = []
+        for memory in self.shape.memories:
+            last, known = f"Self.Past'Old.{memory.last}", f"Self.Past'Old.{memory.known}"
+            if memory in new:
+                known = str(new[memory])
+                last = self.shape.literal(leaf) if new[memory] else last
+            rows += [Arg(memory.last, Ref(last)), Arg(memory.known, Ref(known))]
+        return [equal(Ref("Self.Past"), Aggregate(tuple(rows)))]
+
+    def _recalled(self, domain: str) -> Expr:
+        held = f"Self.{self.shape.place}'Old"
+        return equal(
+            Ref("Self.Past"), call("Remembered", Ref(domain), Ref(held), Ref("Self.Past'Old"))
+        )
+
+    def _kept(self) -> list[Expr]:
+        """Exits and entries defer nothing."""
+        if not self.shape.deferring:
+            return []
+        return [equal(Ref(f"Self.{n}"), Ref(f"Self.{n}'Old")) for n in ("Deferred", "Lost")]
