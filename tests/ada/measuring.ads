@@ -1,4 +1,4 @@
---  Times of small operations: medians of several rounds, in nanoseconds.
+--  Times of small operations over several rounds, in nanoseconds.
 
 package Measuring is
 
@@ -11,6 +11,6 @@ package Measuring is
       with procedure Generated (Value : Integer);
       with procedure Hand_Written (Value : Integer);
    procedure Compare (Name : String);
-   --  Put both medians and their ratio; the rounds take turns.
+   --  Put the shortest time of each; the rounds take turns.
 
 end Measuring;

@@ -10,7 +10,7 @@ import pytest
 from ravenchart import house, proving
 from ravenchart.toolchain import ROOT
 
-NAMES = ("runtime-loopback", "runtime-slcan", *house.PROVED)
+NAMES = ("runtime-loopback", "runtime-slcan", *house.EXAMPLES)
 
 
 def _record(name: str) -> Path:
@@ -31,7 +31,7 @@ def test_nothing_is_unproved_justified_or_assumed(name: str) -> None:
 
 
 def test_every_generated_and_user_source_of_the_examples_is_in_its_record() -> None:
-    for name in house.PROVED:
+    for name in house.EXAMPLES:
         recorded = set(tomllib.loads(_record(name).read_text())["sources"])
         folder = ROOT / "examples" / name
         there = {str(p.relative_to(ROOT)) for p in folder.rglob("*.ad[sb]")}

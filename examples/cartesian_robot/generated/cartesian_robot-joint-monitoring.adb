@@ -176,6 +176,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Watching;
+            Self.Started := True;
          when Strayed =>
             Exit_Watching;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
@@ -201,7 +202,6 @@ is
             Enter_Watching;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

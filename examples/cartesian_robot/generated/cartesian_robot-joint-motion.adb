@@ -834,6 +834,7 @@ is
          when Initial_Entry =>
             Enter_Operational;
             Enter_Idle;
+            Self.Started := True;
          when End_Found =>
             Exit_Seeking;
             Enter_Backing_Off;
@@ -906,7 +907,6 @@ is
             Enter_Idle;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

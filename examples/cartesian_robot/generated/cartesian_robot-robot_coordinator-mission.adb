@@ -641,6 +641,7 @@ is
          when Initial_Entry =>
             Enter_Active;
             Enter_Waiting;
+            Self.Started := True;
          when Under_Way =>
             Exit_Departing;
             Enter_Under_Way;
@@ -710,7 +711,6 @@ is
             Enter_Shut_Down;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

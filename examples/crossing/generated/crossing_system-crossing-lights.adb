@@ -1181,6 +1181,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Blinking;
+            Self.Started := True;
          when Stopped =>
             Exit_Stopping;
             Enter_Held;
@@ -1238,7 +1239,6 @@ is
                else Crossing_System.Slow);
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Place));
-      Self.Started := True;
    end Fire;
 
    procedure Step

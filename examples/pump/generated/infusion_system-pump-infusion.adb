@@ -1777,6 +1777,7 @@ is
             Enter_Self_Test;
             Enter_Turning;
             Enter_Listening;
+            Self.Started := True;
          when Turned =>
             Exit_Turning;
             Enter_Motor_Good;
@@ -1931,7 +1932,6 @@ is
             Enter_Sounding;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Place));
-      Self.Started := True;
    end Fire;
 
    procedure Step

@@ -80,6 +80,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Listening;
+            Self.Started := True;
          when Pressed =>
             if Item.Value_Press.Key = Infusion_System.Start_Key then
                Event_Lists.Append
@@ -120,7 +121,6 @@ is
             end if;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

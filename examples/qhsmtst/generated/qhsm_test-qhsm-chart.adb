@@ -491,6 +491,7 @@ is
             Self.Data.Defaulted := True;
             Enter_S21;
             Enter_S211;
+            Self.Started := True;
          when S211_D =>
             Exit_S211;
             Enter_S21_Init;
@@ -594,7 +595,6 @@ is
             Self.Data.Foo := False;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

@@ -80,6 +80,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Listening;
+            Self.Started := True;
          when Pressed =>
             if Item.Value_Key = Qhsm_Test.Key_A then
                Event_Lists.Append
@@ -128,7 +129,6 @@ is
             end if;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

@@ -157,6 +157,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Before;
+            Self.Started := True;
          when Start =>
             Exit_Before;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
@@ -171,7 +172,6 @@ is
             Enter_After_Start;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

@@ -114,6 +114,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Empty;
+            Self.Started := True;
          when Take =>
             Exit_Empty;
             Enter_Holding;
@@ -125,7 +126,6 @@ is
             Enter_Empty;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

@@ -147,6 +147,7 @@ is
       case Chosen is
          when Initial_Entry =>
             Enter_Quiet;
+            Self.Started := True;
          when Seen =>
             Exit_Quiet;
             Enter_Busy;
@@ -155,7 +156,6 @@ is
             Enter_Quiet;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
-      Self.Started := True;
    end Fire;
 
    procedure Step

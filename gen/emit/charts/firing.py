@@ -100,7 +100,9 @@ class Moves:
     def fire(self) -> Subprogram:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
         shape = self.shape
-        rows: list[tuple[str, tuple[Stmt, ...]]] = [(START, self._steps(shape.start) or (NULL,))]
+        rows: list[tuple[str, tuple[Stmt, ...]]] = [
+            (START, (*self._steps(shape.start), Assign("Self.Started", TRUE)))
+        ]
         rows += [(ada_case(f.name), self._row(f)) for f in shape.firings]
         ready = IfExpr(
             ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
@@ -131,7 +133,6 @@ class Moves:
             body=(
                 Case(Ref("Chosen"), tuple(rows)),
                 Pragma("Assert", (equal(Ref("Active"), self.active_in(self.held)),)),
-                Assign("Self.Started", TRUE),
             ),
         )
 
