@@ -42,7 +42,8 @@ prove: setup
 generate: setup
 	@for e in $(EXAMPLES); do $(RAVENCHART) generate $$e/model.yaml || exit 1; done
 
-bench: setup
+bench:
+	@scripts/setup.sh arm
 	@$(PYTHON) -m ravenchart.bench
 
 bench-proof: setup

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Install what is missing: Debian's GNAT, gprbuild and Graphviz, and a virtual
 # environment in .venv from requirements.lock. Does nothing when all is there.
+# With the word "arm" also the compiler for 32-bit Arm, which only figures need.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -11,6 +12,10 @@ command -v gnatmake >/dev/null 2>&1 || packages="$packages gnat"
 command -v gprbuild >/dev/null 2>&1 || packages="$packages gprbuild"
 command -v dot >/dev/null 2>&1 || packages="$packages graphviz"
 python3 -c 'import ensurepip, venv' 2>/dev/null || packages="$packages python3-venv"
+if [ "${1:-}" = arm ]; then
+   command -v arm-linux-gnueabihf-gcc-12 >/dev/null 2>&1 ||
+      packages="$packages gnat-12-arm-linux-gnueabihf"
+fi
 if [ -n "$packages" ]; then
    as_root=
    if [ "$(id -u)" -ne 0 ]; then

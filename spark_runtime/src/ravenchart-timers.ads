@@ -85,7 +85,8 @@ is
      Pre    => Left in Timers'Range and then Right in Timers'Range;
    --  Did Left expire before Right, or with it and stands no later?
 
-   function Is_Taken (Before, After : Timer_Array; Due : Natural) return Boolean
+   function Is_Taken
+     (Before, After : Timer_Array; Due : Natural) return Boolean
    is (Due in Before'Range
        and then Is_Due (Before (Due))
        and then (for all I in Before'Range =>

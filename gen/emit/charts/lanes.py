@@ -257,7 +257,8 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
     done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
     last = Chain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
     chosen = [equal(Ref(_ITEM), _choice(shape, n)) for n in done]
-    each = both(last, chain("or else", chosen))
+    bound = [last] if lane != shape.busy_lanes[-1] else []
+    each = both(*bound, chain("or else", chosen))
     most = number(len(done) * (1 + ranks(shape)))
     facts = (
         Chain("<=", (Ref("Fired.Count"), most)),

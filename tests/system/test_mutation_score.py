@@ -1,0 +1,59 @@
+"""Broken programs are caught by the compiler, by gnatprove or by a run; an unbroken one is clean.
+
+The subject is a chart of three states, so that a proof takes seconds. Without gnatprove
+the test is skipped, and says so.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from ravenchart import toolchain
+from ravenchart.mutate.__main__ import Subject, mutants, tried
+from ravenchart.mutate.observing import Simulated
+from tests.support.chart_models import chart_text
+
+KINDS = ("target", "source", "missing action", "order", "time-out", "certificate")
+STATES = """\
+A:
+  entry: [{set: place, to: 1}]
+  exit: [{set: place, to: 2}]
+B:
+  initial: C
+  entry: [{set: place, to: 3}]
+  states: {C: {entry: [{set: place, to: 4}]}}
+"""
+TRANSITIONS = """\
+go: {from: A, to: B, on: Go, effect: [{set: place, to: 5}]}
+back: {from: B, to: A, on: Stop}
+late: {from: B, to: A, after: 30 ms}
+"""
+
+
+@pytest.fixture(scope="module")
+def subject(tmp_path_factory: pytest.TempPathFactory) -> Subject:
+    """A small chart with hierarchy, actions and a time-out."""
+    model = tmp_path_factory.mktemp("small") / "model.yaml"
+    model.write_text(chart_text(STATES, TRANSITIONS))
+    return Subject("small", model, Simulated)
+
+
+@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
+def test_one_break_of_each_kind_is_caught(subject: Subject) -> None:
+    chosen = [m for m in mutants(subject, 1, 1, KINDS) if m.part == "code"]
+    assert {m.kind for m in chosen} == set(KINDS)
+    outcomes = tried(subject, chosen, 2, ())
+    assert [o.mutant.name for o in outcomes if o.survived] == []
+    caught = {o.mutant.kind: o.verdict.by for o in outcomes}
+    assert caught["certificate"] == "compiler"
+    assert {caught["target"], caught["source"], caught["time-out"]} == {"gnatprove"}
+
+
+@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
+def test_a_program_that_is_not_clean_is_no_subject(
+    subject: Subject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ravenchart.mutate.workbench.PROOF", ("--level=0", "--no-such-switch"))
+    chosen = mutants(subject, 1, 1, ("target",))
+    with pytest.raises(toolchain.ToolFailed):
+        tried(subject, chosen, 1, ())
