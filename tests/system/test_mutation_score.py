@@ -16,16 +16,16 @@ from tests.support.chart_models import chart_text
 KINDS = ("target", "source", "missing action", "order", "time-out", "certificate")
 STATES = """\
 A:
-  entry: [{set: place, to: 1}]
-  exit: [{set: place, to: 2}]
+  entry: [{set: place, to: if place > 50 then 0 else place + 1}]
+  exit: [{set: place, to: if place > 50 then 0 else place + 2}]
 B:
   initial: C
-  entry: [{set: place, to: 3}]
-  states: {C: {entry: [{set: place, to: 4}]}}
+  entry: [{set: place, to: if place > 50 then 0 else place + 3}]
+  states: {C: {entry: [{set: place, to: if place > 50 then 0 else place + 5}]}}
 """
 TRANSITIONS = """\
-go: {from: A, to: B, on: Go, effect: [{set: place, to: 5}]}
-back: {from: B, to: A, on: Stop}
+go: {from: A, to: B, on: Go, effect: [{set: place, to: if place > 50 then 0 else place + 7}]}
+back: {from: B, to: A, on: Stop, guard: place < 30}
 late: {from: B, to: A, after: 30 ms}
 """
 

@@ -122,6 +122,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Watching and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Watching) := False;
@@ -137,6 +138,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Alarmed
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -150,6 +152,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Watching or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Monitoring_States.Watching;
@@ -166,6 +169,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Alarmed
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Monitoring_States.Alarmed;

@@ -382,6 +382,7 @@ is
                 Active (N)
                 = (N /= Chart.Operational and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Operational) := False;
@@ -394,6 +395,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Idle and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Idle) := False;
@@ -412,6 +414,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Homing
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -425,6 +428,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Seeking and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Seeking) := False;
@@ -438,6 +442,7 @@ is
                 Active (N)
                 = (N /= Chart.Backing_Off and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Backing_Off) := False;
@@ -453,6 +458,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Moving and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Moving) := False;
@@ -466,6 +472,7 @@ is
                 Active (N)
                 = (N /= Chart.Accelerating and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Accelerating) := False;
@@ -478,6 +485,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Cruising and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Cruising) := False;
@@ -490,6 +498,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Braking and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Braking) := False;
@@ -505,6 +514,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Fault and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Fault) := False;
@@ -517,6 +527,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Limit and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Limit) := False;
@@ -529,6 +540,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Drive and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Drive) := False;
@@ -546,6 +558,7 @@ is
                 = (N not in Chart.Limit .. Chart.Drive
                    and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Fault'(Self.Leaf) is
@@ -568,6 +581,7 @@ is
                 = (N not in Chart.Accelerating .. Chart.Braking
                    and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Moving'(Self.Leaf) is
@@ -592,6 +606,7 @@ is
                 = (N not in Chart.Seeking .. Chart.Backing_Off
                    and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Homing'(Self.Leaf) is
@@ -619,6 +634,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Operational'(Self.Leaf) is
@@ -640,6 +656,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Operational or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Operational) := True;
@@ -655,6 +672,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Idle or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Idle;
@@ -675,6 +693,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Homing
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
@@ -691,6 +710,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Seeking or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Seeking;
@@ -709,6 +729,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Backing_Off or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Backing_Off;
@@ -726,6 +747,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Moving or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Moving) := True;
@@ -746,6 +768,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Accelerating or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Accelerating;
@@ -762,6 +785,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Cruising or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Cruising;
@@ -778,6 +802,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Braking or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Braking;
@@ -791,6 +816,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Fault or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Fault) := True;
@@ -808,6 +834,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Limit or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Limit;
@@ -824,6 +851,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Drive or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Drive;

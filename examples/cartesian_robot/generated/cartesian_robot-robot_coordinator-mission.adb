@@ -276,6 +276,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Active and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Active) := False;
@@ -288,6 +289,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Waiting and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Waiting) := False;
@@ -300,6 +302,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Homing and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Homing) := False;
@@ -312,6 +315,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Ready and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Ready) := False;
@@ -327,6 +331,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Travelling and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Travelling) := False;
@@ -342,6 +347,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Departing
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -355,6 +361,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Under_Way and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Under_Way) := False;
@@ -370,6 +377,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Stopped and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Stopped) := False;
@@ -382,6 +390,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Failed and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Failed) := False;
@@ -404,6 +413,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Mission_States.Travelling'(Self.Leaf) is
@@ -431,6 +441,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Mission_States.Active'(Self.Leaf) is
@@ -453,6 +464,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Active or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Active) := True;
@@ -468,6 +480,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Waiting or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Waiting;
@@ -484,6 +497,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Homing or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Homing;
@@ -512,6 +526,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Ready or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Ready;
@@ -528,6 +543,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Travelling or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Travelling) := True;
@@ -558,6 +574,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Departing
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Departing;
@@ -575,6 +592,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Under_Way or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Under_Way;
@@ -588,6 +606,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Stopped or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Stopped) := True;
@@ -615,6 +634,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Failed or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Failed;
@@ -631,6 +651,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Shut_Down or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Shut_Down;

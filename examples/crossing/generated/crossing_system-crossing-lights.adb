@@ -456,6 +456,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Blinking
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -472,6 +473,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Working and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Working) := False;
@@ -487,6 +489,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Red and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Red) := False;
@@ -502,6 +505,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Stopping
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
@@ -515,6 +519,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Held and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Data.Cars_Stopped := False;
@@ -531,6 +536,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Red_Yellow
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
@@ -547,6 +553,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Green and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Green) := False;
@@ -562,6 +569,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Least
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (4));
@@ -575,6 +583,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Longer and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Longer) := False;
@@ -590,6 +599,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Yellow
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (5));
@@ -606,6 +616,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Dont_Walk and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Dont_Walk) := False;
@@ -618,6 +629,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Nobody and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Nobody) := False;
@@ -630,6 +642,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Waiting and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Waiting) := False;
@@ -649,6 +662,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.On_The_Road
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Data.Road_Free := True;
@@ -666,6 +680,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Walking
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (6));
@@ -679,6 +694,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Leaving and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Leaving) := False;
@@ -702,6 +718,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Lights_States.On_The_Road'(Self.Place.In_Walkers) is
@@ -725,6 +742,7 @@ is
                 = (N not in Chart.Nobody .. Chart.Waiting
                    and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Lights_States.Dont_Walk'(Self.Place.In_Walkers) is
@@ -753,6 +771,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Lights_States.Green'(Self.Place.In_Cars) is
@@ -781,6 +800,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Lights_States.Red'(Self.Place.In_Cars) is
@@ -808,6 +828,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Self.Place.In_Cars is
@@ -841,6 +862,7 @@ is
                       and then Active'Old (Chart.Holder (I))
                       then Ravenchart.Timers.Stopped
                    else Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Self.Place.In_Walkers is
@@ -866,6 +888,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Blinking
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.Top := Lights_States.Blinking;
@@ -885,6 +908,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Working or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.Top := Lights_States.Working;
@@ -903,6 +927,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Red or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Red) := True;
@@ -925,6 +950,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Stopping
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Stopping;
@@ -945,6 +971,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Held or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Held;
@@ -968,6 +995,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Red_Yellow
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Red_Yellow;
@@ -986,6 +1014,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Green or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Green) := True;
@@ -1008,6 +1037,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Least
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Least;
@@ -1028,6 +1058,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Longer or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Longer;
@@ -1050,6 +1081,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Yellow
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Yellow;
@@ -1068,6 +1100,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Dont_Walk or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Dont_Walk) := True;
@@ -1087,6 +1120,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Nobody or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Nobody;
@@ -1107,6 +1141,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Waiting or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Waiting;
@@ -1127,6 +1162,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.On_The_Road
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
@@ -1150,6 +1186,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Walking
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Walking;
@@ -1171,6 +1208,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Leaving or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Leaving;

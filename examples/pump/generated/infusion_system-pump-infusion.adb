@@ -877,6 +877,7 @@ is
                 (if Chart.Holder (I) /= Chart.Self_Test
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -894,6 +895,7 @@ is
                 Active (N) = (N /= Chart.Turning and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -911,6 +913,7 @@ is
                 Active (N) = (N /= Chart.Motor_Good and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -926,6 +929,7 @@ is
                 Active (N) = (N /= Chart.Listening and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -942,6 +946,7 @@ is
                 = (N /= Chart.Sensor_Good and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -958,6 +963,7 @@ is
                 = (N /= Chart.Programming and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -976,6 +982,7 @@ is
                 Active (N) = (N /= Chart.Infusing and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -995,6 +1002,7 @@ is
                 Active (N) = (N /= Chart.Running and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1013,6 +1021,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Filling,
                Known_In_Infusing => True)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1037,6 +1046,7 @@ is
                 (if Chart.Holder (I) /= Chart.Giving
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1055,6 +1065,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Loading,
                Known_In_Infusing => True)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1075,6 +1086,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Maintaining,
                Known_In_Infusing => True)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1094,6 +1106,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.All_Given,
                Known_In_Infusing => True)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1113,6 +1126,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Trickling,
                Known_In_Infusing => True)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1133,6 +1147,7 @@ is
                 Active (N) = (N /= Chart.Alarm and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1149,6 +1164,7 @@ is
                 Active (N) = (N /= Chart.Sounding and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1167,6 +1183,7 @@ is
                 (if Chart.Holder (I) /= Chart.Silent
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1194,6 +1211,7 @@ is
                    else Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1220,6 +1238,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1251,6 +1270,7 @@ is
                    else Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1285,6 +1305,7 @@ is
                    else Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1314,6 +1335,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1340,6 +1362,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1366,6 +1389,7 @@ is
                 (if Chart.Holder (I) /= Chart.Self_Test
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1392,6 +1416,7 @@ is
                 Active (N) = (N = Chart.Turning or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1417,6 +1442,7 @@ is
                 Active (N) = (N = Chart.Motor_Good or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1442,6 +1468,7 @@ is
                 Active (N) = (N = Chart.Listening or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1464,6 +1491,7 @@ is
                 Active (N) = (N = Chart.Sensor_Good or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1486,6 +1514,7 @@ is
                 Active (N) = (N = Chart.Programming or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1503,6 +1532,7 @@ is
                 Active (N) = (N = Chart.Infusing or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1522,6 +1552,7 @@ is
                 Active (N) = (N = Chart.Running or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1543,6 +1574,7 @@ is
                 Active (N) = (N = Chart.Filling or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1568,6 +1600,7 @@ is
                 (if Chart.Holder (I) /= Chart.Giving
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1590,6 +1623,7 @@ is
                 Active (N) = (N = Chart.Loading or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1614,6 +1648,7 @@ is
                 Active (N) = (N = Chart.Maintaining or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1637,6 +1672,7 @@ is
                 Active (N) = (N = Chart.All_Given or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1660,6 +1696,7 @@ is
                 Active (N) = (N = Chart.Trickling or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1677,6 +1714,7 @@ is
                 Active (N) = (N = Chart.Alarm or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1699,6 +1737,7 @@ is
                 Active (N) = (N = Chart.Sounding or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1725,6 +1764,7 @@ is
                 (if Chart.Holder (I) /= Chart.Silent
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1748,6 +1788,7 @@ is
           and then Active = Active'Old
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is
@@ -1765,6 +1806,7 @@ is
           and then Active = Active'Old
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Started = Self.Started'Old
           and then Self.Deferred = Self.Deferred'Old
           and then Self.Lost = Self.Lost'Old
       is

@@ -237,6 +237,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.S1 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S1) := False;
@@ -248,6 +249,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.S11 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S11) := False;
@@ -261,6 +263,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.S2 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S2) := False;
@@ -274,6 +277,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.S21 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S21) := False;
@@ -285,6 +289,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.S211 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S211) := False;
@@ -300,6 +305,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N not in Chart.S211 .. Chart.S211 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S21'(Self.Leaf) is
@@ -320,6 +326,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N not in Chart.S21 .. Chart.S211 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S2'(Self.Leaf) is
@@ -339,6 +346,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N not in Chart.S11 .. Chart.S11 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S1'(Self.Leaf) is
@@ -359,6 +367,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N)
                 = (N not in Chart.S1 .. Chart.S211 and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S'(Self.Leaf) is
@@ -379,6 +388,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.S or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S) := True;
@@ -392,6 +402,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.S1 or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S1) := True;
@@ -405,6 +416,7 @@ is
           Self.Leaf = Chart_States.S11
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.S11 or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Chart_States.S11;
@@ -419,6 +431,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.S2 or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S2) := True;
@@ -432,6 +445,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.S21 or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.S21) := True;
@@ -445,6 +459,7 @@ is
           Self.Leaf = Chart_States.S211
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.S211 or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Chart_States.S211;
@@ -455,7 +470,10 @@ is
         Pre =>
           Active (Chart.S)
           and then (for all N in Chart.S1 .. Chart.S211 => not Active (N)),
-        Post => Self.Leaf = Chart_States.S_Init and then Active = Active'Old
+        Post =>
+          Self.Leaf = Chart_States.S_Init
+          and then Active = Active'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Chart_States.S_Init;
@@ -466,7 +484,9 @@ is
           Active (Chart.S1)
           and then (for all N in Chart.S11 .. Chart.S11 => not Active (N)),
         Post =>
-          Self.Leaf = Chart_States.S1_Init and then Active = Active'Old
+          Self.Leaf = Chart_States.S1_Init
+          and then Active = Active'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Chart_States.S1_Init;
@@ -477,7 +497,9 @@ is
           Active (Chart.S21)
           and then (for all N in Chart.S211 .. Chart.S211 => not Active (N)),
         Post =>
-          Self.Leaf = Chart_States.S21_Init and then Active = Active'Old
+          Self.Leaf = Chart_States.S21_Init
+          and then Active = Active'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Chart_States.S21_Init;

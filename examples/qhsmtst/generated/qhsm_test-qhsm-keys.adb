@@ -71,6 +71,7 @@ is
           Self.Leaf = Keys_States.Listening
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Listening or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Keys_States.Listening;

@@ -105,6 +105,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Before
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -119,6 +120,7 @@ is
                 Active (N)
                 = (N /= Chart.After_Start and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.After_Start) := False;
@@ -134,6 +136,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Before
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Starting_States.Before;
@@ -148,6 +151,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.After_Start or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Starting_States.After_Start;

@@ -93,6 +93,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Quiet and then Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Quiet) := False;
@@ -108,6 +109,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Busy
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -121,6 +123,7 @@ is
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Quiet or else Active'Old (N)))
           and then Self.Timers = Self.Timers'Old
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Watching_States.Quiet;
@@ -137,6 +140,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if Chart.Holder (I) /= Chart.Busy
                     then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Watching_States.Busy;

@@ -71,6 +71,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Empty and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Empty) := False;
@@ -82,6 +83,7 @@ is
           Self.Leaf = Self.Leaf'Old
           and then (for all N in Chart.Node =>
                 Active (N) = (N /= Chart.Holding and then Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Active (Chart.Holding) := False;
@@ -93,6 +95,7 @@ is
           Self.Leaf = Handling_States.Empty
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Empty or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Handling_States.Empty;
@@ -105,6 +108,7 @@ is
           Self.Leaf = Handling_States.Holding
           and then (for all N in Chart.Node =>
                 Active (N) = (N = Chart.Holding or else Active'Old (N)))
+          and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Handling_States.Holding;

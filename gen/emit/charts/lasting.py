@@ -327,7 +327,6 @@ class Lasting:
         )
 
     def _kept(self) -> list[Expr]:
-        """Exits and entries defer nothing."""
-        if not self.shape.deferring:
-            return []
-        return [equal(Ref(f"Self.{n}"), Ref(f"Self.{n}'Old")) for n in ("Deferred", "Lost")]
+        """Exits and entries do not start the region, and defer nothing."""
+        same = ["Started", *(("Deferred", "Lost") if self.shape.deferring else ())]
+        return [equal(Ref(f"Self.{n}"), Ref(f"Self.{n}'Old")) for n in same]
