@@ -275,7 +275,7 @@ def _events(text: str, file: str) -> Iterator[Event]:
 
 
 def _parsed(text: str) -> Iterable[Event]:
-    """PyYAML's events: by libyaml, ten times as fast, where both parsers agree and all is well."""
+    """PyYAML's events: by libyaml, the faster, where both parsers agree and all is well."""
     if yaml.__with_libyaml__ and not UNLIKE.search(text):
         try:
             events = list(yaml.parse(text, Loader=yaml.CSafeLoader))

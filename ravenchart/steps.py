@@ -53,7 +53,7 @@ class Checked:
 
 @contextmanager
 def _without_collector() -> Iterator[None]:
-    """No search for garbage in circles: a large model holds none, and is searched ever again."""
+    """No search for garbage in circles: a large model is searched again whenever it has grown."""
     was_on = gc.isenabled()
     gc.disable()
     try:
