@@ -13,6 +13,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from .diagnostics import Diagnostic, error
 from .emit import ada
@@ -26,8 +27,7 @@ PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"}
 """Words that no GNAT project can have as its name, beside those of Ada."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Name:
+class _Name(NamedTuple):
     """One declaration; ``profile`` tells overloaded ones apart, None where there are none."""
 
     text: str
@@ -43,6 +43,17 @@ class _Name:
         if self.profile is None or other.profile is None:
             return True
         return self.profile == other.profile and not (self.completes or other.completes)
+
+
+_Known = dict[str, list[_Name]]
+"""Names by their keys."""
+
+
+def _by_key(names: Sequence[_Name]) -> _Known:
+    found: _Known = defaultdict(list)
+    for name in names:
+        found[name.key].append(name)
+    return found
 
 
 def _names(item: ada.Decl) -> Iterator[_Name]:
@@ -87,21 +98,21 @@ class _Unit:
     """Every name declared in the unit, at any depth."""
     found: list[str] = field(default_factory=list)
 
-    def scope(self, names: Sequence[_Name], outer: Sequence[_Name]) -> None:
+    def scope(self, names: Sequence[_Name], outer: _Known) -> None:
         """One scope inside others whose names are used in it."""
-        known: defaultdict[str, list[_Name]] = defaultdict(list)
-        for name in outer:
-            known[name.key].append(name)
+        own: _Known = defaultdict(list)
         for name in names:
-            if any(name.bars(other) for other in known[name.key]):
+            key = name.key
+            if any(name.bars(other) for other in (*outer.get(key, ()), *own[key])):
                 self.found.append(name.text)
-            known[name.key].append(name)
+            own[key].append(name)
         self.deep += names
 
     def walk(self, items: Sequence[ada.Decl], outer: Sequence[_Name]) -> list[_Name]:
         """The declarations of a package, nested ones included; its own names."""
         names = [n for item in items for n in _names(item)]
-        self.scope(names, outer)
+        self.scope(names, _by_key(outer))
+        around = _by_key([*outer, *names])
         for item in items:
             match item:
                 case ada.Package(_, inner):
@@ -109,7 +120,7 @@ class _Unit:
                 case ada.RecordType(_, components):
                     self.record(components)
                 case ada.Subprogram():
-                    self.inside(item, [*outer, *names])
+                    self.inside(item, around)
         return names
 
     def record(self, components: Sequence[ada.Component]) -> None:
@@ -122,19 +133,21 @@ class _Unit:
             if of_type.split(".")[0].lower() in seen:
                 self.found.append(of_type.split(".")[0])
 
-    def inside(self, item: ada.Subprogram, around: Sequence[_Name]) -> None:
+    def inside(self, item: ada.Subprogram, around: _Known) -> None:
         """Parameters and local declarations; activities call none of their neighbours."""
         name = self.unit.item.name
         own = [_Name(p.name) for p in item.params]
         own += [n for d in item.declarations for n in _names(d)]
-        own += _loops(item.body or ())
         apart = name.endswith((".Flows", ".Activities"))
-        loops = {n.key for n in _loops(item.body or ())}
-        self.scope([n for n in own if n.key not in loops], () if apart else around)
-        self.deep += [n for n in own if n.key in loops]
+        loops = list(_loops(item.body or ()))
+        if loops:
+            taken = {n.key for n in loops}
+            self.deep += [n for n in (*own, *loops) if n.key in taken]
+            own = [n for n in own if n.key not in taken]
+        self.scope(own, {} if apart else around)
         for declaration in item.declarations:
             if isinstance(declaration, ada.Subprogram):
-                self.inside(declaration, ())
+                self.inside(declaration, {})
 
 
 def _of_item(unit: _Unit, outer: Sequence[_Name]) -> list[_Name]:
@@ -142,7 +155,7 @@ def _of_item(unit: _Unit, outer: Sequence[_Name]) -> list[_Name]:
         case ada.Package(_, items):
             return unit.walk(items, outer)
         case ada.Subprogram() as main:
-            unit.inside(main, ())
+            unit.inside(main, {})
     return []
 
 

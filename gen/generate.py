@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from .emit.ada import Unit
 from .emit.ada_text import print_item, print_unit
@@ -33,12 +33,21 @@ HEADER = (
 def units(system: System, bounds: Mapping[str, Ns]) -> tuple[Unit, ...]:
     """Every Ada unit of the program; ``bounds`` claims each task's response time in ns."""
     header = HEADER.format(system=system.name)
-    found = _logic(system, header)
-    found += emit_codecs(system, header)
-    found += emit_instances(system, header)
-    found.append(emit_certificate(system, bounds, header))
-    found += emit_deployment(system, header)
-    return tuple(_finished(system, found))
+    before, after = _without_claims(system)
+    return (*before, *_finished(system, [emit_certificate(system, bounds, header)]), *after)
+
+
+@lru_cache(maxsize=1)
+def _without_claims(system: System) -> tuple[tuple[Unit, ...], tuple[Unit, ...]]:
+    """The units before and behind the timing certificate: made once, checked and then printed."""
+    header = HEADER.format(system=system.name)
+    before = [
+        *_logic(system, header),
+        *emit_codecs(system, header),
+        *emit_instances(system, header),
+    ]
+    after = emit_deployment(system, header)
+    return tuple(_finished(system, before)), tuple(_finished(system, [*after]))
 
 
 def _logic(system: System, header: str, *, noted: bool = False) -> list[Unit]:
@@ -85,12 +94,20 @@ def _seeing_runtime(unit: Unit) -> Unit:
 
 def _pruned(unit: Unit, root: str, text: str) -> Unit:
     """The unit without the context that its text does not name."""
-    kept = []
-    for name in unit.withs:
-        seen_as = name.removeprefix(f"{root}.")
-        if re.search(rf"(?<![\w.]){re.escape(seen_as)}\b|\b{re.escape(name)}\b", text):
-            kept.append(name)
+    kept = (n for n in unit.withs if _names(text, n) or _names(text, n.removeprefix(f"{root}.")))
     return replace(unit, withs=tuple(kept))
+
+
+def _names(text: str, name: str) -> bool:
+    """Does ``name`` stand in the text, neither qualified nor as a part of another name?"""
+    at = text.find(name)
+    while at >= 0:
+        end = at + len(name)
+        before, behind = text[at - 1 : at], text[end : end + 1]
+        if not (before.isalnum() or before in ("_", ".") or behind.isalnum() or behind == "_"):
+            return True
+        at = text.find(name, at + 1)
+    return False
 
 
 def _without_repeats(found: list[Unit]) -> list[Unit]:

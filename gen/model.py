@@ -9,8 +9,10 @@ identifiers, unique without regard to case within their scope.
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 from .statechart import DONE, Overflow, Region, Timing
 from .terms import Expression, Flow, Ns, Origin, Scalar, ScalarType, Type, Value, named
@@ -374,7 +376,7 @@ class Shutdown:
     grace: Ns
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class System:
     """A whole system, resolved. ``tasks`` and ``objects`` are filled in by `derive`."""
 
@@ -396,18 +398,40 @@ class System:
 
     def instance(self, name: str) -> Instance:
         """The instance called ``name``; KeyError where there is none."""
-        return named(self.instances, name)
+        return self._instances[name.lower()]
+
+    @cached_property
+    def _instances(self) -> dict[str, Instance]:
+        return {i.name.lower(): i for i in self.instances}
 
     def processor_of(self, element: str) -> Processor:
         """The processor whose table holds the row ``owner.name``; KeyError where none does."""
-        for processor in self.processors:
-            if any(slot.element == element for slot in processor.slots):
-                return processor
-        raise KeyError(element)
+        return self._processors[element]
+
+    @cached_property
+    def _processors(self) -> dict[str, Processor]:
+        return {slot.element: p for p in reversed(self.processors) for slot in reversed(p.slots)}
 
     def object(self, element: str) -> SharedObject:
         """The protected object with that id; KeyError where there is none."""
-        for item in self.objects:
-            if item.element == element:
-                return item
-        raise KeyError(element)
+        return self._objects[element]
+
+    def has_object(self, element: str) -> bool:
+        """Is there a protected object with that id?"""
+        return element in self._objects
+
+    @cached_property
+    def _objects(self) -> dict[str, SharedObject]:
+        return {item.element: item for item in self.objects}
+
+    def slots_of(self, owner: str) -> tuple[Slot, ...]:
+        """The rows of an instance or bus, in order of processor and table."""
+        return self._slots.get(owner, ())
+
+    @cached_property
+    def _slots(self) -> dict[str, tuple[Slot, ...]]:
+        found: defaultdict[str, list[Slot]] = defaultdict(list)
+        for processor in self.processors:
+            for slot in processor.slots:
+                found[slot.owner].append(slot)
+        return {owner: tuple(slots) for owner, slots in found.items()}

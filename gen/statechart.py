@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 from .terms import Expression, Flow, Ns, Origin, named
 
@@ -188,7 +189,7 @@ class Lane:
     owner: str | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Region:
     """A top-level region. ``states`` stand in tree order: parent first, then its children.
 
@@ -215,15 +216,27 @@ class Region:
     deferral_depth: int = 0
     """Deferred events that wait at most; one more is lost and counted."""
 
+    def __hash__(self) -> int:
+        """Quick: the place of a region tells it apart from most others."""
+        return hash((self.name, self.origin))
+
     # --- vertices
+
+    @cached_property
+    def _states(self) -> dict[str, State]:
+        return {s.name.lower(): s for s in self.states}
+
+    @cached_property
+    def _pseudostates(self) -> dict[str, Pseudostate]:
+        return {p.name: p for p in self.pseudostates}
 
     def state(self, name: str) -> State:
         """The state called ``name``; KeyError where there is none."""
-        return named(self.states, name)
+        return self._states[name.lower()]
 
     def pseudostate(self, name: str) -> Pseudostate | None:
         """The pseudostate called ``name``; None where there is none."""
-        return next((p for p in self.pseudostates if p.name == name), None)
+        return self._pseudostates.get(name)
 
     def parent(self, name: str) -> str | None:
         """The state around a state or pseudostate; None at the top."""

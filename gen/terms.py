@@ -42,7 +42,11 @@ N = TypeVar("N", bound=Named)
 def named(items: tuple[N, ...], name: str) -> N:
     """The item called ``name``, without regard to case; KeyError where there is none."""
     for item in items:
-        if item.name.lower() == name.lower():
+        if item.name == name:
+            return item
+    wanted = name.lower()
+    for item in items:
+        if item.name.lower() == wanted:
             return item
     raise KeyError(name)
 

@@ -47,7 +47,7 @@ def elements(system: System) -> tuple[Element, ...]:
         for region in component.regions:
             places = Places(region)
             for lane in reversed(places.lanes):
-                fired = () if lane.owner else tuple(f.name for f in places.compounds.firings())
+                fired = () if lane.owner else tuple(f.name for f in places.compounds.firings)
                 add(
                     f"{instance.name}.{places.traced(lane)}",
                     "region",

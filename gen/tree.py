@@ -10,7 +10,7 @@ and so is everything in quotes.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 import yaml
@@ -33,6 +33,8 @@ DEEPEST = 64
 
 INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*(?:_[0-9]+)*|0x[0-9A-Fa-f]+(?:_[0-9A-Fa-f]+)*)")
 LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+UNLIKE = re.compile("[?!\ufeff]|[|>][-+0-9]*#")
+"""What libyaml and PyYAML's own parser read differently in some places."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,13 +115,13 @@ class Builder:
         if getattr(event, "tag", None) not in (None, "!"):
             hint = "leave the tag out"
             raise self.refuse("RV-0110", event, "YAML tags are not allowed", hint)
-        if isinstance(event, MappingStartEvent | SequenceStartEvent):
+        if isinstance(event, ScalarEvent):
+            self._scalar(event)
+        elif isinstance(event, (MappingStartEvent, SequenceStartEvent)):
             self._begin(event)
-        elif isinstance(event, MappingEndEvent | SequenceEndEvent):
+        elif isinstance(event, (MappingEndEvent, SequenceEndEvent)):
             self.open.pop()
             self.keys.pop()
-        elif isinstance(event, ScalarEvent):
-            self._scalar(event)
 
     def _begin(self, event: Event) -> None:
         if len(self.open) == DEEPEST:
@@ -153,7 +155,7 @@ class Builder:
                 )
             self.keys[-1] = (event.value, origin)
             return
-        quoted = 0 if event.style is None else 1
+        quoted = 1 if event.style else 0
         begin, end = event.start_mark, event.end_mark
         exact = (
             begin is not None
@@ -252,7 +254,7 @@ def _no_tabs(text: str, file: str) -> None:
 def _events(text: str, file: str) -> Iterator[Event]:
     """PyYAML's events; whatever it finds wrong becomes a located `RefusedError`."""
     try:
-        yield from yaml.parse(text, Loader=yaml.SafeLoader)
+        yield from _parsed(text)
     except yaml.reader.ReaderError as problem:
         before = text[: problem.position]
         line = len(LINE_BREAK.findall(before))
@@ -270,3 +272,16 @@ def _events(text: str, file: str) -> Iterator[Event]:
         message = "not YAML: a number or character escape is out of bounds"
         hint = "remove the escape or directive"
         raise RefusedError(error("RV-0106", Origin(file, 1, 1), message, hint=hint)) from None
+
+
+def _parsed(text: str) -> Iterable[Event]:
+    """PyYAML's events: by libyaml, the faster, where both parsers agree and all is well."""
+    if yaml.__with_libyaml__ and not UNLIKE.search(text):
+        try:
+            events = list(yaml.parse(text, Loader=yaml.CSafeLoader))
+        except (yaml.YAMLError, ValueError, OverflowError):
+            events = []  # PyYAML's own parser says what is wrong
+        #  where a value is missing, the two see its place differently
+        if events and not any(isinstance(e, ScalarEvent) and e.value == "" for e in events):
+            return events
+    return yaml.parse(text, Loader=yaml.SafeLoader)

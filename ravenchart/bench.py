@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import statistics
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 
+import behaviour.rules
 from analysis.response_times import response_times
 from gen.generate import generate
 from gen.load import load
@@ -18,10 +21,13 @@ from gen.model import Task
 from gen.terms import Ns, Origin
 
 from . import bench_charts, steps, toolchain
+from .large_models import large_model
 from .toolchain import ROOT
 
 PLACE = Origin("bench", 1, 1)
 ROUNDS = 5
+MOST_SECONDS = 10.0
+"""What the program of 1,000 regions may take."""
 
 
 def median_ms(work: Callable[[], object]) -> float:
@@ -56,6 +62,27 @@ def generator() -> None:
     print(f"  generate its program: {median_ms(lambda: generate(checked.system, claims)):.0f} ms")
 
 
+def large_models() -> None:
+    """Check, generate and write models of 1,000 regions; the rules of behaviour apart."""
+    print("a model of 1,000 regions (seconds of processor time):")
+    for components, regions in ((1000, 1), (100, 10)):
+        with tempfile.TemporaryDirectory(prefix="ravenchart-large-") as place:
+            path = Path(place) / "model.yaml"
+            path.write_text(large_model(components, regions), encoding="utf-8")
+            start = time.process_time()
+            checked = steps.check(path, patience=0.0)
+            written = steps.write_program(checked)
+            spent = time.process_time() - start
+            start = time.process_time()
+            behaviour.rules.findings(checked.system)
+            rules = time.process_time() - start
+        verdict = "" if spent <= MOST_SECONDS else f" (more than {MOST_SECONDS:g} s)"
+        print(
+            f"  {components} components of {regions}: {written.files} files in {spent:.1f} s"
+            f"{verdict}; the rules of behaviour {rules:.1f} s more"
+        )
+
+
 def task_set(count: int) -> tuple[Task, ...]:
     """``count`` tasks with periods of 10, 20, 50, 100 and 200 ms, 70 % load in all."""
     tasks = []
@@ -86,6 +113,7 @@ def main() -> None:
     runtime_operations()
     bench_charts.main()
     generator()
+    large_models()
     analysis()
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,6 +51,19 @@ class Checked:
         return ada_case(self.system.name).lower()
 
 
+@contextmanager
+def _without_collector() -> Iterator[None]:
+    """No search for garbage in circles: a large model is searched again whenever it has grown."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+@_without_collector()
 def check(
     path: Path, *, deadlines: bool = True, patience: float = behaviour.rules.SECONDS
 ) -> Checked:
@@ -91,6 +106,7 @@ class Written:
     missing: tuple[Path, ...]
 
 
+@_without_collector()
 def write_program(checked: Checked) -> Written:
     """Write generated/ beside the model; user/ is never touched.
 

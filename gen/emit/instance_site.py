@@ -37,12 +37,8 @@ class Site:
         return ada_case(self.instance.component.name)
 
     def _slots(self) -> tuple[Slot, ...]:
-        return tuple(
-            s
-            for p in self.system.processors
-            for s in p.slots
-            if s.owner == self.instance.name and s.work is not Work.BUS_RECEIVE
-        )
+        own = self.system.slots_of(self.instance.name)
+        return tuple(s for s in own if s.work is not Work.BUS_RECEIVE)
 
     def _element(self, name: str) -> str:
         return f"{self.instance.name}.{name}"
@@ -51,7 +47,7 @@ class Site:
         return priority(self.system.object(self._element(name)).ceiling)
 
     def _has_object(self, name: str) -> bool:
-        return any(o.element == self._element(name) for o in self.system.objects)
+        return self.system.has_object(self._element(name))
 
     def _writer(self, data: Data) -> Region | Activity | None:
         component = self.instance.component

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from ..model import Component, Instance, Processor, Slot, System
 from ..statechart import Region
 from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Scalar, Type, Value
 from .ada import Aggregate, Arg, Expr, Ref, number
 
 
+@lru_cache(maxsize=65_536)
 def ada_case(name: str) -> str:
     """``joint_x`` as ``Joint_X``; capitals already there stay."""
     return "_".join(word[:1].upper() + word[1:] for word in name.split("_"))

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property, lru_cache
 
 from ...statechart import (
     Completion,
     Lane,
     PseudoKind,
+    Pseudostate,
     Region,
     Segment,
     State,
@@ -86,19 +88,25 @@ class Firing:
     """The pseudostate or state it leads to; None for a fork."""
 
 
+@lru_cache(maxsize=4096)
+def compounds_of(region: Region) -> Compounds:
+    """What is known of a region; kept, for many emitters ask."""
+    return Compounds(region)
+
+
 class Compounds:
-    """All firings of a region, and the geometry they need."""
+    """All firings of a region, and the geometry they need; made by `compounds_of`."""
 
     def __init__(self, region: Region) -> None:
         self.region = region
+        vertices: tuple[State | Pseudostate, ...] = (*region.states, *region.pseudostates)
+        self._placed = {v.name.lower(): Place(v.parent, v.region) for v in vertices}
 
     # --- geometry
 
     def place(self, vertex: str) -> Place:
         """The region that a state or pseudostate stands in."""
-        pseudo = self.region.pseudostate(vertex)
-        at: State = self.region.state(vertex) if pseudo is None else pseudo  # type: ignore[assignment]
-        return Place(at.parent, at.region)
+        return self._placed[vertex.lower()]
 
     def places(self, vertex: str) -> list[Place]:
         """The regions around a vertex, innermost first."""
@@ -167,6 +175,7 @@ class Compounds:
 
     # --- firings
 
+    @cached_property
     def firings(self) -> tuple[Firing, ...]:
         """All lines of the chart, lane by lane, in each in order of precedence."""
         found: list[Firing] = []

@@ -27,15 +27,15 @@ from ..ada import (
     member,
 )
 from ..naming import ada_case, states_package
-from .compound import Compounds, Enter, Place, Step
+from .compound import Enter, Place, Step, compounds_of
 
 
 class Places:
     """How the configurations of one region are held and asked."""
 
     def __init__(self, region: Region) -> None:
-        self.region = region
-        self.compounds = Compounds(region)
+        self.compounds = compounds_of(region)
+        self.region = self.compounds.region  # triggers are told apart by identity
         self.lanes = region.lanes()
 
     @property

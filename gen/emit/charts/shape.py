@@ -99,7 +99,7 @@ class RegionShape(Places):
     @cached_property
     def firings(self) -> tuple[Firing, ...]:
         """The lines of the declared chart, in order of precedence."""
-        return self.compounds.firings()
+        return self.compounds.firings
 
     @cached_property
     def start(self) -> tuple[Step, ...]:

@@ -1,0 +1,39 @@
+"""Each further region of a large model costs the same work: it grows with the model alone."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from cProfile import Profile
+from pathlib import Path
+from pstats import Stats
+
+from gen.emit.naming import ada_case
+from gen.generate import generate
+from gen.load import load
+from gen.terms import Ns
+from ravenchart.large_models import large_model
+
+
+def _calls(components: int, regions: int) -> int:
+    """How many calls a model takes from its text to the text of its program."""
+    model = large_model(components, regions).encode()
+    ada_case.cache_clear()
+    with Profile() as profile:
+        loaded = load(Path("model.yaml"), lambda path, limit: model)
+        assert loaded.system is not None
+        generate(loaded.system, defaultdict(lambda: Ns(0)))
+    calls: int = Stats(profile).total_calls  # type: ignore[attr-defined]
+    return calls
+
+
+def test_each_further_component_takes_as_many_calls() -> None:
+    _calls(1, 1)  # what is made once and kept
+    few, some, many = (_calls(components, 1) for components in (4, 12, 20))
+    assert many - some <= 1.002 * (some - few)
+
+
+def test_each_further_region_of_a_component_takes_as_many_calls() -> None:
+    _calls(1, 1)
+    few, some, many = (_calls(1, regions) for regions in (4, 12, 20))
+    # every region looks for its events and data among all those of the component
+    assert many - some <= 1.02 * (some - few)
