@@ -69,6 +69,8 @@ ENTRIES = (
     Entry("deferral", firing_rules.deferral, _region_body),
     Entry("deferral", firing_rules.deferral_declared, _region_spec, "declared"),
     Entry("time-out", firing_rules.timeout, _region_body),
+    Entry("time-out", firing_rules.timeout_declared, _region_spec, "declared"),
+    Entry("domain", firing_rules.domain_declared, _region_spec, "declared"),
     Entry("completion", firing_rules.completion, _region_body),
     Entry("ceiling", program_rules.ceiling, _ceilings),
     Entry("period", program_rules.period, _processor),

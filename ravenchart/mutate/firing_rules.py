@@ -270,6 +270,31 @@ def timeout(file: str, files: Files) -> Iterator[Found]:
         yield "Poll", "expiry", swapped(text, Span(*first.span(1)), Span(*second.span(1)))
 
 
+def timeout_declared(file: str, files: Files) -> Iterator[Found]:
+    """A time-out that is declared longer."""
+    text = files[file]
+    one = subprogram(text, "Timer_After")
+    if one is None:
+        return
+    pattern = re.compile(r"Timers\.Started \(([\d_]+)")
+    for match in pattern.finditer(text, one.inner.start, one.inner.end):
+        longer = str(int(match.group(1).replace("_", "")) + 1)
+        yield one.name, "later", replaced(Span(*match.span(1)), longer)
+
+
+def domain_declared(file: str, files: Files) -> Iterator[Found]:
+    """Another region as the domain of a transition."""
+    text = files[file]
+    one = subprogram(text, "Domain_Of")
+    if one is None:
+        return
+    rows = choices(text, one.inner)
+    names = [row.body.of(text) for row in rows]
+    for row, name in zip(rows, names, strict=True):
+        if other := _next(name, names):
+            yield one.name, "domain", replaced(row.body, other)
+
+
 def completion(file: str, files: Files) -> Iterator[Found]:
     """A completion that is not noticed, comes again, or outlives its state."""
     text = files[file]
