@@ -11,7 +11,7 @@ help:
 	@echo 'make test      every test'
 	@echo 'make test-long  the same with 2,000 random charts: hours'
 	@echo 'make check     style, types, warnings as errors'
-	@echo 'make prove     gnatprove on the runtime, the HAL and the examples'
+	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'
 	@echo 'make bench     figures: runtime operations, charts, generator, analysis'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
@@ -37,7 +37,7 @@ check: setup
 	@$(PYTHON) -m ravenchart.house check
 
 prove: setup
-	@$(PYTHON) -m ravenchart.house prove
+	@$(PYTHON) -m ravenchart.house prove $(ONLY)
 
 generate: setup
 	@for e in $(EXAMPLES); do $(RAVENCHART) generate $$e/model.yaml || exit 1; done

@@ -8,6 +8,7 @@ and the HAL with each driver and on the examples, and the records of it.
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,9 +35,14 @@ class Target:
     roots: tuple[Path, ...]
 
 
-def targets() -> tuple[Target, ...]:
-    """The runtime with each driver, then the examples."""
-    return (*map(_runtime, DRIVERS), *map(_example, EXAMPLES))
+def targets(names: Sequence[str] = ()) -> Iterator[Target]:
+    """The runtime with each driver, then the examples; only those named, where some are."""
+    for driver in DRIVERS:
+        if not names or f"runtime-{driver}" in names:
+            yield _runtime(driver)
+    for example in EXAMPLES:
+        if not names or example in names:
+            yield _example(example)
 
 
 def _runtime(driver: str) -> Target:
@@ -64,11 +70,11 @@ def _example(name: str) -> Target:
     )
 
 
-def prove() -> bool:
-    """Prove everything and write the records; True when nothing is left."""
+def prove(names: Sequence[str]) -> bool:
+    """Prove everything, or what is named, and write the records; True when nothing is left."""
     RECORDS.mkdir(parents=True, exist_ok=True)
     clean = True
-    for target in targets():
+    for target in targets(names):
         print(f"proving {target.name} ...", flush=True)
         proof = proving.prove(
             target.project, target.scenario, target.results, target.roots, warnings="error"
@@ -79,7 +85,7 @@ def prove() -> bool:
     return clean
 
 
-def check() -> bool:
+def check(_names: Sequence[str]) -> bool:
     """Generated files up to date, and every build free of warnings."""
     fresh = True
     for example in EXAMPLES:
@@ -103,10 +109,11 @@ def check() -> bool:
 
 
 def main() -> int:
-    """``check`` or ``prove``; the exit status."""
-    work = {"check": check, "prove": prove}[sys.argv[1]]
+    """``check``, or ``prove`` and the names of what to prove; the exit status."""
+    works: dict[str, Callable[[Sequence[str]], bool]] = {"check": check, "prove": prove}
+    work = works[sys.argv[1]]
     try:
-        return 0 if work() else 1
+        return 0 if work(sys.argv[2:]) else 1
     except (Refused, ToolFailed) as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return 1

@@ -189,10 +189,12 @@ class Rows(Site):
         if not shape.listed and not isinstance(after[0], Pragma):
             declarations.append(UseType(f"{package}.Selection"))
         polled = [Ref(f"{name}_Region"), Ref("Now")]
-        polled += [Ref("Event")] if len(shape.poll_params()) > 2 else []
+        polls_event = len(shape.poll_params()) > len(polled)
+        polled += [Ref("Event")] if polls_event else []
         body: list[Stmt] = [Do(f"{package}.Poll", arguments(*polled))]
         if region.events():
-            start = null_event(self.instance.component) if shape.takes_item else None
+            begins = shape.takes_item and not polls_event
+            start = null_event(self.instance.component) if begins else None
             declarations += [
                 UseType(f"{package}.Occurrence"),
                 Object("Event", f"{self.component}.Event", start),

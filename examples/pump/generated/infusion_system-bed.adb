@@ -381,7 +381,7 @@ is
       Fired : Pump.Infusion.Firing_List;
       use type Pump.Infusion_States.Leaf;
       use type Pump.Infusion.Occurrence;
-      Event : Pump.Event := Pump.No_Event;
+      Event : Pump.Event;
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
    begin
