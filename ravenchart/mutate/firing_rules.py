@@ -10,7 +10,7 @@ from .mutants import NOTE, Edit, Files, Found, replaced, swapped
 from .source import Branch, Span, Subprogram, arms, choices, statements, subprogram, subprograms
 
 _MOVE = re.compile(r"^(Exit|Leave|Enter)_\w+;$")
-_GHOST = re.compile(r"^(pragma |Active\b)")
+_GHOST = re.compile(r"^(pragma |Active\b|Exited |Entered )")
 _HELD = re.compile(r"^Self\.(Place(\.\w+)?|Leaf) :=")
 _KEPT = re.compile(r"^Self\.(Past|Completed_|Timers)|^Ravenchart\.Timers\.")
 
@@ -77,7 +77,7 @@ def target_in_code(file: str, files: Files) -> Iterator[Found]:
     found = [
         (one.name, match)
         for one in subprograms(text)
-        if one.name.startswith("Enter_")
+        if one.name == "Fire" or one.name.startswith("Enter_")
         for match in re.compile(r"Self\.(Leaf|Place(?:\.\w+)?) := ([\w.]+);").finditer(
             text, one.inner.start, one.inner.end
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from gen.generate import generate, simulation
 from ravenchart import steps
 from ravenchart.mutate.catalogue import KINDS, mutants_of
-from ravenchart.mutate.mutants import Files, Mutant, sampled
+from ravenchart.mutate.mutants import NOTE, Files, Mutant, sampled
 from ravenchart.mutate.report import Outcome, as_json, explanations, reason_of, survivors, table
 from ravenchart.mutate.source import arms, branches, conjuncts, statements, subprogram
 from ravenchart.mutate.workbench import Verdict
@@ -102,7 +103,13 @@ def test_each_mutant_of_a_region_is_found_in_the_program_for_simulation(rich: Fi
 
 
 def _replacements(mutant: Mutant, files: Files) -> list[tuple[str, str]]:
-    return [(e.span.of(files[mutant.file]), e.text) for e in mutant.edits]
+    """The edits, without what a program for simulation notes."""
+    pairs = ((e.span.of(files[mutant.file]), e.text) for e in mutant.edits)
+    return [(_unnoted(old), _unnoted(new)) for old, new in pairs]
+
+
+def _unnoted(text: str) -> str:
+    return re.sub(rf"^ *{re.escape(NOTE)} [^;]*;\n", "", text, flags=re.M)
 
 
 def test_the_model_is_broken_as_well() -> None:

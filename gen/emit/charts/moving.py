@@ -1,0 +1,258 @@
+"""Exits and entries of one region: a procedure for each state where one does something.
+
+A state without actions, time-outs or history is exited and entered in the set of active
+states alone: a ghost, for which there is no code.
+"""
+
+from __future__ import annotations
+
+from ...statechart import After, Every
+from ..ada import (
+    FALSE,
+    NULL,
+    TRUE,
+    Aspect,
+    Assign,
+    Case,
+    Chain,
+    Decl,
+    Do,
+    Expr,
+    ForAll,
+    If,
+    Ref,
+    Stmt,
+    Subprogram,
+    arguments,
+    both,
+    call,
+    chain,
+    do,
+    equal,
+    number,
+)
+from ..naming import ada_case
+from ..terms import emit_flow
+from .compound import Enter, Place
+from .lasting import Lasting
+from .nodes import NODES, Nodes
+from .places import flat
+from .shape import RegionShape
+
+
+def _node(state: str) -> str:
+    return f"Chart.{ada_case(state)}"
+
+
+def _leave_name(place: Place) -> str:
+    return f"Leave_{ada_case(place.region or place.owner or '')}"
+
+
+class Moving:
+    """Gives the statements of exits and entries, and remembers which procedures they need."""
+
+    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting) -> None:
+        self.shape = shape
+        self.region = shape.region
+        self.nodes = nodes
+        self.lasting = lasting
+        self.scope = shape.scope("Self.Data")
+        self.held = f"Self.{shape.place}"
+        self._exited: set[str] = set()
+        self._entered: set[str] = set()
+        self._left: set[Place] = set()
+        self._ghostly = False
+
+    def exit(self, state: str) -> tuple[Stmt, ...]:
+        """The exit of one state."""
+        if self._work_of_exit(state):
+            self._exited.add(state)
+            return (Do(f"Exit_{ada_case(state)}"),)
+        self._ghostly = True
+        return (*self._noted(state, "exit"), do("Exited", Ref(_node(state))))
+
+    def enter(self, vertex: str) -> tuple[Stmt, ...]:
+        """The entry of one state or pseudostate."""
+        passed = self.region.pseudostate(vertex) is not None
+        if passed or any(self._work_of_entry(vertex)):
+            self._entered.add(vertex)
+            return (Do(f"Enter_{ada_case(vertex)}"),)
+        self._ghostly = True
+        enter = do("Entered", Ref(_node(vertex)))
+        return (*self._place(vertex), enter, *self._noted(vertex, "entry"))
+
+    def leave(self, place: Place) -> Stmt:
+        """The exits of all that is active in a region."""
+        if place not in self._left:
+            self._left.add(place)
+            for child in self.region.children(place.owner, place.region):
+                self.exit(child.name)
+                for nested in child.regions:
+                    self.leave(Place(child.name, nested.name))
+        return Do(_leave_name(place))
+
+    # --- the procedures, callees first
+
+    def procedures(self) -> tuple[Decl, ...]:
+        """Those that the statements given so far call."""
+        states = self.region.states
+        exits = [self._exit(s.name) for s in states if s.name in self._exited]
+        places = [Place(s.name, r.name) for s in reversed(states) for r in s.regions]
+        leavings = [self._leaving(p) for p in places if p in self._left]
+        vertices = [s.name for s in states] + [p.name for p in self.region.pseudostates]
+        entries = [self._entry(v) for v in vertices if v in self._entered]
+        ghosts = self.nodes.moves() if self._ghostly else ()
+        return (*ghosts, *exits, *leavings, *entries)
+
+    def _kept(self) -> Expr:
+        return equal(Ref(self.held), Ref(f"{self.held}'Old"))
+
+    def _exit(self, state: str) -> Subprogram:
+        left = both(Chain("/=", (Ref("N"), Ref(_node(state)))), Ref("Active'Old (N)"))
+        after = ForAll("N", NODES, equal(Ref("Active (N)"), left))
+        ready = self.nodes.ready_to_exit(state)
+        return Subprogram(
+            f"Exit_{ada_case(state)}",
+            aspects=(
+                Aspect("Pre", chain("and then", ready)),
+                Aspect("Post", both(self._kept(), after, *self.lasting.exited(state))),
+            ),
+            body=(
+                *self._noted(state, "exit"),
+                *self._work_of_exit(state),
+                Assign(f"Active ({_node(state)})", FALSE),
+            ),
+        )
+
+    def _noted(self, state: str, what: str) -> tuple[Stmt, ...]:
+        return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
+
+    def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
+        """What the exit of a state does: its action, its time-outs, what is remembered."""
+        stops = tuple(
+            Do("Ravenchart.Timers.Disarm", arguments(Ref(f"Self.Timers ({i})")))
+            for i in self.lasting.timed(state)
+        )
+        completed = Assign(f"Self.{self.shape.completed(state)}", FALSE)
+        undone = (completed,) if state in self.shape.completing else ()
+        action = emit_flow(self.scope, self.region.state(state).exit)
+        return (*action, *stops, *undone, *self._remember(state))
+
+    def _remember(self, leaf: str) -> tuple[Stmt, ...]:
+        found: list[Stmt] = []
+        for memory, goes_on in self.lasting.remembered(leaf):
+            if goes_on:
+                found.append(Assign(f"Self.Past.{memory.last}", Ref(self.shape.literal(leaf))))
+            found.append(Assign(f"Self.Past.{memory.known}", TRUE if goes_on else FALSE))
+        return tuple(found)
+
+    def _entry(self, vertex: str) -> Subprogram:
+        leaves = self.shape.after((Enter(vertex),))
+        moved = self._kept()
+        if leaves:
+            moved = equal(Ref(self.held), self.shape.configuration(leaves, f"{self.held}'Old"))
+        ready = both(*flat(self.nodes.ready_to_enter(vertex)))
+        if self.region.pseudostate(vertex) is not None:
+            active: Expr = equal(Ref("Active"), Ref("Active'Old"))
+            body = self._place(vertex)
+        else:
+            node = _node(vertex)
+            joined = Chain("or else", (equal(Ref("N"), Ref(node)), Ref("Active'Old (N)")))
+            active = ForAll("N", NODES, equal(Ref("Active (N)"), joined))
+            first, then = self._work_of_entry(vertex)
+            here = self._place(vertex)
+            noted = self._noted(vertex, "entry")
+            body = (*here, *first, Assign(f"Active ({node})", TRUE), *noted, *then)
+        return Subprogram(
+            f"Enter_{ada_case(vertex)}",
+            aspects=(
+                Aspect("Pre", ready),
+                Aspect("Post", both(moved, active, *self.lasting.entered(vertex))),
+            ),
+            body=body,
+        )
+
+    def _place(self, vertex: str) -> tuple[Stmt, ...]:
+        """The leaves that an entry sets."""
+        return tuple(
+            Assign(self.shape.at(self.held, lane), Ref(self.shape.literal(leaf)))
+            for lane, leaf in self.shape.after((Enter(vertex),)).items()
+        )
+
+    def _work_of_entry(self, state: str) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
+        """What the entry of a state does: its time-outs and visits; its action and completion."""
+        action = emit_flow(self.scope, self.region.state(state).entry)
+        return (
+            (*self._arm(state), *self._begin_work(state)),
+            (*action, *self._complete(state)),
+        )
+
+    def _arm(self, state: str) -> tuple[Stmt, ...]:
+        found: list[Stmt] = []
+        for i in self.lasting.timed(state):
+            trigger = self.shape.timers[i - 1].trigger
+            assert isinstance(trigger, After | Every)
+            args = [Ref(f"Self.Timers ({i})"), number(trigger.executions)]
+            if isinstance(trigger, Every):
+                args.append(number(trigger.executions))
+            found.append(Do("Ravenchart.Timers.Arm", arguments(*args)))
+        return tuple(found)
+
+    def _begin_work(self, state: str) -> tuple[Stmt, ...]:
+        """Another visit, in which the do activity is not done yet."""
+        if state not in self.shape.working:
+            return ()
+        visits = f"Self.{self.shape.visits(state)}"
+        return (
+            Assign(visits, call("Ravenchart.Next", Ref(visits))),
+            Assign(f"Self.{self.shape.done(state)}", FALSE),
+        )
+
+    def _complete(self, vertex: str) -> tuple[Stmt, ...]:
+        """What has completed by an entry: the leaf itself, or the state around a final one."""
+        state = self.region.state(vertex)
+        shape = self.shape
+        if vertex in shape.completing and state.is_leaf and vertex not in shape.working:
+            return (Assign(f"Self.{shape.completed(vertex)}", TRUE),)
+        owner = state.parent
+        if not state.final or owner is None or owner not in shape.completing:
+            return ()
+        done = Assign(f"Self.{shape.completed(owner)}", TRUE)
+        others = [r for r in self.region.state(owner).regions if r.name != state.region]
+        parts: list[Expr] = [Ref(f"Self.{shape.done(owner)}")] if owner in shape.working else []
+        for nested in others:
+            leaf = Ref(shape.at(self.held, shape.lane_of(Place(owner, nested.name))))
+            finals = [
+                equal(leaf, Ref(shape.literal(s.name)))
+                for s in self.region.children(owner, nested.name)
+                if s.final
+            ]
+            parts.append(chain("or else", finals, FALSE))
+        return (If(((both(*parts), (done,)),)),) if parts else (done,)
+
+    def _leaving(self, place: Place) -> Subprogram:
+        assert place.owner is not None
+        shape = self.shape
+        rows: list[tuple[str, tuple[Stmt, ...]]] = []
+        for child in self.region.children(place.owner, place.region):
+            inner = [Do(_leave_name(Place(child.name, r.name))) for r in child.regions]
+            rows.append((shape.literal(child.name), (*inner, *self.exit(child.name))))
+        rows += [(shape.literal(p), (NULL,)) for p in shape.compounds.passed(place)]
+        lane = shape.lane_of(place)
+        leaf = shape.at(self.held, lane)
+        if not self.region.state(place.owner).is_orthogonal:
+            leaf = f"{shape.literal(place.owner)}'({leaf})"
+        nodes = self.nodes.inside(place)
+        agrees = ForAll(
+            "N", nodes, equal(Ref("Active (N)"), Ref(f"Chart.Active_In ({self.held}) (N)"))
+        )
+        gone = both(Chain("not in", (Ref("N"), Ref(nodes))), Ref("Active'Old (N)"))
+        after = ForAll("N", NODES, equal(Ref("Active (N)"), gone))
+        return Subprogram(
+            _leave_name(place),
+            aspects=(
+                Aspect("Pre", both(*flat([shape.in_state(self.held, place.owner), agrees]))),
+                Aspect("Post", both(self._kept(), after, *self.lasting.left(place, nodes))),
+            ),
+            body=(Case(Ref(leaf), tuple(rows)),),
+        )
