@@ -253,15 +253,16 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
 
 
 def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
-    """What has been fired of the lanes up to this one."""
+    """What has been fired of the lanes up to this one; types bound it when it is the last."""
     done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
-    last = Chain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
-    chosen = [equal(Ref(_ITEM), _choice(shape, n)) for n in done]
-    bound = [last] if lane != shape.busy_lanes[-1] else []
-    each = both(*bound, chain("or else", chosen))
-    most = number(len(done) * (1 + ranks(shape)))
+    each = chain("or else", [equal(Ref(_ITEM), _choice(shape, n)) for n in done])
+    few: list[Expr] = []
+    if lane != shape.busy_lanes[-1]:
+        last = Chain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
+        each = both(last, each)
+        few = [Chain("<=", (_COUNT, number(len(done) * (1 + ranks(shape)))))]
     facts = (
-        Chain("<=", (Ref("Fired.Count"), most)),
+        *few,
         ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
         call("Is_Ordered", Ref("Fired")),
         *(_has(shape, n) for n in done),
