@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import pairwise
 
 from .bus import Bus, Frame
 from .can_response import FrameLevel, FrameResponse, frame_response
@@ -38,6 +39,9 @@ FRAME_EFFORT = 200_000
 WHOLE_EFFORT = 5_000_000
 """The same for one call: what comes after has no bound either."""
 
+ROUNDS = 100
+"""Rounds in which the delays of first-in first-out queues must settle."""
+
 
 def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
     """The worst-case response of every frame of one bus, in the order given.
@@ -45,9 +49,13 @@ def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
     ValueError for a name or a rank that two of them have.
     """
     distinct("messages", [frame.name for frame in frames])
-    distinct("messages with one identifier", [str(frame.rank) for frame in frames])
     effort = Effort(WHOLE_EFFORT)
     order = tuple(sorted(frames, key=lambda frame: frame.rank))
+    for one, other in pairwise(order):
+        if one.rank == other.rank:
+            raise ValueError(
+                f"the identifiers of messages {one.name} and {other.name} are the same"
+            )
     delays = _queue_delays(order, bus, effort)
     found = {item.frame.name: item for item in _of_bus(order, bus, delays, effort)}
     return tuple(found[frame.name] for frame in frames)
@@ -80,7 +88,7 @@ def _queue_delays(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> Delays:
     """
     queued = [frame for frame in order if frame.queue]
     delays: dict[str, int | None] = {frame.name: 0 for frame in queued}
-    while effort.left > 0:
+    for _ in range(ROUNDS):
         found: dict[str, int | None] = {}
         for frame in queued:
             response = _in_queue(frame, order, bus, delays, effort)

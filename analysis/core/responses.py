@@ -88,8 +88,9 @@ class Response:
     """The worst-case response of one task; all times in ticks.
 
     ``bound`` counts from the arrival, or is None with the ``reason``. It is attained
-    by job ``worst_job`` (from 0) of the ``jobs`` in the longest busy period, in frame
-    ``frame`` of the task's table, and made of
+    by job ``worst_job`` (from 0) of a busy period, in frame ``frame`` of the task's
+    table. ``jobs`` were looked at: all of the busy period, or those after which the
+    releases of all tasks repeat. The bound is made of
 
         jitter + window - worst_job * period = bound
         blocked + own + interference + overheads = window

@@ -32,6 +32,7 @@ class Toy:
 
     From tick ``hold[0]`` of a job on it is inside an object for ``hold[1]`` ticks, and
     there it has the priority ``hold[2]``. A job that is not ``preemptible`` runs to its end.
+    Of the tasks of one ``queue``, without jitter, only the oldest job competes.
     """
 
     priority: int
@@ -41,6 +42,7 @@ class Toy:
     sporadic: bool = False
     hold: tuple[int, int, int] | None = None
     preemptible: bool = True
+    queue: str = ""
 
 
 @dataclass
@@ -111,19 +113,37 @@ def _level(toy: Toy, jobs: tuple[Job, ...]) -> tuple[int, bool] | None:
 
 def _executions(toys: Sequence[Toy], state: State, seen: list[Seen]) -> Iterator[State]:
     """The states after one tick, whichever of the most urgent jobs runs."""
-    levels = [_level(toy, task[3]) for toy, task in zip(toys, state, strict=True)]
-    urgent = max((level for level in levels if level is not None), default=None)
-    if urgent is None:
-        yield tuple(_older(task) for task in state)
-        return
-    for index, level in enumerate(levels):
-        if level == urgent:
-            left, frame, waiting, jobs = state[index]
-            jobs = _run(toys[index], jobs, seen[index])
-            yield tuple(
-                _older((left, frame, waiting, jobs) if n == index else task)
-                for n, task in enumerate(state)
-            )
+    for heads in _heads(toys, state):
+        levels = [
+            _level(toy, task[3]) if not toy.queue or index in heads else None
+            for index, (toy, task) in enumerate(zip(toys, state, strict=True))
+        ]
+        urgent = max((level for level in levels if level is not None), default=None)
+        if urgent is None:
+            yield tuple(_older(task) for task in state)
+            continue
+        for index, level in enumerate(levels):
+            if level == urgent:
+                left, frame, waiting, jobs = state[index]
+                jobs = _run(toys[index], jobs, seen[index])
+                yield tuple(
+                    _older((left, frame, waiting, jobs) if n == index else task)
+                    for n, task in enumerate(state)
+                )
+
+
+def _heads(toys: Sequence[Toy], state: State) -> Iterator[tuple[int, ...]]:
+    """Every choice of one oldest job for each queue; what is being sent stays in front."""
+    candidates: dict[str, list[tuple[bool, int, int]]] = {}
+    for index, (toy, task) in enumerate(zip(toys, state, strict=True)):
+        if toy.queue and task[3]:
+            age, done, _ = task[3][0]
+            candidates.setdefault(toy.queue, []).append((done > 0, age, index))
+    tied = [
+        [index for sent, age, index in found if (sent, age) == max(found)[:2]]
+        for found in candidates.values()
+    ]
+    yield from product(*tied)
 
 
 def _run(toy: Toy, jobs: tuple[Job, ...], seen: Seen) -> tuple[Job, ...]:
