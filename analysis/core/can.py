@@ -85,19 +85,44 @@ def _queue_delays(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> Delays:
     """How long each frame of a first-in first-out queue waits for its transmission.
 
     The delays of different queues depend on each other: from zero up, until none grows.
+    None is longer than the busiest time of the whole bus: a bus that is never idle
+    while a frame waits has sent it by then, whatever the order.
     """
     queued = [frame for frame in order if frame.queue]
-    delays: dict[str, int | None] = {frame.name: 0 for frame in queued}
+    busiest = _busiest(order, bus, effort) if queued else None
+    if busiest is None:
+        return dict.fromkeys(frame.name for frame in queued)
+    longest = {frame.name: busiest - frame.cost for frame in queued}
+    delays: dict[str, int] = dict.fromkeys(longest, 0)
     for _ in range(ROUNDS):
-        found: dict[str, int | None] = {}
+        found = dict(longest)
         for frame in queued:
-            response = _in_queue(frame, order, bus, delays, effort)
-            sent = response.bound
-            found[frame.name] = None if sent is None else sent - frame.cost - frame.jitter
+            sent = _in_queue(frame, order, bus, delays, effort).bound
+            if sent is not None:
+                waited = sent - frame.cost - frame.jitter
+                found[frame.name] = min(waited, longest[frame.name])
         if found == delays:
             return delays
         delays = found
-    return dict.fromkeys(delays)
+    return longest
+
+
+def _busiest(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> int | None:
+    """The longest time that the bus is never idle, or None where it has no bound."""
+    level = FrameLevel(order, len(order), bus, {})
+    window, used = Window(), Load()
+    window.length = 1  # zero is a fixed point too
+    for number, frame in enumerate(order):
+        source = fixed_cost(frame.period, frame.jitter, frame.cost)
+        used.add(source)
+        window.add(number, source)
+    fixed = bus.unknown
+    if bus.errors is not None:
+        fixed += (bus.errors.burst - 1) * level.error_cost
+        window.add(len(order), fixed_cost(bus.errors.period, 0, level.error_cost))
+    if _overloaded(level, used):
+        return None
+    return window.length if window.settle(fixed, effort) else None
 
 
 def _of_bus(
