@@ -25,8 +25,11 @@ from .platform import Platform
 from .responses import Reason, Response
 from .tasks import Task
 
-ROUNDS = 500
+ROUNDS = 200
 """Rounds of the iteration; where it has not settled then, what is released has no bound."""
+
+STRAINED = 5
+"""Of these, rounds in which an analysis may reach the end of the work allowed."""
 
 LATEST = 1_000
 """Periods of jitter above which there is no bound."""
@@ -108,12 +111,18 @@ class Holistic:
     @property
     def met(self) -> bool:
         """Every task and frame has a bound and meets its deadline, from its chain's event."""
-        return all(self._met(name) for name in self.responses)
+        return all(self.meets(name) for name in self.responses)
 
-    def _met(self, name: str) -> bool:
-        response, needed = self.responses[name], self.from_event(name)
+    def deadline(self, name: str) -> int:
+        """The deadline of a task or frame."""
+        response = self.responses[name]
         item = response.task if isinstance(response, Response) else response.frame
-        return needed is not None and needed <= item.deadline
+        return item.deadline
+
+    def meets(self, name: str) -> bool:
+        """It has a bound from its chain's event, and that is at most its deadline."""
+        needed = self.from_event(name)
+        return needed is not None and needed <= self.deadline(name)
 
 
 def analyse(network: Network) -> Holistic:
@@ -124,10 +133,11 @@ def analyse(network: Network) -> Holistic:
     items = network.items()
     best = {name: sum(items[one].best for one in network.releasers(name)) for name in items}
     late: dict[str, int | None] = dict.fromkeys(items, 0)
-    rounds, settled = 0, False
-    while not settled and rounds < ROUNDS:
+    rounds, strained, settled = 0, 0, False
+    while not settled and rounds < ROUNDS and strained < STRAINED:
         rounds += 1
         responses = _responses(network, late)
+        strained += any(r.reason is Reason.EFFORT for r in responses.values())
         found: dict[str, int | None] = dict.fromkeys(items, 0)
         for name, by in network.released_by.items():
             bound = responses[by].bound

@@ -7,12 +7,14 @@ time is rounded up, a factor is one that was tried.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from . import holistic
 from .blocking import Section
 from .fixed_priority import analyse
+from .holistic import Network
 from .platform import Platform
 from .responses import Response
 from .tasks import Row, Task
@@ -58,6 +60,62 @@ def scaling(
     if found is None:
         return None
     return Scaling(Fraction(found, steps), failing(found + 1))
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkScaling:
+    """As `Scaling`, over a network; ``binding`` is the task or frame that fails first."""
+
+    factor: Fraction
+    binding: str | None
+
+
+def network_scaling(
+    network: Network, names: Collection[str] | None = None, steps: int = FACTOR_STEPS
+) -> NetworkScaling | None:
+    """How far the times of all tasks and frames, or of those named, can be scaled together.
+
+    Frames scale as tasks do, as if they were longer. A deadline counts from the event
+    of its item's chain. None when no factor above 0 meets all deadlines.
+    """
+
+    def failing(count: int) -> str | None:
+        found = holistic.analyse(_scaled_network(network, Fraction(count, steps), names))
+        missed = [name for name in found.responses if not found.meets(name)]
+        return max(missed, key=lambda name: _lateness(found, name), default=None)
+
+    last = greatest(lambda count: failing(count) is None, 1, FACTOR_LIMIT * steps)
+    if last is None:
+        return None
+    return NetworkScaling(Fraction(last, steps), failing(last + 1))
+
+
+def _scaled_network(network: Network, factor: Fraction, names: Collection[str] | None) -> Network:
+    """The network with the times of those named, or all, multiplied and rounded up."""
+
+    def chosen(name: str) -> bool:
+        return names is None or name in names
+
+    return replace(
+        network,
+        tasks=tuple(scaled(t, factor) if chosen(t.name) else t for t in network.tasks),
+        sections=tuple(
+            replace(s, length=_up(s.length * factor)) if chosen(s.user) else s
+            for s in network.sections
+        ),
+        frames={
+            bus: tuple(
+                replace(f, cost=_up(f.cost * factor)) if chosen(f.name) else f for f in frames
+            )
+            for bus, frames in network.frames.items()
+        },
+    )
+
+
+def _lateness(found: holistic.Holistic, name: str) -> tuple[bool, int]:
+    """Sorts by time past the deadline; without a bound is later than all."""
+    needed = found.from_event(name)
+    return needed is None, (needed or 0) - found.deadline(name)
 
 
 def growth(

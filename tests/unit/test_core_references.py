@@ -20,6 +20,7 @@ from analysis.core.bus import Bus, Frame
 from analysis.core.chains import Chain, Hop, Step, latency
 from analysis.core.frames import classic_bits
 from analysis.core.responses import Response
+from analysis.core.sensitivity import network_scaling
 from tests.support.core_cases import (
     bus_of,
     cases,
@@ -187,3 +188,20 @@ def test_two_nodes_chain_is_its_holistic_response() -> None:
     found = latency(Chain("control", steps), network, holistic.analyse(network))
     assert [hop.response for hop in found.hops] == [2100, 540, 710]
     assert (found.reaction, found.age, found.held) == (3350, 3350, 13_350)
+
+
+@pytest.mark.parametrize(
+    ("names", "factor", "binding", "printed"),
+    [
+        (None, "3.9285", "wheel", 292.58),
+        (("sense", "frame_cmd", "wheel"), "4.54", "wheel", 353.91),
+        (("housekeeping", "frame_hk"), "18", "wheel", 1699.6),
+    ],
+)
+def test_two_nodes_have_the_room_that_mast_finds_by_halving(
+    names: tuple[str, ...] | None, factor: str, binding: str, printed: float
+) -> None:
+    found = network_scaling(two_nodes(), names)
+    assert found is not None
+    assert (found.factor, found.binding) == (Fraction(factor), binding)
+    assert 0 <= float(found.factor - 1) * 100 - printed < 1
