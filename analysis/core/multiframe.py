@@ -20,9 +20,11 @@ class Demand:
         n = len(costs)
         self.costs = costs
         self.total = sum(costs)
-        self._sums = tuple(accumulate(costs + costs, initial=0)) if n > 1 else (0, *costs)
-        sums = self._sums
-        self._most = tuple(max(sums[s + k] - sums[s] for s in range(n)) for k in range(n))
+        self._sums: tuple[int, ...] = (0, *costs)
+        self._most: tuple[int, ...] = (0,)
+        if n > 1:
+            sums = self._sums = tuple(accumulate(costs + costs, initial=0))
+            self._most = tuple(max(sums[s + k] - sums[s] for s in range(n)) for k in range(n))
 
     def most(self, count: int) -> int:
         """The most that ``count`` releases in a row can cost."""

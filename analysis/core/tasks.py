@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from .checks import distinct, natural, positive
@@ -105,16 +105,4 @@ class Task:
 
 def plain(task: Task) -> Task:
     """The same task with every row in every job: the sum that one reckons by hand."""
-    return Task(
-        task.name,
-        task.priority,
-        task.period,
-        task.deadline,
-        task.plain_cost,
-        task.jitter,
-        task.core,
-        (),
-        task.timed,
-        task.sporadic,
-        task.best,
-    )
+    return replace(task, cost=task.plain_cost, rows=())
