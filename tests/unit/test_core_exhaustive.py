@@ -287,7 +287,7 @@ def test_frames_on_a_bus_are_safe_and_exact_a_tick_earlier(
         (3, 5, ("qq-", "q-q", "-qq", "qqq"), 4 * 81),
         long(3, 6, ("qq-", "q-q", "-qq", "qqq"), 4 * 329),
         long(3, 7, ("qq-", "q-q", "-qq", "qqq"), 4 * 976),
-        long(4, 6, ("qpqp", "qppq", "qqpp", "q-qp", "qq-q", "q-q-", "-q-q"), 7 * 345),
+        long(4, 5, ("qpqp", "qppq", "qqpp", "q-qp", "qq-q", "q-q-", "-q-q"), 7 * 36),
     ],
 )
 def test_first_in_first_out_queues_are_safe(
