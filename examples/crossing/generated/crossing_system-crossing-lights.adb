@@ -1337,11 +1337,10 @@ is
             Fire_Whole (C.Top);
          end if;
          pragma Assert
-           (Fired.Count <= 3
-            and then (for all I in 1 .. Fired.Count =>
-                  Fired.Items (I) = C.Cars
-                  or else Fired.Items (I) = C.Walkers
-                  or else Fired.Items (I) = C.Top)
+           ((for all I in 1 .. Fired.Count =>
+                Fired.Items (I) = C.Cars
+                or else Fired.Items (I) = C.Walkers
+                or else Fired.Items (I) = C.Top)
             and then Is_Ordered (Fired)
             and then (if C.Cars /= None then Has (Fired, C.Cars))
             and then (if C.Walkers /= None then Has (Fired, C.Walkers))

@@ -2069,12 +2069,11 @@ is
                Fire_Whole (C.Top);
             end if;
             pragma Assert
-              (Fired.Count <= 9
-               and then (for all I in 1 .. Fired.Count =>
-                     Is_Segment (Fired.Items (I))
-                     or else (Fired.Items (I) = C.Motor
-                        or else Fired.Items (I) = C.Sensor
-                        or else Fired.Items (I) = C.Top))
+              ((for all I in 1 .. Fired.Count =>
+                   Is_Segment (Fired.Items (I))
+                   or else (Fired.Items (I) = C.Motor
+                      or else Fired.Items (I) = C.Sensor
+                      or else Fired.Items (I) = C.Top))
                and then Is_Ordered (Fired)
                and then (if C.Motor /= None then Has (Fired, C.Motor))
                and then (if C.Sensor /= None and then C.Motor = None

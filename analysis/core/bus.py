@@ -1,0 +1,86 @@
+"""Frames of one CAN bus, and what the bus itself does to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from .checks import natural, positive
+
+ERROR_BITS = 31
+"""Bits lost to one error besides the frame that is sent again: Tindell and Burns 1994.
+
+Two error flags that follow each other (6 + 6, and up to 6 of a flag that began
+before), the delimiter (8), three bits to the next frame and rounding up. Others
+take 23 or 29: a report names the figure that it used.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A message as the bus sees it; all times in ticks.
+
+    ``rank``      its place in arbitration, lower wins (`frames.rank`); no two have the same
+    ``cost``      longest transmission with the three bits to the next frame, above 0
+    ``period``    least distance of its queuing events, above 0
+    ``deadline``  from the event that makes the sender queue it, above 0
+    ``jitter``    longest time from that event to the queuing: the response of the sender
+    ``queue``     the first-in first-out queue it is sent from; "" where the sender
+                  offers its most urgent frame
+    ``best``      least transmission time, for the jitter of what the frame releases
+    """
+
+    name: str
+    rank: int
+    period: int
+    deadline: int
+    cost: int
+    jitter: int = 0
+    queue: str = ""
+    best: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range, with a ValueError that names field and frame."""
+        owner = f"message {self.name}"
+        positive(owner, period=self.period, deadline=self.deadline, cost=self.cost)
+        natural(owner, rank=self.rank, jitter=self.jitter, best=self.best)
+
+    @property
+    def utilisation(self) -> Fraction:
+        """Share of the bus that it needs at its longest and most frequent."""
+        return Fraction(self.cost, self.period)
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """At most ``burst`` errors at once, and one more every ``period`` ticks.
+
+    Within t they are burst - 1 + ceil(t / period), and each costs ``bits`` bits and
+    the longest frame of the same or higher rank, which is sent again.
+    """
+
+    period: int
+    burst: int = 1
+    bits: int = ERROR_BITS
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range, with a ValueError."""
+        positive("the error model", period=self.period, burst=self.burst, bits=self.bits)
+
+
+@dataclass(frozen=True, slots=True)
+class Bus:
+    """What delays frames apart from each other; times in ticks.
+
+    ``bit_time``  one nominal bit, rounded up, above 0
+    ``unknown``   longest frame that nobody declared and that is less urgent than all
+    """
+
+    bit_time: int
+    unknown: int = 0
+    errors: Errors | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range, with a ValueError."""
+        positive("the bus", bit_time=self.bit_time)
+        natural("the bus", unknown=self.unknown)

@@ -1,0 +1,201 @@
+"""Worst-case response times of CAN frames.
+
+Davis, Burns, Bril, Lukkien, Controller Area Network (CAN) schedulability analysis:
+refuted, revisited and revised (Real-Time Systems 35, 2007). For instance q (from 0):
+
+    w(q) = B + E(w + C) + q C + sum over more urgent k of ceil((J_k + w + tau) / T_k) C_k
+    R    = max over q of  J + w(q) + C - q T
+
+over all instances of the busy period  t = B + E(t) + sum ceil((J_k + t) / T_k) C_k,
+own frames included. tau is a bit: a frame queued until then still takes part in
+arbitration. B is the longest less urgent frame, or the longest that somebody
+unknown may send. E is the time lost to errors. R counts from the event that makes
+the sender queue the frame, and includes the queuing jitter J.
+
+Assumed of the nodes: each offers its most urgent frame whenever the bus is free,
+and can still replace it by a more urgent one (no buffer that cannot be aborted, no
+copying delay), unless its frames share a first-in first-out queue. Those follow the
+idea of Davis, Kollmann, Pollex, Slomka (ECRTS 2011), here with every instance of
+the busy period: a queued frame is analysed at the least urgent identifier of its
+queue, with all frames of the queue before it; to others it has, as more jitter, the
+time until it is sent. Safe, not exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import pairwise
+
+from .bus import Bus, Frame
+from .can_response import FrameLevel, FrameResponse, frame_response
+from .checks import distinct
+from .responses import Reason
+from .window import Effort, Load, Window, fixed_cost, rate
+
+FRAME_EFFORT = 200_000
+"""Changes of release numbers that one frame's analysis may take; then it has no bound."""
+
+WHOLE_EFFORT = 5_000_000
+"""The same for one call: what comes after has no bound either."""
+
+ROUNDS = 100
+"""Rounds in which the delays of first-in first-out queues must settle."""
+
+
+def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
+    """The worst-case response of every frame of one bus, in the order given.
+
+    ValueError for a name or a rank that two of them have.
+    """
+    distinct("messages", [frame.name for frame in frames])
+    effort = Effort(WHOLE_EFFORT)
+    order = tuple(sorted(frames, key=lambda frame: frame.rank))
+    for one, other in pairwise(order):
+        if one.rank == other.rank:
+            raise ValueError(
+                f"the identifiers of messages {one.name} and {other.name} are the same"
+            )
+    delays = _queue_delays(order, bus, effort)
+    found = {item.frame.name: item for item in _of_bus(order, bus, delays, effort)}
+    return tuple(found[frame.name] for frame in frames)
+
+
+def response_under(
+    frame: Frame, rivals: Sequence[Frame], others: Sequence[Frame], bus: Bus
+) -> FrameResponse:
+    """The response when ``rivals`` are more urgent than ``frame`` and ``others`` are less.
+
+    Ranks are not looked at, and no frame has a first-in first-out queue.
+    """
+    level = FrameLevel((*rivals, frame, *others), len(rivals) + 1, bus, {})
+    return _alone(frame, level, Effort(FRAME_EFFORT))
+
+
+def load(frames: Sequence[Frame]) -> Fraction:
+    """Share of a bus that the frames need, each at its longest and most frequent."""
+    return sum((frame.utilisation for frame in frames), Fraction(0))
+
+
+Delays = Mapping[str, int | None]
+"""How long frames of queues may wait, by name; None where there is no bound."""
+
+
+def _queue_delays(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> Delays:
+    """How long each frame of a first-in first-out queue waits for its transmission.
+
+    The delays of different queues depend on each other: from zero up, until none grows.
+    None is longer than the busiest time of the whole bus: a bus that is never idle
+    while a frame waits has sent it by then, whatever the order.
+    """
+    queued = [frame for frame in order if frame.queue]
+    busiest = _busiest(order, bus, effort) if queued else None
+    if busiest is None:
+        return dict.fromkeys(frame.name for frame in queued)
+    longest = {frame.name: busiest - frame.cost for frame in queued}
+    delays: dict[str, int] = dict.fromkeys(longest, 0)
+    for _ in range(ROUNDS):
+        found = dict(longest)
+        for frame in queued:
+            sent = _in_queue(frame, order, bus, delays, effort).bound
+            if sent is not None:
+                waited = sent - frame.cost - frame.jitter
+                found[frame.name] = min(waited, longest[frame.name])
+        if found == delays:
+            return delays
+        delays = found
+    return longest
+
+
+def _busiest(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> int | None:
+    """The longest time that the bus is never idle, or None where it has no bound."""
+    level = FrameLevel(order, len(order), bus, {})
+    window, used = Window(), Load()
+    window.length = 1  # zero is a fixed point too
+    for number, frame in enumerate(order):
+        source = fixed_cost(frame.period, frame.jitter, frame.cost)
+        used.add(source)
+        window.add(number, source)
+    fixed = bus.unknown
+    if bus.errors is not None:
+        fixed += (bus.errors.burst - 1) * level.error_cost
+        window.add(len(order), fixed_cost(bus.errors.period, 0, level.error_cost))
+    if _overloaded(level, used):
+        return None
+    return window.length if window.settle(fixed, effort) else None
+
+
+def _of_bus(
+    order: tuple[Frame, ...], bus: Bus, delays: Delays, effort: Effort
+) -> Iterator[FrameResponse]:
+    """The responses of the frames of a bus, most urgent first."""
+    waiting, busy, used = Window(), Window(), Load()
+    known = {name: delay for name, delay in delays.items() if delay is not None}
+    reason: Reason | None = None
+    for number, frame in enumerate(order):
+        level = FrameLevel(order, number + 1, bus, known)
+        late = frame.jitter + known.get(frame.name, 0)
+        source = fixed_cost(frame.period, late, frame.cost)
+        used.add(source)
+        if frame.queue:
+            yield _in_queue(frame, order, bus, delays, effort)
+            if delays[frame.name] is None:
+                reason = reason or Reason.RIVAL
+        else:
+            reason = reason or _obstacle(level, used, frame, waiting, busy, effort)
+            if reason is None:
+                allowed = Effort(min(FRAME_EFFORT, effort.left))
+                effort.left -= allowed.left
+                yield frame_response(frame, level, waiting.fork(), busy.fork(), allowed)
+                effort.left += allowed.left
+            else:
+                yield FrameResponse(frame, level, None, reason=reason)
+        busy.add(number, source)
+        waiting.add(number, fixed_cost(frame.period, late + bus.bit_time, frame.cost))
+
+
+def _obstacle(
+    level: FrameLevel, used: Load, frame: Frame, waiting: Window, busy: Window, effort: Effort
+) -> Reason | None:
+    """Why neither this frame nor those below it can have a bound; lengthens the windows."""
+    if _overloaded(level, used):
+        return Reason.OVERLOAD
+    if waiting.settle(0, effort) and busy.settle(frame.cost, effort):
+        return None
+    return Reason.EFFORT
+
+
+def _overloaded(level: FrameLevel, used: Load) -> bool:
+    """Whether the frames and the errors of a level need more than the bus has."""
+    errors = level.bus.errors
+    extra = 0 if errors is None else rate(fixed_cost(errors.period, 0, level.error_cost))
+    return used.above_one(lambda: level.load, extra)
+
+
+def _in_queue(
+    frame: Frame, order: tuple[Frame, ...], bus: Bus, delays: Delays, effort: Effort
+) -> FrameResponse:
+    """The response of a frame of a queue, at the least urgent rank of the queue."""
+    reach = max(n for n, other in enumerate(order, 1) if other.queue == frame.queue)
+    known = {name: delay for name, delay in delays.items() if delay is not None}
+    level = FrameLevel(order, reach, bus, known)
+    for other in order[:reach]:
+        if other.queue != frame.queue and delays.get(other.name, 0) is None:
+            return FrameResponse(frame, level, None, reason=Reason.RIVAL)
+    return _alone(frame, level, effort)
+
+
+def _alone(frame: Frame, level: FrameLevel, effort: Effort) -> FrameResponse:
+    """The response of ``frame`` with windows made for it only."""
+    waiting, busy, used = Window(), Window(), Load()
+    effort.left -= level.reach
+    for number, other in enumerate(level.order[: level.reach]):
+        late = level.jitter(other, frame)
+        source = fixed_cost(other.period, late, other.cost)
+        used.add(source)
+        if other.name != frame.name:
+            busy.add(number, source)
+            waiting.add(number, fixed_cost(other.period, late + level.bus.bit_time, other.cost))
+    if _overloaded(level, used):
+        return FrameResponse(frame, level, None, reason=Reason.OVERLOAD)
+    return frame_response(frame, level, waiting, busy, effort)

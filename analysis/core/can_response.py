@@ -1,0 +1,179 @@
+"""The instances of one frame's busy period, and every term of its response."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from .bus import Bus, Frame
+from .responses import Reason
+from .window import Effort, Window, fixed_cost, releases
+
+ERRORS = 1 << 40
+"""Serial number of the errors; those of frames are below."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrameInterference:
+    """What one other message takes of the time before transmission."""
+
+    frame: Frame
+    instances: int
+    time: int
+
+
+@dataclass(frozen=True, slots=True)
+class FrameLevel:
+    """What is sent before a frame: the first ``reach`` of ``order``, most urgent first.
+
+    ``delays`` holds, by name, how long frames of first-in first-out queues may
+    wait to take part in arbitration.
+    """
+
+    order: tuple[Frame, ...]
+    reach: int
+    bus: Bus
+    delays: Mapping[str, int]
+
+    @property
+    def load(self) -> Fraction:
+        """Share of the bus that these frames and errors need."""
+        load = sum((frame.utilisation for frame in self.order[: self.reach]), Fraction(0))
+        errors = self.bus.errors
+        return load if errors is None else load + Fraction(self.error_cost, errors.period)
+
+    @property
+    def error_cost(self) -> int:
+        """What one error costs at this level; 0 where none are assumed."""
+        if self.bus.errors is None:
+            return 0
+        longest = max(frame.cost for frame in self.order[: self.reach])
+        return self.bus.errors.bits * self.bus.bit_time + longest
+
+    @property
+    def blocker(self) -> tuple[str, int]:
+        """The longest less urgent frame and its time; no name where nobody declared it."""
+        longest = ("", self.bus.unknown)
+        for frame in self.order[self.reach :]:
+            if frame.cost > longest[1]:
+                longest = (frame.name, frame.cost)
+        return longest
+
+    def jitter(self, frame: Frame, towards: Frame) -> int:
+        """The longest time from the event of ``frame`` until it competes with ``towards``."""
+        if frame.queue and frame.queue == towards.queue:
+            return frame.jitter
+        return frame.jitter + self.delays.get(frame.name, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameResponse:
+    """The worst-case response of one frame; all times in ticks.
+
+    ``bound`` counts from the event that makes the sender queue it, or is None with
+    the ``reason``. It is attained by instance ``worst_instance`` (from 0) of the
+    ``instances`` in the busy period, which waits ``window`` from its start:
+
+        jitter + window + cost - worst_instance * period = bound
+        blocked + own + interference + errors = window
+    """
+
+    frame: Frame
+    level: FrameLevel
+    bound: int | None
+    instances: int = 0
+    worst_instance: int = 0
+    window: int = 0
+    reason: Reason | None = None
+
+    @property
+    def met(self) -> bool:
+        """The bound exists and is at most the deadline."""
+        return self.bound is not None and self.bound <= self.frame.deadline
+
+    @property
+    def slack(self) -> int | None:
+        """Deadline less bound; negative when missed, None without a bound."""
+        return None if self.bound is None else self.frame.deadline - self.bound
+
+    @property
+    def blocker(self) -> str:
+        """The less urgent frame that holds this one up; "" for none, or one not declared."""
+        return self.level.blocker[0]
+
+    @property
+    def blocked(self) -> int:
+        """The longest less urgent frame, suffered once."""
+        return self.level.blocker[1]
+
+    @property
+    def own(self) -> int:
+        """Earlier instances of the same message in the busy period."""
+        return self.worst_instance * self.frame.cost
+
+    @property
+    def errors(self) -> int:
+        """Time lost to errors until the frame is sent."""
+        model = self.level.bus.errors
+        if model is None or self.bound is None:
+            return 0
+        count = model.burst - 1 + releases(self.window, model.period, self.frame.cost)
+        return count * self.level.error_cost
+
+    @property
+    def interference(self) -> tuple[FrameInterference, ...]:
+        """What each other message of the level takes of the window, most first."""
+        if self.bound is None:
+            return ()
+        found = []
+        for other in self.level.order[: self.level.reach]:
+            if other.name != self.frame.name:
+                late = self.level.jitter(other, self.frame) + self.level.bus.bit_time
+                count = releases(self.window, other.period, late)
+                found.append(FrameInterference(other, count, count * other.cost))
+        return tuple(sorted(found, key=lambda share: -share.time))
+
+
+def frame_response(
+    frame: Frame, level: FrameLevel, waiting: Window, busy: Window, effort: Effort
+) -> FrameResponse:
+    """The response of ``frame``; both windows hold its rivals, are no longer than its own.
+
+    In ``waiting`` a rival counts that is queued until arbitration is over, a bit later;
+    ``busy`` is the busy period, in which it counts until its end.
+    """
+    fixed = level.blocker[1]
+    errors = level.bus.errors
+    if errors is not None:
+        cost = level.error_cost
+        fixed += (errors.burst - 1) * cost
+        waiting.add(ERRORS, fixed_cost(errors.period, frame.cost, cost))
+        busy.add(ERRORS, fixed_cost(errors.period, 0, cost))
+    pattern = math.inf
+    bound, worst, window, instance = -1, 0, 0, 0
+    while waiting.settle(fixed + instance * frame.cost, effort) and effort.left > 0:
+        effort.left -= 1
+        late = frame.jitter + waiting.length + frame.cost - instance * frame.period
+        if late > bound:
+            bound, worst, window = late, instance, waiting.length
+        instance += 1
+        if not busy.settle(fixed + instance * frame.cost, effort):
+            break
+        over = busy.length <= instance * frame.period - frame.jitter
+        if instance == 1 and not over:
+            pattern = _pattern(level, frame.period, effort.left)
+        if over or instance >= pattern:
+            return FrameResponse(frame, level, bound, instance, worst, window)
+    return FrameResponse(frame, level, None, reason=Reason.EFFORT)
+
+
+def _pattern(level: FrameLevel, period: int, limit: int) -> float:
+    """Instances after which the frames of a level repeat; infinity when above ``limit``."""
+    length = math.lcm(period, level.bus.errors.period if level.bus.errors else 1)
+    for frame in level.order[: level.reach]:
+        length = math.lcm(length, frame.period)
+        if length // period > limit:
+            return math.inf
+    return length // period

@@ -1,0 +1,210 @@
+"""End-to-end latencies of cause-effect chains, hop by hop.
+
+A chain is cut where data waits in a variable or a queue for a task that runs at its
+own times. Between cuts everything is released by what precedes it, so a segment has
+the response of its last step, from the arrival of its first, and one period T.
+
+  reaction  from an input that was just missed until the first output that knows it:
+            sum over segments of  wait + R, where the wait for a sampling task is at
+            most T: data written just after it was read is read in the next job
+            (Davare et al., DAC 2007)
+  age       from the arrival of the job that sampled an input until an output made of
+            it: R of the last segment, and R + T for each one before it that is sampled:
+            what is read was written by the last job completed before (Durr, von der
+            Bruggen, Chen, Chen, TECS 2019). An output stays until the next one replaces
+            it: `held` is the age then, and equals the reaction when all is sampled.
+
+A queue hands each item over once. Its reader takes so many in a job; an item waits
+for those before it. These are bounds for any phasing of any clocks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from .checks import positive
+from .holistic import Holistic, Network
+from .tasks import Task
+
+
+class Hop(Enum):
+    """How data come to a step."""
+
+    RELEASED = "released"
+    """The completion of the step before (or the chain's event) releases it."""
+
+    SAMPLED = "sampled"
+    """It reads the latest value at its own times."""
+
+    QUEUED = "queued"
+    """It takes the oldest items from a queue at its own times."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A task or frame of a chain; ``takes`` items in a job where the hop to it is queued."""
+
+    name: str
+    hop: Hop
+    takes: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse to take no items, with a ValueError."""
+        positive(f"step {self.name}", takes=self.takes)
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Steps from input to output; the limits are in ticks, 0 where there is none."""
+
+    name: str
+    steps: tuple[Step, ...]
+    reaction_limit: int = 0
+    age_limit: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class HopLatency:
+    """What one step adds, in ticks; None where there is no bound.
+
+    ``wait``      until the arrival of the job that reads the input
+    ``response``  from there (or the step before, when released by it) to completion
+    ``renewal``   longest time until the output of a job is replaced by the next job's,
+                  where a sampling step follows; it counts for the age
+    ``backlog``   places that a queue before the step must have to lose nothing
+    """
+
+    step: Step
+    wait: int | None
+    response: int | None
+    renewal: int | None = 0
+    backlog: int | None = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Latency:
+    """The latencies of a chain, with the hops that they are the sums of."""
+
+    chain: Chain
+    hops: tuple[HopLatency, ...]
+    renewal: int | None
+    """Longest time for which the last output stays, None where nothing makes a next one."""
+
+    @property
+    def reaction(self) -> int | None:
+        """From an input to the first output that knows it: all waits and responses."""
+        return _total([part for hop in self.hops for part in (hop.wait, hop.response)])
+
+    @property
+    def age(self) -> int | None:
+        """From the sampling of an input to the output made of it.
+
+        All responses and renewals, and the waits in queues; not the wait before a
+        sampling step, for what it reads is renewed meanwhile.
+        """
+        parts = []
+        for hop in self.hops:
+            parts += [hop.response, hop.renewal]
+            if hop.step.hop is Hop.QUEUED:
+                parts.append(hop.wait)
+        return _total(parts)
+
+    @property
+    def held(self) -> int | None:
+        """From the sampling of an input until the output made of it is replaced."""
+        return _total([self.age, self.renewal])
+
+    @property
+    def met(self) -> bool:
+        """Both limits are kept, where they are given; the age is that of the output."""
+        pairs = (
+            (self.reaction, self.chain.reaction_limit),
+            (self.age, self.chain.age_limit),
+        )
+        return all(not limit or (v is not None and v <= limit) for v, limit in pairs)
+
+
+def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
+    """The latencies of ``chain`` from the responses ``found`` for ``network``.
+
+    ValueError for a step that the network does not have, for one that is said to be
+    released by the step before it and is not, and for a queue before the first step.
+    """
+    _check(chain, network)
+    hops = []
+    for number, step in enumerate(chain.steps):
+        before = chain.steps[number - 1] if number else None
+        after = chain.steps[number + 1] if number + 1 < len(chain.steps) else None
+        response = found.from_event(step.name)
+        wait: int | None = 0
+        backlog: int | None = 0
+        if step.hop is Hop.RELEASED and before is not None:
+            response = _less(response, found.from_event(before.name))
+        elif step.hop is Hop.SAMPLED:
+            wait = _cycle(step.name, network)
+        elif step.hop is Hop.QUEUED and before is not None:
+            wait, backlog = _queue(before.name, step, network, found)
+        sampled = after is not None and after.hop is Hop.SAMPLED
+        renewal = _cycle(step.name, network) if sampled else 0
+        hops.append(HopLatency(step, wait, response, renewal, backlog))
+    last = _cycle(chain.steps[-1].name, network)
+    return Latency(chain, tuple(hops), last)
+
+
+def _check(chain: Chain, network: Network) -> None:
+    """Refuse what the network does not have."""
+    items = network.items()
+    if not chain.steps or chain.steps[0].hop is Hop.QUEUED:
+        raise ValueError(f"steps of chain {chain.name} must begin with a step without a queue")
+    for number, step in enumerate(chain.steps):
+        if step.name not in items:
+            raise ValueError(f"step {step.name} of chain {chain.name} is no task or message")
+        if number and step.hop is Hop.RELEASED:
+            before = chain.steps[number - 1].name
+            if network.released_by.get(step.name) != before:
+                raise ValueError(
+                    f"step {step.name} of chain {chain.name} is not released by {before}"
+                )
+
+
+def _cycle(name: str, network: Network) -> int | None:
+    """The longest time between two of its events; None where they are sporadic."""
+    root = network.items()[(name, *network.releasers(name))[-1]]
+    if isinstance(root, Task) and root.sporadic:
+        return None
+    return root.period
+
+
+def _queue(
+    writer: str, step: Step, network: Network, found: Holistic
+) -> tuple[int | None, int | None]:
+    """How long an item waits for the arrival of the job that takes it, and how many do.
+
+    Item k (from 1) of a burst comes no earlier than (k - 1) T - J of the writer, and
+    has its turn in job ceil(k / takes) of the reader from then on. The wait is longest
+    for the last item that jitter can make come at once, or the first of the next job.
+    """
+    items = network.items()
+    period, takes = items[writer].period, step.takes
+    cycle, read = _cycle(step.name, network), found.from_event(step.name)
+    written = found.from_event(writer)
+    if cycle is None or read is None or written is None or cycle > takes * period:
+        return None, None
+    jitter = written - found.best[writer] - items[writer].best
+    burst = jitter // period + 1
+    later = -(-burst // takes) * takes + 1
+    wait = max(
+        -(-item // takes) * cycle - max(0, (item - 1) * period - jitter) for item in (burst, later)
+    )
+    return wait, (wait + read + jitter) // period + 1
+
+
+def _less(longer: int | None, shorter: int | None) -> int | None:
+    return None if longer is None or shorter is None else longer - shorter
+
+
+def _total(parts: list[int | None]) -> int | None:
+    """The sum; None where a part has no bound."""
+    known = [part for part in parts if part is not None]
+    return sum(known) if len(known) == len(parts) else None

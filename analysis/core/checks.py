@@ -1,0 +1,28 @@
+"""Parameters that no analysis can give a meaning to are refused by name."""
+
+from __future__ import annotations
+
+
+def positive(owner: str, **fields: int) -> None:
+    """Refuse fields of ``owner`` that are not integers above zero, with a ValueError."""
+    for field, value in fields.items():
+        if type(value) is not int or value <= 0:
+            raise ValueError(f"{field} of {owner} must be an integer above 0, not {value!r}")
+
+
+def natural(owner: str, **fields: int) -> None:
+    """Refuse fields of ``owner`` that are not integers from zero up, with a ValueError."""
+    for field, value in fields.items():
+        if type(value) is not int or value < 0:
+            raise ValueError(f"{field} of {owner} must be an integer from 0 up, not {value!r}")
+
+
+def distinct(kind: str, names: list[str]) -> None:
+    """Refuse a name that two of ``kind`` have, with a ValueError."""
+    if len(set(names)) == len(names):
+        return
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise ValueError(f"two {kind} have the name {name}")
+        seen.add(name)

@@ -1,0 +1,161 @@
+"""Worst-case response times of preemptive tasks under fixed priorities.
+
+For job q (from 0) of a busy period of the task's level, ending in frame f:
+
+    w(q, f) = B + own(q, f) + sum over others of most_j(ceil((J_j + w) / T_j))
+    R       = max over q and f of  J + w(q, f) - q T
+
+The others are the tasks of the core with higher or equal priority; own is the
+cost of the job and of the q before it. Joseph and Pandya 1986; Audsley et al.
+1993; Lehoczky 1990 for deadlines beyond the period; Tindell, Burns, Wellings 1994
+for jitter. With one cost per task, no sections and no equal priorities the bound
+is attained by some phasing. It is safe, and may not be attained, for equal
+priorities (each counts in full), for tasks with several frames (each is at its
+worst in every window) and for offsets, which are not used. R counts from the
+arrival and includes the task's own jitter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby
+
+from .blocking import Section, blockers
+from .busy_period import Contender, response
+from .checks import distinct
+from .platform import Platform
+from .responses import Level, Reason, Response, jitter_of
+from .tasks import Task
+from .window import Effort, Load, Window, fixed_cost
+
+TASK_EFFORT = 200_000
+"""Changes of release numbers that one task's analysis may take; then it has no bound."""
+
+WHOLE_EFFORT = 5_000_000
+"""The same for one call: what comes after has no bound either."""
+
+NO_OVERHEAD = Platform()
+
+OVERHEADS_FROM = 1 << 40
+"""Serial numbers of overheads; those of tasks are below."""
+
+
+def analyse(
+    tasks: Sequence[Task],
+    sections: Sequence[Section] = (),
+    platforms: Mapping[str, Platform] | None = None,
+    ceilings: Mapping[str, int] | None = None,
+) -> tuple[Response, ...]:
+    """The worst-case response of every task, in the order given.
+
+    Tasks of different cores do not meet. ``platforms`` gives the overheads of a
+    core by its name, ``ceilings`` those of resources that are not just the highest
+    priority of the users. ValueError for a name given twice, and as `blockers`.
+    """
+    distinct("tasks", [task.name for task in tasks])
+    effort = Effort(WHOLE_EFFORT)
+    cores: dict[str, list[Task]] = {}
+    for task in tasks:
+        cores.setdefault(task.core, []).append(task)
+    held = blockers(tasks, sections, ceilings)
+    found = {
+        one.task.name: one
+        for core, members in cores.items()
+        for one in _core(members, held, (platforms or {}).get(core, NO_OVERHEAD), effort)
+    }
+    return tuple(found[task.name] for task in tasks)
+
+
+def response_under(
+    task: Task,
+    rivals: Sequence[Task],
+    bystanders: Sequence[Task] = (),
+    blocking: Section | None = None,
+    platform: Platform = NO_OVERHEAD,
+) -> Response:
+    """The response of ``task`` when all ``rivals`` may run before it, whatever their priorities.
+
+    ``bystanders`` are less urgent: only their releases take time.
+    """
+    level = Level((*rivals, task, *bystanders), len(rivals) + 1, platform)
+    own = Contender.of(task, platform, 0)
+    others = [Contender.of(rival, platform, n) for n, rival in enumerate(rivals, 1)]
+    window, load = _beginning(level.order, platform)
+    for item in (own, *others):
+        load.add(item.source)
+    if load.above_one(_exactly(level)):
+        return Response(task, level, blocking, None, reason=Reason.OVERLOAD)
+    for item in others:
+        window.add(item.serial, item.source)
+    return response(own, level, blocking, window, Effort(TASK_EFFORT))
+
+
+def _beginning(tasks: Sequence[Task], platform: Platform) -> tuple[Window, Load]:
+    """A window that holds the overheads above all ``tasks`` of a core."""
+    window, load = Window(), Load()
+    sources = []
+    if platform.tick_cost:
+        sources.append(fixed_cost(platform.tick_period, 0, platform.tick_cost))
+    if platform.release:
+        for task in tasks:
+            jitter = jitter_of(task, platform)
+            sources.append(fixed_cost(task.period, jitter, platform.release))
+    for number, item in enumerate(sources):
+        window.add(OVERHEADS_FROM + number, item)
+        load.add(item)
+    return window, load
+
+
+def _core(
+    tasks: Sequence[Task], held: Mapping[str, Section], platform: Platform, effort: Effort
+) -> Iterator[Response]:
+    """The responses of the tasks of one core, most urgent first."""
+    order = tuple(sorted(tasks, key=lambda task: -task.priority))
+    base, load = _beginning(order, platform)
+    reach = 0
+    reason: Reason | None = None
+    for _, group in groupby(order, key=lambda task: task.priority):
+        members = [Contender.of(task, platform, reach + n) for n, task in enumerate(group)]
+        reach += len(members)
+        level = Level(order, reach, platform)
+        for item in members:
+            load.add(item.source)
+        if reason is None and load.above_one(_exactly(level)):
+            reason = Reason.OVERLOAD
+        if reason is None and not base.settle(sum(i.least for i in members), effort):
+            reason = Reason.EFFORT
+        if reason is not None:
+            yield from (
+                Response(item.task, level, held.get(item.task.name), None, reason=reason)
+                for item in members
+            )
+            continue
+        yield from _group(members, level, held, base, effort)
+
+
+def _exactly(level: Level) -> Callable[[], Fraction]:
+    """The load of a level, worked out only when it is asked for."""
+    return lambda: level.load
+
+
+def _group(
+    members: Sequence[Contender],
+    level: Level,
+    held: Mapping[str, Section],
+    base: Window,
+    effort: Effort,
+) -> Iterator[Response]:
+    """The responses of tasks of one priority, which are then part of ``base``."""
+    alone = len(members) == 1
+    start = base.fork() if alone else base
+    for item in members:
+        base.add(item.serial, item.source)
+    for item in members:
+        if not alone:
+            start = base.fork()
+            start.leave_out(item.serial, item.source)
+        allowed = Effort(min(TASK_EFFORT, effort.left))
+        before = allowed.left
+        yield response(item, level, held.get(item.task.name), start, allowed)
+        effort.left -= before - allowed.left

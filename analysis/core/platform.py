@@ -1,0 +1,39 @@
+"""What the run-time system of one core costs, apart from the tasks themselves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .checks import natural
+
+
+@dataclass(frozen=True, slots=True)
+class Platform:
+    """Overheads of one core, all in ticks; zero where there is none.
+
+    Each job pays for two context switches (to it and back), whoever it runs
+    before. ``release`` is the work of the timer or interrupt that makes one job
+    ready: it runs above all tasks, for releases of less urgent tasks too.
+    A periodic tick costs ``tick_cost`` every ``tick_period`` above all tasks, and
+    a task that is released by it (`Task.timed`) may be late by one period of it.
+    Burns, Tindell and Wellings, Effective analysis for engineering real-time
+    fixed priority schedulers (IEEE TSE 21, 1995), whose tick scheduling this
+    simplifies to the safe side.
+    """
+
+    context_switch: int = 0
+    release: int = 0
+    tick_period: int = 0
+    tick_cost: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse negative overheads, and a tick that costs time but has no period."""
+        natural(
+            "the platform",
+            context_switch=self.context_switch,
+            release=self.release,
+            tick_period=self.tick_period,
+            tick_cost=self.tick_cost,
+        )
+        if self.tick_cost and not self.tick_period:
+            raise ValueError("tick_period of the platform must be above 0 where tick_cost is")

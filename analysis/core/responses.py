@@ -1,0 +1,188 @@
+"""The response of a task, and every term that it is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+
+from .blocking import Section
+from .multiframe import Demand
+from .platform import Platform
+from .tasks import Row, Task
+from .window import cost_of, releases, source
+
+
+class Reason(Enum):
+    """Why a response has no bound."""
+
+    OVERLOAD = "what runs at its level needs more than all of the resource"
+    EFFORT = "none was found within the work allowed"
+    RIVAL = "something that delays it has no bound itself"
+
+
+@dataclass(frozen=True, slots=True)
+class Interference:
+    """What one other task executes in the window: so many releases, the first in ``frame``."""
+
+    task: Task
+    releases: int
+    frame: int
+    time: int
+
+
+@dataclass(frozen=True, slots=True)
+class Overheads:
+    """Time in the window that no task executes: switches of all its jobs, ticks, releases."""
+
+    switches: int
+    switch_time: int
+    ticks: int
+    tick_time: int
+    releases: int
+    release_time: int
+
+    @property
+    def time(self) -> int:
+        """All of it."""
+        return self.switch_time + self.tick_time + self.release_time
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """What runs before a task: the first ``reach`` of its core's tasks, most urgent first."""
+
+    order: tuple[Task, ...]
+    reach: int
+    platform: Platform
+
+    @property
+    def load(self) -> Fraction:
+        """Share of the core that these tasks and the overheads need."""
+        platform = self.platform
+        load = Fraction(platform.tick_cost, platform.tick_period or 1)
+        for task in self.order:
+            load += Fraction(platform.release, task.period)
+        for task in self.order[: self.reach]:
+            demand = demand_of(task, platform)
+            load += Fraction(demand.total, len(demand.costs) * task.period)
+        return load
+
+
+@dataclass(frozen=True, slots=True)
+class RowResponse:
+    """The longest time from the arrival of a job to the completion of one of its rows.
+
+    It is attained by job ``job`` of a busy period, in frame ``frame``.
+    """
+
+    row: Row
+    bound: int
+    job: int
+    frame: int
+    window: int
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """The worst-case response of one task; all times in ticks.
+
+    ``bound`` counts from the arrival, or is None with the ``reason``. It is attained
+    by job ``worst_job`` (from 0) of a busy period, in frame ``frame`` of the task's
+    table. ``jobs`` were looked at: all of the busy period, or those after which the
+    releases of all tasks repeat. The bound is made of
+
+        jitter + window - worst_job * period = bound
+        blocked + own + interference + overheads = window
+    """
+
+    task: Task
+    level: Level
+    blocking: Section | None
+    bound: int | None
+    jobs: int = 0
+    worst_job: int = 0
+    frame: int = 0
+    window: int = 0
+    rows: tuple[RowResponse, ...] = ()
+    reason: Reason | None = None
+
+    @property
+    def met(self) -> bool:
+        """The bound exists and is at most the deadline."""
+        return self.bound is not None and self.bound <= self.task.deadline
+
+    @property
+    def slack(self) -> int | None:
+        """Deadline less bound; negative when missed, None without a bound."""
+        return None if self.bound is None else self.task.deadline - self.bound
+
+    @property
+    def jitter(self) -> int:
+        """The latest release after the arrival: the task's own jitter and the tick's period."""
+        return jitter_of(self.task, self.level.platform)
+
+    @property
+    def blocked(self) -> int:
+        """The longest section of a less urgent task, suffered once."""
+        return 0 if self.blocking is None else self.blocking.length
+
+    @property
+    def own(self) -> int:
+        """What the worst job and those before it in the busy period execute."""
+        demand = demand_of(self.task, Platform())
+        return demand.before(self.worst_job, self.frame) + demand.costs[self.frame]
+
+    @property
+    def interference(self) -> tuple[Interference, ...]:
+        """What each other task of the level executes in the window, most first."""
+        if self.bound is None:
+            return ()
+        found = [self._taken_by(other) for other in self._others()]
+        return tuple(sorted(found, key=lambda share: -share.time))
+
+    @property
+    def overheads(self) -> Overheads:
+        """Switches, ticks and releases within the window."""
+        platform = self.level.platform
+        if self.bound is None:
+            return Overheads(0, 0, 0, 0, 0, 0)
+        jobs = self.worst_job + 1 + sum(self._releases(other) for other in self._others())
+        ticks = releases(self.window, platform.tick_period, 0) if platform.tick_period else 0
+        released = sum(self._releases(task) for task in self.level.order) if platform.release else 0
+        return Overheads(
+            2 * jobs,
+            2 * jobs * platform.context_switch,
+            ticks,
+            ticks * platform.tick_cost,
+            released,
+            released * platform.release,
+        )
+
+    def _others(self) -> list[Task]:
+        order = self.level.order[: self.level.reach]
+        return [task for task in order if task.name != self.task.name]
+
+    def _releases(self, task: Task) -> int:
+        return releases(self.window, task.period, jitter_of(task, self.level.platform))
+
+    def _taken_by(self, other: Task) -> Interference:
+        """Execution of ``other``, in the frames where it and its switches cost most."""
+        count = self._releases(other)
+        demand = demand_of(other, self.level.platform)
+        item = source(other.period, 0, demand)
+        switches = 2 * count * self.level.platform.context_switch
+        return Interference(other, count, demand.first(count), cost_of(item, count) - switches)
+
+
+def jitter_of(task: Task, platform: Platform) -> int:
+    """The latest release of ``task`` after its arrival on that platform."""
+    return task.jitter + (platform.tick_period if task.timed else 0)
+
+
+def demand_of(task: Task, platform: Platform) -> Demand:
+    """What the releases of ``task`` cost, each with its two context switches."""
+    extra = task.cost + 2 * platform.context_switch
+    if not task.rows:
+        return Demand((extra,))
+    return Demand(tuple(extra + sum(row.cost for row in rows) for rows in task.frames))

@@ -1,0 +1,108 @@
+"""Tasks of fixed priority on one core each, and the tables that they execute."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from .checks import distinct, natural, positive
+
+FRAME_LIMIT = 1024
+"""Releases after which a table must repeat; with more, every row counts in every job."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of a task's table: executed in release k when k mod ``every`` is ``phase``.
+
+    ``cost`` is its worst-case execution time in ticks, above 0.
+    """
+
+    name: str
+    cost: int
+    every: int = 1
+    phase: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range, with a ValueError that names the row."""
+        owner = f"row {self.name}"
+        positive(owner, cost=self.cost, every=self.every)
+        natural(owner, phase=self.phase)
+        if self.phase >= self.every:
+            raise ValueError(f"phase of {owner} must be below {self.every}, not {self.phase}")
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A periodic or sporadic task; all times in ticks.
+
+    ``period``     distance of its arrivals (least distance when ``sporadic``), above 0
+    ``deadline``   from the arrival, above 0; it may exceed the period
+    ``cost``       worst-case execution time of every job, apart from the rows
+    ``priority``   a larger number is more urgent
+    ``jitter``     longest time from the arrival to the release, any size
+    ``rows``       what job k executes besides, in this order
+    ``timed``      released by the tick of its core: late by up to one tick period
+    ``sporadic``   nothing makes it arrive; the analysis of responses is the same
+    ``best``       least execution time of a job, for the jitter of what it releases
+
+    Offsets are not a parameter: the bounds hold for all of them.
+    """
+
+    name: str
+    priority: int
+    period: int
+    deadline: int
+    cost: int = 0
+    jitter: int = 0
+    core: str = ""
+    rows: tuple[Row, ...] = ()
+    timed: bool = False
+    sporadic: bool = False
+    best: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what is out of range, with a ValueError that names field and task."""
+        owner = f"task {self.name}"
+        positive(owner, period=self.period, deadline=self.deadline)
+        natural(owner, jitter=self.jitter, best=self.best)
+        if self.rows:
+            natural(owner, cost=self.cost)
+            distinct(f"rows of {owner}", [row.name for row in self.rows])
+        else:
+            positive(owner, cost=self.cost)
+
+    @property
+    def plain_cost(self) -> int:
+        """The longest job if every row were executed in it."""
+        return self.cost + sum(row.cost for row in self.rows)
+
+    @property
+    def frame_count(self) -> int:
+        """Releases after which the table repeats; 1 where that is above `FRAME_LIMIT`."""
+        count = math.lcm(*(row.every for row in self.rows))
+        return count if count <= FRAME_LIMIT else 1
+
+    @property
+    def frames(self) -> tuple[tuple[Row, ...], ...]:
+        """The rows of each release until the table repeats; all in one past the limit."""
+        count = self.frame_count
+        if count == 1:
+            return (self.rows,)
+        return tuple(
+            tuple(row for row in self.rows if k % row.every == row.phase) for k in range(count)
+        )
+
+    @property
+    def utilisation(self) -> Fraction:
+        """Share of its core that the task needs in the long run, overheads apart."""
+        if not self.rows:
+            return Fraction(self.cost, self.period)
+        total = sum(self.cost + sum(row.cost for row in rows) for rows in self.frames)
+        return Fraction(total, self.period * self.frame_count)
+
+
+def plain(task: Task) -> Task:
+    """The same task with every row in every job: the sum that one reckons by hand."""
+    return replace(task, cost=task.plain_cost, rows=())

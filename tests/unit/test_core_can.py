@@ -1,0 +1,181 @@
+"""Frames: lengths, arbitration, parameters refused, errors, unknown traffic, queues."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analysis.core.bus import Bus, Errors, Frame
+from analysis.core.can import analyse, load, response_under
+from analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits, rank
+from analysis.core.responses import Reason
+
+BUS = Bus(bit_time=1)
+
+
+def frame(name: str, place: int, cost: int, period: int, **more: Any) -> Frame:
+    return Frame(name, place, period, more.pop("deadline", period), cost, **more)
+
+
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (lambda: frame("m", 1, 0, 9), "cost of message m must be an integer above 0, not 0"),
+        (lambda: frame("m", 1, 1, -9), "period of message m must be an integer above 0, not -9"),
+        (lambda: frame("m", 1, 1, 9, jitter=-1), "jitter of message m must be an integer from 0"),
+        (lambda: analyse([frame("m", 1, 1, 9)] * 2, BUS), "two messages have the name m"),
+        (
+            lambda: analyse([frame("m", 1, 1, 9), frame("n", 1, 1, 9)], BUS),
+            "the identifiers of messages m and n are the same",
+        ),
+        (lambda: Bus(0), "bit_time of the bus must be an integer above 0, not 0"),
+        (lambda: Errors(0), "period of the error model must be an integer above 0, not 0"),
+        (lambda: classic_bits(9), "length of a classic frame must be at most 8, not 9"),
+        (lambda: fd_bits(9), "length of a CAN FD frame must be one of"),
+        (lambda: rank(0x800), "identifier of a frame must fit 11 bits, not 2048"),
+        (lambda: rank(-1), "identifier of a frame must be an integer from 0 up, not -1"),
+        (lambda: Bits(55).time(0), "bit_rate of the bus must be an integer above 0, not 0"),
+    ],
+)
+def test_what_has_no_meaning_is_refused_by_name(made: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        made()
+
+
+# --- Lengths and arbitration -----------------------------------------------------------
+
+
+def test_times_are_rounded_up_once() -> None:
+    assert classic_bits(8).time(500_000) == 270_000
+    assert Bits(1).time(3_000_000) == 334
+    assert Bits(100, 300).time(500_000, 2_000_000) == 350_000
+    assert Bits(1, 1).time(3_000_000, 6_000_000) == 500
+
+
+def test_fd_lengths_follow_the_layout() -> None:
+    #  8 bytes: 17 + 4 stuff + 13; 5 + 64 + (21 - 4) stuff + 4 count + 17 CRC + 6 fixed stuff
+    assert fd_bits(8) == Bits(34, 113)
+    #  64 bytes: 5 + 512 + (133 - 4) + 4 + 21 + 7
+    assert fd_bits(64) == Bits(34, 678)
+    assert fd_bits(64, extended=True) == Bits(36 + 8 + 13, 5 + 512 + (138 - 8) + 4 + 21 + 7)
+    assert fd_bits(8, switched=False) == Bits(147)
+    for size in FD_SIZES:
+        assert fd_bits(size, stuffed=False).data < fd_bits(size).data
+
+
+def test_a_standard_frame_beats_extended_ones_with_its_leading_bits() -> None:
+    standard = rank(0x123)
+    assert rank(0x122) < standard < rank(0x123 << 18, extended=True)
+    assert rank((0x122 << 18) + 0x3FFFF, extended=True) < standard
+    assert rank((0x123 << 18) + 5, extended=True) < rank(0x124)
+
+
+# --- Delays ------------------------------------------------------------------------------
+
+
+def test_the_terms_by_hand() -> None:
+    a, b = analyse([frame("a", 1, 3, 10), frame("b", 2, 5, 20)], BUS)
+    assert (a.bound, a.blocked, a.blocker, a.window) == (5 + 3, 5, "b", 5)
+    assert (b.bound, b.blocked, b.blocker) == (3 + 5, 0, "")
+    assert [(i.frame.name, i.instances, i.time) for i in b.interference] == [("a", 1, 3)]
+
+
+def test_a_frame_queued_when_arbitration_starts_takes_part() -> None:
+    c = analyse([frame("a", 1, 5, 10), frame("b", 2, 5, 100), frame("c", 3, 1, 100)], BUS)[2]
+    assert (c.window, c.interference[0].instances) == (15, 2)
+
+
+def test_unknown_traffic_blocks_the_lowest_too() -> None:
+    a, b = analyse([frame("a", 1, 3, 10), frame("b", 2, 5, 20)], replace(BUS, unknown=7))
+    assert (a.blocked, a.blocker, b.blocked, b.blocker) == (7, "", 7, "")
+    assert b.bound == 7 + 2 * 3 + 5
+
+
+def test_an_error_costs_its_bits_and_the_longest_frame_of_the_level() -> None:
+    frames = [frame("a", 1, 3, 100), frame("b", 2, 5, 200)]
+    once = analyse(frames, replace(BUS, errors=Errors(period=1_000)))
+    assert [r.errors for r in once] == [31 + 3, 31 + 5]
+    assert [r.bound for r in once] == [5 + 34 + 3, 36 + 3 + 5]
+    burst = analyse(frames, replace(BUS, errors=Errors(1_000, burst=2, bits=23)))
+    assert [r.errors for r in burst] == [2 * (23 + 3), 2 * (23 + 5)]
+
+
+def test_errors_that_leave_no_time_leave_no_bound() -> None:
+    found = analyse([frame("a", 1, 3, 10)], replace(BUS, errors=Errors(period=34)))
+    assert (found[0].bound, found[0].reason) == (None, Reason.OVERLOAD)
+
+
+def test_load_above_one_has_no_bound_below_that_place() -> None:
+    found = analyse([frame("a", 1, 5, 10), frame("b", 2, 5, 10), frame("c", 3, 1, 10)], BUS)
+    assert [r.reason for r in found] == [None, None, Reason.OVERLOAD]
+    assert load([r.frame for r in found]) == Fraction(11, 10)
+
+
+# --- First in, first out -------------------------------------------------------------------
+
+
+def test_a_queued_frame_waits_at_the_least_urgent_place_of_its_queue() -> None:
+    frames = [
+        frame("a", 1, 4, 100, queue="q"),
+        frame("b", 2, 4, 100),
+        frame("c", 3, 4, 100, queue="q"),
+        frame("d", 4, 4, 100),
+    ]
+    found = {r.frame.name: r for r in analyse(frames, BUS)}
+    #  a: d, b and c before it; without the queue only one of the others
+    assert (found["a"].bound, found["c"].bound) == (16, 16)
+    assert {i.frame.name for i in found["a"].interference} == {"b", "c"}
+    #  b: the same for the others, a may be late by what it waits
+    assert (found["b"].bound, found["d"].bound) == (12, 16)
+    assert found["b"].level.jitter(frames[0], frames[1]) == 12
+
+
+def test_queues_that_wait_for_each_other_settle_or_have_no_bound() -> None:
+    frames = [frame(f"m{n}", n, 4, 60, queue="pq"[n % 2]) for n in range(8)]
+    assert all(r.bound is not None for r in analyse(frames, BUS))
+    full = [replace(f, period=33) for f in frames]
+    for response in analyse(full, BUS):
+        assert response.bound is not None or response.reason is not None
+
+
+def lists_of_frames(queues: bool) -> st.SearchStrategy[list[Frame]]:
+    shapes = st.tuples(
+        st.integers(1, 4), st.integers(8, 40), st.integers(0, 9), st.sampled_from(["", "q", "r"])
+    )
+    return st.lists(shapes, min_size=1, max_size=5).map(
+        lambda found: [
+            frame(f"m{n}", n, cost, period, jitter=late, queue=name if queues else "")
+            for n, (cost, period, late, name) in enumerate(found)
+        ]
+    )
+
+
+@settings(max_examples=150, deadline=None)
+@given(lists_of_frames(queues=True), st.integers(0, 3))
+def test_a_queue_never_shortens_a_response_and_terms_add_up(
+    frames: list[Frame], unknown: int
+) -> None:
+    bus = replace(BUS, unknown=unknown, errors=Errors(500) if unknown == 3 else None)
+    free = analyse([replace(f, queue="") for f in frames], bus)
+    for queued, alone in zip(analyse(frames, bus), free, strict=True):
+        if queued.bound is None:
+            continue
+        assert alone.bound is not None and alone.bound <= queued.bound
+        parts = queued.blocked + queued.own + queued.errors
+        assert parts + sum(i.time for i in queued.interference) == queued.window
+        item = queued.frame
+        total = item.jitter + queued.window + item.cost - queued.worst_instance * item.period
+        assert total == queued.bound
+
+
+@settings(max_examples=100, deadline=None)
+@given(lists_of_frames(queues=False))
+def test_one_response_alone_is_the_same(frames: list[Frame]) -> None:
+    for n, response in enumerate(analyse(frames, BUS)):
+        alone = response_under(frames[n], frames[:n], frames[n + 1 :], BUS)
+        assert (alone.bound, alone.instances) == (response.bound, response.instances)
