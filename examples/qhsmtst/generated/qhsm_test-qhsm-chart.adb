@@ -623,28 +623,58 @@ is
      (Self  : in out Region;
       Now   : Occurrence;
       Fired : out Firing_List) is
-   begin
-      Fired := (Count => 0, Items => (others => None));
-      if Now = Start_Of_Region then
-         Fired.Items (1) := Initial_Entry;
-      else
-         Fired.Items (1) := Select_Transition (Self.Leaf, Now, Self.Data);
-      end if;
-      if Fired.Items (1) /= None then
-         Fire (Self, Fired.Items (1));
-         Fired.Count := 1;
-         for I in 2 .. 2 loop
+      Chosen : Selection;
+      procedure Fire_Whole (T : Firing)
+      with
+        Pre =>
+          (if T = Initial_Entry
+              then not Self.Started
+           else Self.Started and then In_Source (T, Self.Leaf))
+          and then Fired.Count = 0,
+        Post =>
+          Fired.Count >= 1
+          and then Self.Started
+          and then Fired.Items (Fired.Count'Old + 1) = T
+          and then (for all J in 1 .. Fired.Count'Old =>
+                Fired.Items (J) = Fired.Items'Old (J))
+          and then (for all J in Fired.Count'Old + 2 .. Fired.Count =>
+                Is_Segment (Fired.Items (J)))
+          and then Segments_Left (Self.Leaf) = 0
+      is
+         Before : constant Firing_List := Fired with Ghost;
+         Segment : Selection;
+      begin
+         Fire (Self, T);
+         Fired.Count := Fired.Count + 1;
+         Fired.Items (Fired.Count) := T;
+         for I in 1 .. 1 loop
             pragma Loop_Invariant
-              (Self.Started
-               and then Fired.Count = (I - 1)
-               and then Segments_Left (Self.Leaf) <= (3 - I));
+              (Fired.Count = Before.Count + I
+               and then Self.Started
+               and then Fired.Items (Before.Count + 1) = T
+               and then (for all J in 1 .. Before.Count =>
+                     Fired.Items (J) = Before.Items (J))
+               and then (for all J in Before.Count + 2 .. Fired.Count =>
+                     Is_Segment (Fired.Items (J)))
+               and then Segments_Left (Self.Leaf) <= (2 - I));
             if Segments_Left (Self.Leaf) = 0 then
                exit;
             end if;
-            Fired.Items (I) := Select_Segment (Self.Leaf, Self.Data);
-            Fire (Self, Fired.Items (I));
-            Fired.Count := I;
+            Segment := Select_Segment (Self.Leaf, Self.Data);
+            Fire (Self, Segment);
+            Fired.Count := Fired.Count + 1;
+            Fired.Items (Fired.Count) := Segment;
          end loop;
+      end Fire_Whole;
+   begin
+      Fired := (Count => 0, Items => (others => None));
+      if Now = Start_Of_Region then
+         Fire_Whole (Initial_Entry);
+      else
+         Chosen := Select_Transition (Self.Leaf, Now, Self.Data);
+         if Chosen /= None then
+            Fire_Whole (Chosen);
+         end if;
       end if;
    end Step;
 end Qhsm_Test.Qhsm.Chart;

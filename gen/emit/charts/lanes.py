@@ -1,4 +1,4 @@
-"""A step of several lanes: one transition in each, in order, each with its segments.
+"""A step that can fire more than one: a transition in each lane, each with its segments.
 
 `Follows` is the contract: what a step fires is what was chosen for the lanes, in
 their order, and a choice is dropped only when an earlier lane has fired.
@@ -41,7 +41,7 @@ from ..ada import (
     number,
 )
 from ..naming import ada_case
-from .compound import PASSED, Firing
+from .compound import Firing
 from .firing import Moves
 from .selection import segment
 from .shape import START, RegionShape, plain_args
@@ -52,12 +52,7 @@ def fire(moves: Moves, chosen: str) -> Do:
     return Do("Fire", arguments(*(Ref(chosen if n == "Chosen" else n) for n in names)))
 
 
-def ranks(shape: RegionShape) -> int:
-    ranks = (shape.rank(p.name) for p in shape.region.pseudostates if p.kind in PASSED)
-    return max(ranks, default=0)
-
-
-def nothing() -> Aggregate:
+def _nothing() -> Aggregate:
     """An empty list of firings."""
     return Aggregate(
         (Arg("Count", number(0)), Arg("Items", Aggregate((Arg("others", Ref("None")),))))
@@ -225,8 +220,25 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
         profile,
         declarations=(Object("C", "Choice"), _fire_whole(shape, moves)),
         body=(
-            Assign("Fired", nothing()),
+            Assign("Fired", _nothing()),
             If(((begun, (do("Fire_Whole", Ref(START)),)),), (Assign("C", choose), *work)),
+        ),
+    )
+
+
+def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
+    """One transition, then the segments that its way passes."""
+    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    pick = Assign("Chosen", Call("Select_Transition", shape.choice_args()))
+    some = Chain("/=", (Ref("Chosen"), Ref("None")))
+    work = (pick, If(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
+    return Subprogram(
+        "Step",
+        profile,
+        declarations=(Object("Chosen", "Selection"), _fire_whole(shape, moves)),
+        body=(
+            Assign("Fired", _nothing()),
+            If(((begun, (do("Fire_Whole", Ref(START)),)),), work),
         ),
     )
 
@@ -260,7 +272,7 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
     if lane != shape.busy_lanes[-1]:
         last = Chain("<=", (Ref(_ITEM), Ref(f"{shape.lane_name(lane)}_Transition'Last")))
         each = both(last, each)
-        few = [Chain("<=", (_COUNT, number(len(done) * (1 + ranks(shape)))))]
+        few = [Chain("<=", (_COUNT, number(len(done) * (1 + shape.most_segments))))]
     facts = (
         *few,
         ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
@@ -277,8 +289,9 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
         ((equal(Ref("T"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
         both(Ref("Self.Started"), call("In_Source", Ref("T"), held)),
     )
-    most = ranks(shape)
-    room = Chain("<=", (_COUNT, number(shape.most_firings - 1 - most)))
+    most = shape.most_segments
+    before = shape.most_firings - 1 - most
+    room = Chain("<=" if before else "=", (_COUNT, number(before)))
     left = call("Segments_Left", held)
     body: list[Stmt] = [fire(moves, "T"), *_note("T")]
     declarations: tuple[Decl, ...] = ()
@@ -306,7 +319,10 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
                 ),
             )
         )
-        grown = member(_COUNT, f"Fired.Count'Old + 1 .. Fired.Count'Old + {most + 1}")
+        if before:
+            grown = member(_COUNT, f"Fired.Count'Old + 1 .. Fired.Count'Old + {most + 1}")
+        else:
+            grown = Chain(">=", (_COUNT, number(1)))
         settled = [equal(left, number(0))]
     else:
         settled = [equal(held, shape.target("T"))]

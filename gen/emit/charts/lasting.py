@@ -25,6 +25,7 @@ from ..ada import (
     ForAll,
     IfExpr,
     Param,
+    Prefix,
     Ref,
     Subprogram,
     both,
@@ -280,12 +281,15 @@ class Lasting:
             facts.append(self._each_timer(equal(Ref("Self.Timers (I)"), after)))
         if self.shape.memories:
             recalled = call("Remembered", domain, Ref(f"{held}'Old"), Ref("Self.Past'Old"))
-            facts.append(
-                IfExpr(
-                    ((Ref("Self.Started'Old"), equal(Ref("Self.Past"), recalled)),),
-                    equal(Ref("Self.Past"), Ref("Self.Past'Old")),
-                )
-            )
+            known = equal(Ref("Self.Past"), recalled)
+            kept = equal(Ref("Self.Past"), Ref("Self.Past'Old"))
+            if any(terminates(self.shape, f) for f in self.shape.firings):
+                #  where the region ends, nothing will be remembered
+                starts = Prefix("not", Ref("Self.Started'Old"))
+                goes_on = Chain("/=", (domain, Ref("Ending")))
+                facts.append(IfExpr(((starts, kept), (goes_on, known)), None))
+            else:
+                facts.append(IfExpr(((Ref("Self.Started'Old"), known),), kept))
         return facts
 
     # --- parts

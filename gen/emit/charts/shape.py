@@ -41,9 +41,13 @@ START = "Initial_Entry"
 PASSING = "Passing"
 """The occurrence that takes an execution on from a choice or history."""
 
-_TYPES = "occurrence selection firing transition variables inputs outbox region item chart memory"
-_MORE = "done_states choice domain firing_list firing_array"
-TYPES = frozenset((*_TYPES.split(), *_MORE.split()))
+TYPES = frozenset(
+    (
+        *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
+        *("variables", "inputs", "outbox", "region", "item"),
+        *("firing_list", "firing_array", "done_states"),
+    )
+)
 """What hides an event of the same name inside a region's package."""
 
 HELD = frozenset(("Leaf", "Place", "Data", "Past", "Done_In"))
@@ -186,8 +190,13 @@ class RegionShape(Places):
     @cached_property
     def most_firings(self) -> int:
         """The most that one step fires."""
-        ranks = [self.rank(p.name) for p in self.region.pseudostates if p.kind in PASSED]
-        return max(1, len(self.busy_lanes)) * (1 + max(ranks, default=0))
+        return max(1, len(self.busy_lanes)) * (1 + self.most_segments)
+
+    @cached_property
+    def most_segments(self) -> int:
+        """The most segments that one transition goes on by."""
+        ranks = (self.rank(p.name) for p in self.region.pseudostates if p.kind in PASSED)
+        return max(ranks, default=0)
 
     def rank(self, pseudo: str) -> int:
         """The most segments that follow when an execution is in a choice or history."""
@@ -411,7 +420,8 @@ class RegionShape(Places):
     def target_params(self) -> tuple[Param, ...]:
         """Target looks at the place and the past only when it needs to."""
         params = []
-        if not self.single or any(f.kind is not Kind.MOVE for f in self.firings):
+        stays = (Kind.INTERNAL, Kind.DEFERRAL)
+        if not self.single or any(f.kind in stays for f in self.firings):
             params.append(Param(self.place, "in", self.place_type))
         if self.memories:
             params.append(Param("Past", "in", "Memory"))

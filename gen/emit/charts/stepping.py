@@ -32,8 +32,8 @@ from ..events import null_event
 from ..naming import ada_case
 from ..terms import expressions_in
 from .firing import Moves
-from .lanes import fire, lane_step, nothing, ranks
-from .selection import segment, selectors
+from .lanes import fire, lane_step, passing_step
+from .selection import selectors
 from .shape import (
     START,
     RegionShape,
@@ -157,7 +157,7 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
     if not shape.listed:
         return Subprogram("Step", profile, body=_plain_step(shape, moves))
     if shape.single:
-        return Subprogram("Step", profile, body=_passing_step(shape, moves))
+        return passing_step(shape, moves, profile)
     return lane_step(shape, moves, profile)
 
 
@@ -167,34 +167,4 @@ def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
     return (
         If(((begun, (Assign("Fired", Ref(START)),)),), (Assign("Fired", pick),)),
         If(((Chain("/=", (Ref("Fired"), Ref("None"))), (fire(moves, "Fired"),)),)),
-    )
-
-
-def _passing_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
-    """One transition, then the segments that its way passes."""
-    pick = Call("Select_Transition", shape.choice_args())
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
-    first = Ref("Fired.Items (1)")
-    most = ranks(shape)
-    left = call("Segments_Left", Ref(f"Self.{shape.place}"))
-    bound = Chain("<=", (left, Chain("-", (number(most + 2), Ref("I")))))
-    counted = equal(Ref("Fired.Count"), Chain("-", (Ref("I"), number(1))))
-    fired = (fire(moves, "Fired.Items (1)"), Assign("Fired.Count", number(1)))
-    loop = Loop(
-        f"for I in 2 .. {most + 1}",
-        (
-            Pragma("Loop_Invariant", (both(Ref("Self.Started"), counted, bound),)),
-            If(((equal(left, number(0)), (Say("exit"),)),)),
-            Assign("Fired.Items (I)", segment(shape, "Self.")),
-            fire(moves, "Fired.Items (I)"),
-            Assign("Fired.Count", Ref("I")),
-        ),
-    )
-    return (
-        Assign("Fired", nothing()),
-        If(
-            ((begun, (Assign("Fired.Items (1)", Ref(START)),)),),
-            (Assign("Fired.Items (1)", pick),),
-        ),
-        If(((Chain("/=", (first, Ref("None"))), (*fired, loop)),)),
     )
