@@ -96,11 +96,17 @@ def _bare(*docs: Doc) -> Doc:
     return group("(", nest(*docs, by=1), ")")
 
 
+def _choices(text: str) -> Doc:
+    """``A | B``, in as many lines as it takes."""
+    first, *others = text.split(" | ")
+    return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
+
+
 def expression(expr: Expr) -> Doc:
     """The layout of one expression."""
     match expr:
         case Ref(text):
-            return text
+            return _choices(text) if " | " in text else text
         case Chain(operator, operands):
             head = _operand(operands[0], operator)
             rest = [_signed(o, operator) for o in operands[1:]]
@@ -125,7 +131,7 @@ def expression(expr: Expr) -> Doc:
             return _bare(*_join(parts))
         case CaseExpr(selector, branches):
             rows = [
-                group(f"when {choice} =>", nest(SOFT, expression(value)))
+                group("when ", nest(_choices(f"{choice} =>")), nest(SOFT, expression(value)))
                 for choice, value in branches
             ]
             body = nest(SOFT, *_join(rows, ","), by=2)

@@ -21,7 +21,7 @@ from .mutants import Files, Mutant
 from .observing import Observer, Simulated
 from .source import choices, subprogram
 
-PROOF = ("--level=1", "--prover=cvc4,z3", "--timeout=10", "--checks-as-errors")
+PROOF = ("--level=1", "--prover=z3,cvc4", "--timeout=10", "--checks-as-errors")
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
 

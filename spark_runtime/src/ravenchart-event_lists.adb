@@ -19,14 +19,7 @@ is
 
    procedure Remove (L : in out List; Index : Positive) is
    begin
-      for I in Index .. L.Used - 1 loop
-         L.Events (I) := L.Events (I + 1);
-         pragma Loop_Invariant
-           (for all J in 1 .. L.Used =>
-              L.Events (J) =
-                L.Events'Loop_Entry
-                  (if J in Index .. I then J + 1 else J));
-      end loop;
+      L.Events (Index .. L.Used - 1) := L.Events (Index + 1 .. L.Used);
       L.Used := L.Used - 1;
    end Remove;
 

@@ -30,16 +30,23 @@ is
      Pre    => Index <= Count (L);
    --  The event that was raised as number Index.
 
+   function Is_Appended
+     (Before : List; Item : Event; After : List) return Boolean
+   is (if Count (Before) = Capacity
+       then After = Before
+       else Count (After) = Count (Before) + 1
+            and then Element (After, Count (After)) = Item
+            and then (for all I in 1 .. Count (Before) =>
+                        Element (After, I) = Element (Before, I)))
+   with
+     Ghost,
+     Global => null;
+   --  After is Before with Item as its last event, if there was room for it.
+
    procedure Append (L : in out List; Item : Event)
    with
      Global => null,
-     Post   =>
-       (if Count (L'Old) = Capacity
-        then L = L'Old
-        else Count (L) = Count (L'Old) + 1
-             and then Element (L, Count (L)) = Item
-             and then (for all I in 1 .. Count (L'Old) =>
-                         Element (L, I) = Element (L'Old, I)));
+     Post   => Is_Appended (L'Old, Item, L);
    --  Add Item as the last event; a full list ignores it.
 
    procedure Remove (L : in out List; Index : Positive)

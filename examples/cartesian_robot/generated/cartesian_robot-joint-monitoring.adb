@@ -5,47 +5,34 @@
 package body Cartesian_Robot.Joint.Monitoring
 with SPARK_Mode
 is
-   function In_Watching (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Conditions
-         and then Ins.Homed
-         and then abs Ins.Measured.Error > 20_000
-         then Strayed
-      elsif Now = Conditions
-         and then Ins.Motion in Motion_States.Moving
-         and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear
-         then Limit_Hit
-      elsif Now = Conditions
-         and then Ins.Motion in Motion_States.Homing
-         and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End
-         then End_Reached
-      elsif Now = Conditions
-         and then Ins.Feedback.State = Ravenchart.Fresh
-         and then Ins.Feedback.Value.Condition = Cartesian_Robot.Faulted
-         and then Ins.Motion in Motion_States.Operational
-         then Drive_Failed
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Watching'Result,
-          Monitoring_States.Watching,
-          Now,
-          Ins);
-
-   function In_Alarmed (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Expiry_Of_Calm then Calm else None)
-   with
-     Post =>
-       Is_Selection (In_Alarmed'Result, Monitoring_States.Alarmed, Now, Ins);
-
    function Select_Transition
      (Leaf : Monitoring_States.Leaf;
       Now  : Occurrence;
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Monitoring_States.Watching => In_Watching (Now, Ins),
-        when Monitoring_States.Alarmed => In_Alarmed (Now, Ins))
+        when Monitoring_States.Watching =>
+           (if Now = Conditions
+               and then Ins.Homed
+               and then abs Ins.Measured.Error > 20_000
+               then Strayed
+            elsif Now = Conditions
+               and then Ins.Motion in Motion_States.Moving
+               and then Ins.Feedback.Value.Limit /= Cartesian_Robot.Clear
+               then Limit_Hit
+            elsif Now = Conditions
+               and then Ins.Motion in Motion_States.Homing
+               and then Ins.Feedback.Value.Limit = Cartesian_Robot.High_End
+               then End_Reached
+            elsif Now = Conditions
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               and then Ins.Feedback.Value.Condition
+                 = Cartesian_Robot.Faulted
+               and then Ins.Motion in Motion_States.Operational
+               then Drive_Failed
+            else None),
+        when Monitoring_States.Alarmed =>
+           (if Now = Expiry_Of_Calm then Calm else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
    package Chart
@@ -97,14 +84,13 @@ is
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Leaf'Old,
-                  Self.Leaf,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Leaf'Old,
+              Self.Leaf,
+              Self.Timers'Old (1))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -114,19 +100,6 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Exit_Watching
-      with
-        Pre => Active (Chart.Watching),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Watching and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Watching) := False;
-      end Exit_Watching;
       procedure Exit_Alarmed
       with
         Pre => Active (Chart.Alarmed),
@@ -144,20 +117,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active (Chart.Alarmed) := False;
       end Exit_Alarmed;
-      procedure Enter_Watching
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Monitoring_States.Watching
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Watching or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Monitoring_States.Watching;
-         Active (Chart.Watching) := True;
-      end Enter_Watching;
       procedure Enter_Alarmed
       with
         Pre => (for all N in Chart.Node => not Active (N)),
@@ -179,31 +138,33 @@ is
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Watching;
+            Self.Leaf := Monitoring_States.Watching;
+            Active (Chart.Watching) := True;
             Self.Started := True;
          when Strayed =>
-            Exit_Watching;
+            Active (Chart.Watching) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Event_Lists.Append (Box.Raised, Joint.Strayed);
             Enter_Alarmed;
          when Limit_Hit =>
-            Exit_Watching;
+            Active (Chart.Watching) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
             Enter_Alarmed;
          when End_Reached =>
-            Exit_Watching;
+            Active (Chart.Watching) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
             Enter_Alarmed;
          when Drive_Failed =>
-            Exit_Watching;
+            Active (Chart.Watching) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Event_Lists.Append (Box.Raised, Joint.Drive_Failed);
             Enter_Alarmed;
          when Calm =>
             Exit_Alarmed;
-            Enter_Watching;
+            Self.Leaf := Monitoring_States.Watching;
+            Active (Chart.Watching) := True;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
    end Fire;

@@ -195,13 +195,12 @@ is
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
           else Self.Leaf = Target (Fired)
-             and then (for all I in Self.Timers'Range =>
-                   Self.Timers (I)
-                   = Timer_After
-                       (I,
-                        Domain_Of (Fired),
-                        Self.Leaf'Old,
-                        Self.Leaf,
-                        Self.Timers'Old (I))));
+             and then Self.Timers (1)
+               = Timer_After
+                   (1,
+                    Domain_Of (Fired),
+                    Self.Leaf'Old,
+                    Self.Leaf,
+                    Self.Timers'Old (1)));
    --  One run-to-completion step.
 end Cartesian_Robot.Joint.Monitoring;

@@ -5,97 +5,6 @@
 package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
-   function In_Idle
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Home
-         and then Ins.Feedback.State = Ravenchart.Fresh
-         then Start_Homing
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Move
-         and then Data.Homed
-         then Start_Move
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost
-         then Lost
-      elsif Now = On_Drive_Failed
-         then Failed
-      elsif Now = On_Strayed
-         then Strayed
-      elsif Now = On_Limit_Hit
-         then Limit
-      else None)
-   with
-     Post =>
-       Is_Selection (In_Idle'Result, Motion_States.Idle, Now, Data, Ins);
-
-   function In_Seeking
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = Conditions
-         and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
-         then End_Found
-      elsif Now = Expiry_Of_No_End
-         then No_End
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost
-         then Lost
-      elsif Now = On_Drive_Failed
-         then Failed
-      elsif Now = On_Strayed
-         then Strayed
-      elsif Now = On_Limit_Hit
-         then Limit
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Seeking'Result,
-          Motion_States.Seeking,
-          Now,
-          Data,
-          Ins);
-
-   function In_Backing_Off
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = Conditions
-         and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
-         then End_Left
-      elsif Now = Expiry_Of_No_End
-         then No_End
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost
-         then Lost
-      elsif Now = On_Drive_Failed
-         then Failed
-      elsif Now = On_Strayed
-         then Strayed
-      elsif Now = On_Limit_Hit
-         then Limit
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Backing_Off'Result,
-          Motion_States.Backing_Off,
-          Now,
-          Data,
-          Ins);
-
    function In_Homing
      (Leaf : Motion_States.Homing;
       Now  : Occurrence;
@@ -103,111 +12,43 @@ is
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Motion_States.Seeking => In_Seeking (Now, Data, Ins),
-        when Motion_States.Backing_Off => In_Backing_Off (Now, Data, Ins))
+        when Motion_States.Seeking =>
+           (if Now = Conditions
+               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
+               then End_Found
+            elsif Now = Expiry_Of_No_End
+               then No_End
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None),
+        when Motion_States.Backing_Off =>
+           (if Now = Conditions
+               and then Ins.Feedback.Value.Limit = Cartesian_Robot.Clear
+               then End_Left
+            elsif Now = Expiry_Of_No_End
+               then No_End
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None))
    with Post => Is_Selection (In_Homing'Result, Leaf, Now, Data, Ins);
-
-   function In_Accelerating
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
-         then At_Speed
-      elsif Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
-         then No_Cruise
-      elsif Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-         and then Ins.Profile.Position = Data.Goal.Target
-         and then abs Ins.Measured.Error < 2_000
-         then Arrived
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost
-         then Lost
-      elsif Now = On_Drive_Failed
-         then Failed
-      elsif Now = On_Strayed
-         then Strayed
-      elsif Now = On_Limit_Hit
-         then Limit
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Accelerating'Result,
-          Motion_States.Accelerating,
-          Now,
-          Data,
-          Ins);
-
-   function In_Cruising
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
-         then Brake
-      elsif Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-         and then Ins.Profile.Position = Data.Goal.Target
-         and then abs Ins.Measured.Error < 2_000
-         then Arrived
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost
-         then Lost
-      elsif Now = On_Drive_Failed
-         then Failed
-      elsif Now = On_Strayed
-         then Strayed
-      elsif Now = On_Limit_Hit
-         then Limit
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Cruising'Result,
-          Motion_States.Cruising,
-          Now,
-          Data,
-          Ins);
-
-   function In_Braking
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = Conditions
-         and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
-         and then Ins.Profile.Position = Data.Goal.Target
-         and then abs Ins.Measured.Error < 2_000
-         then Arrived
-      elsif Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = On_Feedback_Lost
-         then Lost
-      elsif Now = On_Drive_Failed
-         then Failed
-      elsif Now = On_Strayed
-         then Strayed
-      elsif Now = On_Limit_Hit
-         then Limit
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Braking'Result,
-          Motion_States.Braking,
-          Now,
-          Data,
-          Ins);
 
    function In_Moving
      (Leaf : Motion_States.Moving;
@@ -216,9 +57,69 @@ is
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Motion_States.Accelerating => In_Accelerating (Now, Data, Ins),
-        when Motion_States.Cruising => In_Cruising (Now, Data, Ins),
-        when Motion_States.Braking => In_Braking (Now, Data, Ins))
+        when Motion_States.Accelerating =>
+           (if Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
+               then At_Speed
+            elsif Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
+               then No_Cruise
+            elsif Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
+               and then Ins.Profile.Position = Data.Goal.Target
+               and then abs Ins.Measured.Error < 2_000
+               then Arrived
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None),
+        when Motion_States.Cruising =>
+           (if Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.Slowing_Down
+               then Brake
+            elsif Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
+               and then Ins.Profile.Position = Data.Goal.Target
+               and then abs Ins.Measured.Error < 2_000
+               then Arrived
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None),
+        when Motion_States.Braking =>
+           (if Now = Conditions
+               and then Ins.Profile.Phase = Cartesian_Robot.At_Rest
+               and then Ins.Profile.Position = Data.Goal.Target
+               and then abs Ins.Measured.Error < 2_000
+               then Arrived
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None))
    with Post => Is_Selection (In_Moving'Result, Leaf, Now, Data, Ins);
 
    function In_Operational
@@ -228,38 +129,30 @@ is
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Motion_States.Idle => In_Idle (Now, Data, Ins),
+        when Motion_States.Idle =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Home
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Start_Homing
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Move
+               and then Data.Homed
+               then Start_Move
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None),
         when Motion_States.Homing => In_Homing (Leaf, Now, Data, Ins),
         when Motion_States.Moving => In_Moving (Leaf, Now, Data, Ins))
    with Post => Is_Selection (In_Operational'Result, Leaf, Now, Data, Ins);
-
-   function In_Limit
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-         and then Ins.Feedback.State = Ravenchart.Fresh
-         then Reset
-      else None)
-   with
-     Post =>
-       Is_Selection (In_Limit'Result, Motion_States.Limit, Now, Data, Ins);
-
-   function In_Drive
-     (Now : Occurrence;
-      Data : Variables;
-      Ins : Inputs)
-     return Selection is
-     (if Now = On_Ordered
-         and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-         and then Ins.Feedback.State = Ravenchart.Fresh
-         then Reset
-      else None)
-   with
-     Post =>
-       Is_Selection (In_Drive'Result, Motion_States.Drive, Now, Data, Ins);
 
    function In_Fault
      (Leaf : Motion_States.Fault;
@@ -268,8 +161,18 @@ is
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Motion_States.Limit => In_Limit (Now, Data, Ins),
-        when Motion_States.Drive => In_Drive (Now, Data, Ins))
+        when Motion_States.Limit =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Reset
+            else None),
+        when Motion_States.Drive =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Reset
+            else None))
    with Post => Is_Selection (In_Fault'Result, Leaf, Now, Data, Ins);
 
    function Select_Transition
@@ -353,14 +256,13 @@ is
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Leaf'Old,
-                  Self.Leaf,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Leaf'Old,
+              Self.Leaf,
+              Self.Timers'Old (1))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -370,36 +272,6 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Exit_Operational
-      with
-        Pre =>
-          Active (Chart.Operational)
-          and then (for all N in Chart.Idle .. Chart.Braking =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.Operational and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Operational) := False;
-      end Exit_Operational;
-      procedure Exit_Idle
-      with
-        Pre => Active (Chart.Idle),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Idle and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Idle) := False;
-      end Exit_Idle;
       procedure Exit_Homing
       with
         Pre =>
@@ -420,131 +292,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active (Chart.Homing) := False;
       end Exit_Homing;
-      procedure Exit_Seeking
-      with
-        Pre => Active (Chart.Seeking),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Seeking and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Seeking) := False;
-      end Exit_Seeking;
-      procedure Exit_Backing_Off
-      with
-        Pre => Active (Chart.Backing_Off),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.Backing_Off and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Backing_Off) := False;
-      end Exit_Backing_Off;
-      procedure Exit_Moving
-      with
-        Pre =>
-          Active (Chart.Moving)
-          and then (for all N in Chart.Accelerating .. Chart.Braking =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Moving and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Moving) := False;
-      end Exit_Moving;
-      procedure Exit_Accelerating
-      with
-        Pre => Active (Chart.Accelerating),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.Accelerating and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Accelerating) := False;
-      end Exit_Accelerating;
-      procedure Exit_Cruising
-      with
-        Pre => Active (Chart.Cruising),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Cruising and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Cruising) := False;
-      end Exit_Cruising;
-      procedure Exit_Braking
-      with
-        Pre => Active (Chart.Braking),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Braking and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Braking) := False;
-      end Exit_Braking;
-      procedure Exit_Fault
-      with
-        Pre =>
-          Active (Chart.Fault)
-          and then (for all N in Chart.Limit .. Chart.Drive =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Fault and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Fault) := False;
-      end Exit_Fault;
-      procedure Exit_Limit
-      with
-        Pre => Active (Chart.Limit),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Limit and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Limit) := False;
-      end Exit_Limit;
-      procedure Exit_Drive
-      with
-        Pre => Active (Chart.Drive),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Drive and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Drive) := False;
-      end Exit_Drive;
       procedure Leave_Fault
       with
         Pre =>
@@ -563,9 +310,9 @@ is
       begin
          case Motion_States.Fault'(Self.Leaf) is
             when Motion_States.Limit =>
-               Exit_Limit;
+               Active (Chart.Limit) := False;
             when Motion_States.Drive =>
-               Exit_Drive;
+               Active (Chart.Drive) := False;
          end case;
       end Leave_Fault;
       procedure Leave_Moving
@@ -586,11 +333,11 @@ is
       begin
          case Motion_States.Moving'(Self.Leaf) is
             when Motion_States.Accelerating =>
-               Exit_Accelerating;
+               Active (Chart.Accelerating) := False;
             when Motion_States.Cruising =>
-               Exit_Cruising;
+               Active (Chart.Cruising) := False;
             when Motion_States.Braking =>
-               Exit_Braking;
+               Active (Chart.Braking) := False;
          end case;
       end Leave_Moving;
       procedure Leave_Homing
@@ -611,9 +358,9 @@ is
       begin
          case Motion_States.Homing'(Self.Leaf) is
             when Motion_States.Seeking =>
-               Exit_Seeking;
+               Active (Chart.Seeking) := False;
             when Motion_States.Backing_Off =>
-               Exit_Backing_Off;
+               Active (Chart.Backing_Off) := False;
          end case;
       end Leave_Homing;
       procedure Leave_Operational
@@ -639,28 +386,15 @@ is
       begin
          case Motion_States.Operational'(Self.Leaf) is
             when Motion_States.Idle =>
-               Exit_Idle;
+               Active (Chart.Idle) := False;
             when Motion_States.Homing =>
                Leave_Homing;
                Exit_Homing;
             when Motion_States.Moving =>
                Leave_Moving;
-               Exit_Moving;
+               Active (Chart.Moving) := False;
          end case;
       end Leave_Operational;
-      procedure Enter_Operational
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Operational or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Operational) := True;
-      end Enter_Operational;
       procedure Enter_Idle
       with
         Pre =>
@@ -757,57 +491,6 @@ is
               Ins.Travel);
          Self.Data.Goal.Wanted := Cartesian_Robot.Go;
       end Enter_Moving;
-      procedure Enter_Accelerating
-      with
-        Pre =>
-          Active (Chart.Moving)
-          and then (for all N in Chart.Accelerating .. Chart.Braking =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Motion_States.Accelerating
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Accelerating or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Motion_States.Accelerating;
-         Active (Chart.Accelerating) := True;
-      end Enter_Accelerating;
-      procedure Enter_Cruising
-      with
-        Pre =>
-          Active (Chart.Moving)
-          and then (for all N in Chart.Accelerating .. Chart.Braking =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Motion_States.Cruising
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Cruising or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Motion_States.Cruising;
-         Active (Chart.Cruising) := True;
-      end Enter_Cruising;
-      procedure Enter_Braking
-      with
-        Pre =>
-          Active (Chart.Moving)
-          and then (for all N in Chart.Accelerating .. Chart.Braking =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Motion_States.Braking
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Braking or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Motion_States.Braking;
-         Active (Chart.Braking) := True;
-      end Enter_Braking;
       procedure Enter_Fault
       with
         Pre => (for all N in Chart.Node => not Active (N)),
@@ -823,51 +506,17 @@ is
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
          Self.Data.Homed := False;
       end Enter_Fault;
-      procedure Enter_Limit
-      with
-        Pre =>
-          Active (Chart.Fault)
-          and then (for all N in Chart.Limit .. Chart.Drive =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Motion_States.Limit
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Limit or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Motion_States.Limit;
-         Active (Chart.Limit) := True;
-      end Enter_Limit;
-      procedure Enter_Drive
-      with
-        Pre =>
-          Active (Chart.Fault)
-          and then (for all N in Chart.Limit .. Chart.Drive =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Motion_States.Drive
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Drive or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Motion_States.Drive;
-         Active (Chart.Drive) := True;
-      end Enter_Drive;
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Operational;
+            Active (Chart.Operational) := True;
             Enter_Idle;
             Self.Started := True;
          when End_Found =>
-            Exit_Seeking;
+            Active (Chart.Seeking) := False;
             Enter_Backing_Off;
          when End_Left =>
-            Exit_Backing_Off;
+            Active (Chart.Backing_Off) := False;
             Exit_Homing;
             pragma Assert
               ((for all N in Chart.Node =>
@@ -877,61 +526,70 @@ is
             Self.Data.Homed := True;
             Enter_Idle;
          when At_Speed =>
-            Exit_Accelerating;
-            Enter_Cruising;
+            Active (Chart.Accelerating) := False;
+            Self.Leaf := Motion_States.Cruising;
+            Active (Chart.Cruising) := True;
          when No_Cruise =>
-            Exit_Accelerating;
-            Enter_Braking;
+            Active (Chart.Accelerating) := False;
+            Self.Leaf := Motion_States.Braking;
+            Active (Chart.Braking) := True;
          when Brake =>
-            Exit_Cruising;
-            Enter_Braking;
+            Active (Chart.Cruising) := False;
+            Self.Leaf := Motion_States.Braking;
+            Active (Chart.Braking) := True;
          when Start_Homing =>
-            Exit_Idle;
+            Active (Chart.Idle) := False;
             Enter_Homing;
             Enter_Seeking;
          when No_End =>
             Leave_Homing;
             Exit_Homing;
-            Exit_Operational;
+            Active (Chart.Operational) := False;
             Enter_Fault;
-            Enter_Drive;
+            Self.Leaf := Motion_States.Drive;
+            Active (Chart.Drive) := True;
          when Start_Move =>
-            Exit_Idle;
+            Active (Chart.Idle) := False;
             Enter_Moving;
-            Enter_Accelerating;
+            Self.Leaf := Motion_States.Accelerating;
+            Active (Chart.Accelerating) := True;
          when Arrived =>
             Leave_Moving;
-            Exit_Moving;
+            Active (Chart.Moving) := False;
             Enter_Idle;
          when Halt =>
             Leave_Operational;
-            Exit_Operational;
-            Enter_Operational;
+            Active (Chart.Operational) := False;
+            Active (Chart.Operational) := True;
             Enter_Idle;
          when Lost =>
             Leave_Operational;
-            Exit_Operational;
+            Active (Chart.Operational) := False;
             Enter_Fault;
-            Enter_Drive;
+            Self.Leaf := Motion_States.Drive;
+            Active (Chart.Drive) := True;
          when Failed =>
             Leave_Operational;
-            Exit_Operational;
+            Active (Chart.Operational) := False;
             Enter_Fault;
-            Enter_Drive;
+            Self.Leaf := Motion_States.Drive;
+            Active (Chart.Drive) := True;
          when Strayed =>
             Leave_Operational;
-            Exit_Operational;
+            Active (Chart.Operational) := False;
             Enter_Fault;
-            Enter_Drive;
+            Self.Leaf := Motion_States.Drive;
+            Active (Chart.Drive) := True;
          when Limit =>
             Leave_Operational;
-            Exit_Operational;
+            Active (Chart.Operational) := False;
             Enter_Fault;
-            Enter_Limit;
+            Self.Leaf := Motion_States.Limit;
+            Active (Chart.Limit) := True;
          when Reset =>
             Leave_Fault;
-            Exit_Fault;
-            Enter_Operational;
+            Active (Chart.Fault) := False;
+            Active (Chart.Operational) := True;
             Enter_Idle;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));

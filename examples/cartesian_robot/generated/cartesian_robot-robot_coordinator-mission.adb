@@ -5,126 +5,56 @@
 package body Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
-   function In_Waiting (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Home
-         then Home
-      elsif Now = Conditions
-         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
-         then Joint_Failed
-      elsif Now = On_Joint_Lost
-         then Joint_Lost
-      elsif Now = On_Shutdown
-         then Shut_Down
-      else None)
-   with
-     Post =>
-       Is_Selection (In_Waiting'Result, Mission_States.Waiting, Now, Ins);
-
-   function In_Homing (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Conditions
-         and then Ins.Report_X.Value.Condition = Cartesian_Robot.Standing
-         and then Ins.Report_Y.Value.Condition = Cartesian_Robot.Standing
-         and then Ins.Report_Z.Value.Condition = Cartesian_Robot.Standing
-         then Homed
-      elsif Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-         then Halt_Homing
-      elsif Now = Conditions
-         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
-         then Joint_Failed
-      elsif Now = On_Joint_Lost
-         then Joint_Lost
-      elsif Now = On_Shutdown
-         then Shut_Down
-      else None)
-   with
-     Post =>
-       Is_Selection (In_Homing'Result, Mission_States.Homing, Now, Ins);
-
-   function In_Ready (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Home
-         then Home_Again
-      elsif Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Move
-         then Move
-      elsif Now = Conditions
-         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
-         then Joint_Failed
-      elsif Now = On_Joint_Lost
-         then Joint_Lost
-      elsif Now = On_Shutdown
-         then Shut_Down
-      else None)
-   with
-     Post => Is_Selection (In_Ready'Result, Mission_States.Ready, Now, Ins);
-
-   function In_Departing (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Expiry_Of_Under_Way
-         then Under_Way
-      elsif Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = Conditions
-         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
-         then Joint_Failed
-      elsif Now = On_Joint_Lost
-         then Joint_Lost
-      elsif Now = On_Shutdown
-         then Shut_Down
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Departing'Result,
-          Mission_States.Departing,
-          Now,
-          Ins);
-
-   function In_Under_Way (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = Conditions
-         and then Ins.Report_X.Value.Condition = Cartesian_Robot.Standing
-         and then Ins.Report_Y.Value.Condition = Cartesian_Robot.Standing
-         and then Ins.Report_Z.Value.Condition = Cartesian_Robot.Standing
-         then Arrived
-      elsif Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-         then Halt
-      elsif Now = Conditions
-         and then ((Ins.Report_X.Value.Condition = Cartesian_Robot.Failed
-             or else Ins.Report_Y.Value.Condition = Cartesian_Robot.Failed)
-            or else Ins.Report_Z.Value.Condition = Cartesian_Robot.Failed)
-         then Joint_Failed
-      elsif Now = On_Joint_Lost
-         then Joint_Lost
-      elsif Now = On_Shutdown
-         then Shut_Down
-      else None)
-   with
-     Post =>
-       Is_Selection
-         (In_Under_Way'Result,
-          Mission_States.Under_Way,
-          Now,
-          Ins);
-
    function In_Travelling
      (Leaf : Mission_States.Travelling;
       Now  : Occurrence;
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Mission_States.Departing => In_Departing (Now, Ins),
-        when Mission_States.Under_Way => In_Under_Way (Now, Ins))
+        when Mission_States.Departing =>
+           (if Now = Expiry_Of_Under_Way
+               then Under_Way
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None),
+        when Mission_States.Under_Way =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Y.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Z.Value.Condition
+                 = Cartesian_Robot.Standing
+               then Arrived
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None))
    with Post => Is_Selection (In_Travelling'Result, Leaf, Now, Ins);
 
    function In_Active
@@ -133,32 +63,70 @@ is
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Mission_States.Waiting => In_Waiting (Now, Ins),
-        when Mission_States.Homing => In_Homing (Now, Ins),
-        when Mission_States.Ready => In_Ready (Now, Ins),
+        when Mission_States.Waiting =>
+           (if Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Home
+               then Home
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None),
+        when Mission_States.Homing =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Y.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Z.Value.Condition
+                 = Cartesian_Robot.Standing
+               then Homed
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+               then Halt_Homing
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None),
+        when Mission_States.Ready =>
+           (if Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Home
+               then Home_Again
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Move
+               then Move
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None),
         when Mission_States.Travelling => In_Travelling (Leaf, Now, Ins))
    with Post => Is_Selection (In_Active'Result, Leaf, Now, Ins);
-
-   function In_Failed (Now : Occurrence; Ins : Inputs) return Selection is
-     (if Now = On_Shutdown
-         then Shut_Down_Failed
-      elsif Now = On_Commanded
-         and then Ins.Command.Value.Kind = Cartesian_Robot.Reset
-         then Recover
-      else None)
-   with
-     Post =>
-       Is_Selection (In_Failed'Result, Mission_States.Failed, Now, Ins);
-
-   function In_Shut_Down (Now : Occurrence; Ins : Inputs) return Selection is
-     (None)
-   with
-     Post =>
-       Is_Selection
-         (In_Shut_Down'Result,
-          Mission_States.Shut_Down,
-          Now,
-          Ins);
 
    function In_Stopped
      (Leaf : Mission_States.Stopped;
@@ -166,8 +134,14 @@ is
       Ins  : Inputs)
      return Selection is
      (case Leaf is
-        when Mission_States.Failed => In_Failed (Now, Ins),
-        when Mission_States.Shut_Down => In_Shut_Down (Now, Ins))
+        when Mission_States.Failed =>
+           (if Now = On_Shutdown
+               then Shut_Down_Failed
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Reset
+               then Recover
+            else None),
+        when Mission_States.Shut_Down => None)
    with Post => Is_Selection (In_Stopped'Result, Leaf, Now, Ins);
 
    function Select_Transition
@@ -248,14 +222,13 @@ is
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Leaf'Old,
-                  Self.Leaf,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Leaf'Old,
+              Self.Leaf,
+              Self.Timers'Old (1))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -265,77 +238,6 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Exit_Active
-      with
-        Pre =>
-          Active (Chart.Active)
-          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Active and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Active) := False;
-      end Exit_Active;
-      procedure Exit_Waiting
-      with
-        Pre => Active (Chart.Waiting),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Waiting and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Waiting) := False;
-      end Exit_Waiting;
-      procedure Exit_Homing
-      with
-        Pre => Active (Chart.Homing),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Homing and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Homing) := False;
-      end Exit_Homing;
-      procedure Exit_Ready
-      with
-        Pre => Active (Chart.Ready),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Ready and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Ready) := False;
-      end Exit_Ready;
-      procedure Exit_Travelling
-      with
-        Pre =>
-          Active (Chart.Travelling)
-          and then (for all N in Chart.Departing .. Chart.Under_Way =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Travelling and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Travelling) := False;
-      end Exit_Travelling;
       procedure Exit_Departing
       with
         Pre => Active (Chart.Departing),
@@ -353,48 +255,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active (Chart.Departing) := False;
       end Exit_Departing;
-      procedure Exit_Under_Way
-      with
-        Pre => Active (Chart.Under_Way),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Under_Way and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Under_Way) := False;
-      end Exit_Under_Way;
-      procedure Exit_Stopped
-      with
-        Pre =>
-          Active (Chart.Stopped)
-          and then (for all N in Chart.Failed .. Chart.Shut_Down =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Stopped and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Stopped) := False;
-      end Exit_Stopped;
-      procedure Exit_Failed
-      with
-        Pre => Active (Chart.Failed),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Failed and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Failed) := False;
-      end Exit_Failed;
       procedure Leave_Travelling
       with
         Pre =>
@@ -420,7 +280,7 @@ is
             when Mission_States.Departing =>
                Exit_Departing;
             when Mission_States.Under_Way =>
-               Exit_Under_Way;
+               Active (Chart.Under_Way) := False;
          end case;
       end Leave_Travelling;
       procedure Leave_Active
@@ -446,46 +306,16 @@ is
       begin
          case Mission_States.Active'(Self.Leaf) is
             when Mission_States.Waiting =>
-               Exit_Waiting;
+               Active (Chart.Waiting) := False;
             when Mission_States.Homing =>
-               Exit_Homing;
+               Active (Chart.Homing) := False;
             when Mission_States.Ready =>
-               Exit_Ready;
+               Active (Chart.Ready) := False;
             when Mission_States.Travelling =>
                Leave_Travelling;
-               Exit_Travelling;
+               Active (Chart.Travelling) := False;
          end case;
       end Leave_Active;
-      procedure Enter_Active
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Active or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Active) := True;
-      end Enter_Active;
-      procedure Enter_Waiting
-      with
-        Pre =>
-          Active (Chart.Active)
-          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Mission_States.Waiting
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Waiting or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Mission_States.Waiting;
-         Active (Chart.Waiting) := True;
-      end Enter_Waiting;
       procedure Enter_Homing
       with
         Pre =>
@@ -515,23 +345,6 @@ is
             Target => 0);
          Box.Order_Z_Sent := True;
       end Enter_Homing;
-      procedure Enter_Ready
-      with
-        Pre =>
-          Active (Chart.Active)
-          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Mission_States.Ready
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Ready or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Mission_States.Ready;
-         Active (Chart.Ready) := True;
-      end Enter_Ready;
       procedure Enter_Travelling
       with
         Pre =>
@@ -581,23 +394,6 @@ is
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
          Active (Chart.Departing) := True;
       end Enter_Departing;
-      procedure Enter_Under_Way
-      with
-        Pre =>
-          Active (Chart.Travelling)
-          and then (for all N in Chart.Departing .. Chart.Under_Way =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Mission_States.Under_Way
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Under_Way or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Mission_States.Under_Way;
-         Active (Chart.Under_Way) := True;
-      end Enter_Under_Way;
       procedure Enter_Stopped
       with
         Pre => (for all N in Chart.Node => not Active (N)),
@@ -623,83 +419,56 @@ is
             Target => 0);
          Box.Order_Z_Sent := True;
       end Enter_Stopped;
-      procedure Enter_Failed
-      with
-        Pre =>
-          Active (Chart.Stopped)
-          and then (for all N in Chart.Failed .. Chart.Shut_Down =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Mission_States.Failed
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Failed or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Mission_States.Failed;
-         Active (Chart.Failed) := True;
-      end Enter_Failed;
-      procedure Enter_Shut_Down
-      with
-        Pre =>
-          Active (Chart.Stopped)
-          and then (for all N in Chart.Failed .. Chart.Shut_Down =>
-                not Active (N)),
-        Post =>
-          Self.Leaf = Mission_States.Shut_Down
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Shut_Down or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Mission_States.Shut_Down;
-         Active (Chart.Shut_Down) := True;
-      end Enter_Shut_Down;
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Active;
-            Enter_Waiting;
+            Active (Chart.Active) := True;
+            Self.Leaf := Mission_States.Waiting;
+            Active (Chart.Waiting) := True;
             Self.Started := True;
          when Under_Way =>
             Exit_Departing;
-            Enter_Under_Way;
+            Self.Leaf := Mission_States.Under_Way;
+            Active (Chart.Under_Way) := True;
          when Arrived =>
-            Exit_Under_Way;
-            Exit_Travelling;
-            Enter_Ready;
+            Active (Chart.Under_Way) := False;
+            Active (Chart.Travelling) := False;
+            Self.Leaf := Mission_States.Ready;
+            Active (Chart.Ready) := True;
          when Home =>
-            Exit_Waiting;
+            Active (Chart.Waiting) := False;
             Enter_Homing;
          when Home_Again =>
-            Exit_Ready;
+            Active (Chart.Ready) := False;
             Enter_Homing;
          when Homed =>
-            Exit_Homing;
-            Enter_Ready;
+            Active (Chart.Homing) := False;
+            Self.Leaf := Mission_States.Ready;
+            Active (Chart.Ready) := True;
          when Move =>
-            Exit_Ready;
+            Active (Chart.Ready) := False;
             Enter_Travelling;
             Enter_Departing;
          when Halt =>
             Leave_Travelling;
-            Exit_Travelling;
-            Exit_Active;
+            Active (Chart.Travelling) := False;
+            Active (Chart.Active) := False;
             Enter_Stopped;
-            Enter_Failed;
+            Self.Leaf := Mission_States.Failed;
+            Active (Chart.Failed) := True;
          when Halt_Homing =>
-            Exit_Homing;
-            Exit_Active;
+            Active (Chart.Homing) := False;
+            Active (Chart.Active) := False;
             Enter_Stopped;
-            Enter_Failed;
+            Self.Leaf := Mission_States.Failed;
+            Active (Chart.Failed) := True;
          when Shut_Down_Failed =>
-            Exit_Failed;
-            Enter_Shut_Down;
+            Active (Chart.Failed) := False;
+            Self.Leaf := Mission_States.Shut_Down;
+            Active (Chart.Shut_Down) := True;
          when Recover =>
-            Exit_Failed;
-            Exit_Stopped;
+            Active (Chart.Failed) := False;
+            Active (Chart.Stopped) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Box.Order_X :=
               Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
@@ -713,23 +482,27 @@ is
               Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
                Target => 0);
             Box.Order_Z_Sent := True;
-            Enter_Active;
-            Enter_Waiting;
+            Active (Chart.Active) := True;
+            Self.Leaf := Mission_States.Waiting;
+            Active (Chart.Waiting) := True;
          when Joint_Failed =>
             Leave_Active;
-            Exit_Active;
+            Active (Chart.Active) := False;
             Enter_Stopped;
-            Enter_Failed;
+            Self.Leaf := Mission_States.Failed;
+            Active (Chart.Failed) := True;
          when Joint_Lost =>
             Leave_Active;
-            Exit_Active;
+            Active (Chart.Active) := False;
             Enter_Stopped;
-            Enter_Failed;
+            Self.Leaf := Mission_States.Failed;
+            Active (Chart.Failed) := True;
          when Shut_Down =>
             Leave_Active;
-            Exit_Active;
+            Active (Chart.Active) := False;
             Enter_Stopped;
-            Enter_Shut_Down;
+            Self.Leaf := Mission_States.Shut_Down;
+            Active (Chart.Shut_Down) := True;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
    end Fire;

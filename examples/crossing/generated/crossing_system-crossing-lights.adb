@@ -10,36 +10,6 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function In_Stopping
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Stopped then Stopped else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars = Lights_States.Stopping,
-     Post => Is_Cars_Selection (In_Stopping'Result, Place, Now, Data, Item);
-
-   function In_Held
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Conditions
-         and then Data.Road_Free
-         and then not Data.Requested
-         then Get_Ready
-      else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars = Lights_States.Held,
-     Post => Is_Cars_Selection (In_Held'Result, Place, Now, Data, Item);
-
    function In_Red
      (Place : Lights_States.Configuration;
       Now   : Occurrence;
@@ -47,53 +17,19 @@ is
       Item  : Event)
      return Selection is
      (case Lights_States.Red'(Place.In_Cars) is
-        when Lights_States.Stopping => In_Stopping (Place, Now, Data, Item),
-        when Lights_States.Held => In_Held (Place, Now, Data, Item))
+        when Lights_States.Stopping =>
+           (if Now = Expiry_Of_Stopped then Stopped else None),
+        when Lights_States.Held =>
+           (if Now = Conditions
+               and then Data.Road_Free
+               and then not Data.Requested
+               then Get_Ready
+            else None))
    with
      Pre =>
        Place.Top = Lights_States.Working
        and then Place.In_Cars in Lights_States.Red,
      Post => Is_Cars_Selection (In_Red'Result, Place, Now, Data, Item);
-
-   function In_Red_Yellow
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Start then Start else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars = Lights_States.Red_Yellow,
-     Post =>
-       Is_Cars_Selection (In_Red_Yellow'Result, Place, Now, Data, Item);
-
-   function In_Least
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Long_Enough then Long_Enough else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars = Lights_States.Least,
-     Post => Is_Cars_Selection (In_Least'Result, Place, Now, Data, Item);
-
-   function In_Longer
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Conditions and then Data.Requested then Slow_Down else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars = Lights_States.Longer,
-     Post => Is_Cars_Selection (In_Longer'Result, Place, Now, Data, Item);
 
    function In_Green
      (Place : Lights_States.Configuration;
@@ -102,26 +38,17 @@ is
       Item  : Event)
      return Selection is
      (case Lights_States.Green'(Place.In_Cars) is
-        when Lights_States.Least => In_Least (Place, Now, Data, Item),
-        when Lights_States.Longer => In_Longer (Place, Now, Data, Item))
+        when Lights_States.Least =>
+           (if Now = Expiry_Of_Long_Enough then Long_Enough else None),
+        when Lights_States.Longer =>
+           (if Now = Conditions and then Data.Requested
+               then Slow_Down
+            else None))
    with
      Pre =>
        Place.Top = Lights_States.Working
        and then Place.In_Cars in Lights_States.Green,
      Post => Is_Cars_Selection (In_Green'Result, Place, Now, Data, Item);
-
-   function In_Yellow
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Stop then Stop else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars = Lights_States.Yellow,
-     Post => Is_Cars_Selection (In_Yellow'Result, Place, Now, Data, Item);
 
    function Select_Cars
      (Place : Lights_States.Configuration;
@@ -133,40 +60,13 @@ is
          then (case Place.In_Cars is
                when Lights_States.Red => In_Red (Place, Now, Data, Item),
                when Lights_States.Red_Yellow =>
-                  In_Red_Yellow (Place, Now, Data, Item),
+                  (if Now = Expiry_Of_Start then Start else None),
                when Lights_States.Green => In_Green (Place, Now, Data, Item),
                when Lights_States.Yellow =>
-                  In_Yellow (Place, Now, Data, Item))
+                  (if Now = Expiry_Of_Stop then Stop else None))
       else None)
    with
      Post => Is_Cars_Selection (Select_Cars'Result, Place, Now, Data, Item);
-
-   function In_Nobody
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = On_Wish then Ask else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Walkers = Lights_States.Nobody,
-     Post => Is_Walkers_Selection (In_Nobody'Result, Place, Now, Data, Item);
-
-   function In_Waiting
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Conditions and then Data.Cars_Stopped then Walk else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Walkers = Lights_States.Waiting,
-     Post =>
-       Is_Walkers_Selection (In_Waiting'Result, Place, Now, Data, Item);
 
    function In_Dont_Walk
      (Place : Lights_States.Configuration;
@@ -175,46 +75,17 @@ is
       Item  : Event)
      return Selection is
      (case Lights_States.Dont_Walk'(Place.In_Walkers) is
-        when Lights_States.Nobody => In_Nobody (Place, Now, Data, Item),
-        when Lights_States.Waiting => In_Waiting (Place, Now, Data, Item))
+        when Lights_States.Nobody => (if Now = On_Wish then Ask else None),
+        when Lights_States.Waiting =>
+           (if Now = Conditions and then Data.Cars_Stopped
+               then Walk
+            else None))
    with
      Pre =>
        Place.Top = Lights_States.Working
        and then Place.In_Walkers in Lights_States.Dont_Walk,
      Post =>
        Is_Walkers_Selection (In_Dont_Walk'Result, Place, Now, Data, Item);
-
-   function In_Walking
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Last_Call
-         then Last_Call
-      elsif Now = Expiry_Of_Gone
-         then Gone
-      else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Walkers = Lights_States.Walking,
-     Post =>
-       Is_Walkers_Selection (In_Walking'Result, Place, Now, Data, Item);
-
-   function In_Leaving
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Gone then Gone else None)
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Walkers = Lights_States.Leaving,
-     Post =>
-       Is_Walkers_Selection (In_Leaving'Result, Place, Now, Data, Item);
 
    function In_On_The_Road
      (Place : Lights_States.Configuration;
@@ -223,8 +94,14 @@ is
       Item  : Event)
      return Selection is
      (case Lights_States.On_The_Road'(Place.In_Walkers) is
-        when Lights_States.Walking => In_Walking (Place, Now, Data, Item),
-        when Lights_States.Leaving => In_Leaving (Place, Now, Data, Item))
+        when Lights_States.Walking =>
+           (if Now = Expiry_Of_Last_Call
+               then Last_Call
+            elsif Now = Expiry_Of_Gone
+               then Gone
+            else None),
+        when Lights_States.Leaving =>
+           (if Now = Expiry_Of_Gone then Gone else None))
    with
      Pre =>
        Place.Top = Lights_States.Working
@@ -249,34 +126,6 @@ is
      Post =>
        Is_Walkers_Selection (Select_Walkers'Result, Place, Now, Data, Item);
 
-   function In_Blinking
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = On_Ordered and then Item.Value_Order = Crossing_System.Work
-         then Into_Service
-      elsif Now = Expiry_Of_Blink
-         then Blink
-      else None)
-   with
-     Pre => Place.Top = Lights_States.Blinking,
-     Post => Is_Top_Selection (In_Blinking'Result, Place, Now, Data, Item);
-
-   function In_Working
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (if Now = On_Ordered and then Item.Value_Order = Crossing_System.Blink
-         then Out_Of_Service
-      else None)
-   with
-     Pre => Place.Top = Lights_States.Working,
-     Post => Is_Top_Selection (In_Working'Result, Place, Now, Data, Item);
-
    function Select_Top
      (Place : Lights_States.Configuration;
       Now   : Occurrence;
@@ -284,8 +133,18 @@ is
       Item  : Event)
      return Selection is
      (case Place.Top is
-        when Lights_States.Blinking => In_Blinking (Place, Now, Data, Item),
-        when Lights_States.Working => In_Working (Place, Now, Data, Item))
+        when Lights_States.Blinking =>
+           (if Now = On_Ordered
+               and then Item.Value_Order = Crossing_System.Work
+               then Into_Service
+            elsif Now = Expiry_Of_Blink
+               then Blink
+            else None),
+        when Lights_States.Working =>
+           (if Now = On_Ordered
+               and then Item.Value_Order = Crossing_System.Blink
+               then Out_Of_Service
+            else None))
    with Post => Is_Top_Selection (Select_Top'Result, Place, Now, Data, Item);
 
    function Choose
@@ -428,14 +287,55 @@ is
      Post =>
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (1))
+       and then Self.Timers (2)
+         = Timer_After
+             (2,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (2))
+       and then Self.Timers (3)
+         = Timer_After
+             (3,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (3))
+       and then Self.Timers (4)
+         = Timer_After
+             (4,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (4))
+       and then Self.Timers (5)
+         = Timer_After
+             (5,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (5))
+       and then Self.Timers (6)
+         = Timer_After
+             (6,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (6))
+       and then Self.Timers (7)
+         = Timer_After
+             (7,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (7))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -462,38 +362,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active (Chart.Blinking) := False;
       end Exit_Blinking;
-      procedure Exit_Working
-      with
-        Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Red .. Chart.Leaving =>
-                not Active (N)),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Working and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Working) := False;
-      end Exit_Working;
-      procedure Exit_Red
-      with
-        Pre =>
-          Active (Chart.Red)
-          and then (for all N in Chart.Stopping .. Chart.Held =>
-                not Active (N)),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Red and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Red) := False;
-      end Exit_Red;
       procedure Exit_Stopping
       with
         Pre => Active (Chart.Stopping),
@@ -542,22 +410,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (3));
          Active (Chart.Red_Yellow) := False;
       end Exit_Red_Yellow;
-      procedure Exit_Green
-      with
-        Pre =>
-          Active (Chart.Green)
-          and then (for all N in Chart.Least .. Chart.Longer =>
-                not Active (N)),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Green and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Green) := False;
-      end Exit_Green;
       procedure Exit_Least
       with
         Pre => Active (Chart.Least),
@@ -575,19 +427,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (4));
          Active (Chart.Least) := False;
       end Exit_Least;
-      procedure Exit_Longer
-      with
-        Pre => Active (Chart.Longer),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Longer and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Longer) := False;
-      end Exit_Longer;
       procedure Exit_Yellow
       with
         Pre => Active (Chart.Yellow),
@@ -605,48 +444,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (5));
          Active (Chart.Yellow) := False;
       end Exit_Yellow;
-      procedure Exit_Dont_Walk
-      with
-        Pre =>
-          Active (Chart.Dont_Walk)
-          and then (for all N in Chart.Nobody .. Chart.Waiting =>
-                not Active (N)),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Dont_Walk and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Dont_Walk) := False;
-      end Exit_Dont_Walk;
-      procedure Exit_Nobody
-      with
-        Pre => Active (Chart.Nobody),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Nobody and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Nobody) := False;
-      end Exit_Nobody;
-      procedure Exit_Waiting
-      with
-        Pre => Active (Chart.Waiting),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Waiting and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Waiting) := False;
-      end Exit_Waiting;
       procedure Exit_On_The_Road
       with
         Pre =>
@@ -686,19 +483,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (6));
          Active (Chart.Walking) := False;
       end Exit_Walking;
-      procedure Exit_Leaving
-      with
-        Pre => Active (Chart.Leaving),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Leaving and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Leaving) := False;
-      end Exit_Leaving;
       procedure Leave_On_The_Road
       with
         Pre =>
@@ -725,7 +509,7 @@ is
             when Lights_States.Walking =>
                Exit_Walking;
             when Lights_States.Leaving =>
-               Exit_Leaving;
+               Active (Chart.Leaving) := False;
          end case;
       end Leave_On_The_Road;
       procedure Leave_Dont_Walk
@@ -747,9 +531,9 @@ is
       begin
          case Lights_States.Dont_Walk'(Self.Place.In_Walkers) is
             when Lights_States.Nobody =>
-               Exit_Nobody;
+               Active (Chart.Nobody) := False;
             when Lights_States.Waiting =>
-               Exit_Waiting;
+               Active (Chart.Waiting) := False;
          end case;
       end Leave_Dont_Walk;
       procedure Leave_Green
@@ -778,7 +562,7 @@ is
             when Lights_States.Least =>
                Exit_Least;
             when Lights_States.Longer =>
-               Exit_Longer;
+               Active (Chart.Longer) := False;
          end case;
       end Leave_Green;
       procedure Leave_Red
@@ -834,12 +618,12 @@ is
          case Self.Place.In_Cars is
             when Lights_States.Red =>
                Leave_Red;
-               Exit_Red;
+               Active (Chart.Red) := False;
             when Lights_States.Red_Yellow =>
                Exit_Red_Yellow;
             when Lights_States.Green =>
                Leave_Green;
-               Exit_Green;
+               Active (Chart.Green) := False;
             when Lights_States.Yellow =>
                Exit_Yellow;
          end case;
@@ -868,7 +652,7 @@ is
          case Self.Place.In_Walkers is
             when Lights_States.Dont_Walk =>
                Leave_Dont_Walk;
-               Exit_Dont_Walk;
+               Active (Chart.Dont_Walk) := False;
             when Lights_States.On_The_Road =>
                Leave_On_The_Road;
                Exit_On_The_Road;
@@ -897,25 +681,6 @@ is
          Self.Data.Cars_See := Crossing_System.Slow;
          Self.Data.Walkers_See := Crossing_System.Dark;
       end Enter_Blinking;
-      procedure Enter_Working
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Place
-          = (Top => Lights_States.Working,
-             In_Walkers => Lights_States.Nobody,
-             In_Cars => Lights_States.Stopping)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Working or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Place.Top := Lights_States.Working;
-         Self.Place.In_Cars := Lights_States.Stopping;
-         Self.Place.In_Walkers := Lights_States.Nobody;
-         Active (Chart.Working) := True;
-      end Enter_Working;
       procedure Enter_Red
       with
         Pre =>
@@ -1044,26 +809,6 @@ is
          Ravenchart.Timers.Arm (Self.Timers (4), 100);
          Active (Chart.Least) := True;
       end Enter_Least;
-      procedure Enter_Longer
-      with
-        Pre =>
-          Active (Chart.Green)
-          and then (for all N in Chart.Least .. Chart.Longer =>
-                not Active (N)),
-        Post =>
-          Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Lights_States.Longer)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Longer or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Place.In_Cars := Lights_States.Longer;
-         Active (Chart.Longer) := True;
-      end Enter_Longer;
       procedure Enter_Yellow
       with
         Pre =>
@@ -1225,14 +970,15 @@ is
             Enter_Held;
          when Get_Ready =>
             Exit_Held;
-            Exit_Red;
+            Active (Chart.Red) := False;
             Enter_Red_Yellow;
          when Long_Enough =>
             Exit_Least;
-            Enter_Longer;
+            Self.Place.In_Cars := Lights_States.Longer;
+            Active (Chart.Longer) := True;
          when Slow_Down =>
-            Exit_Longer;
-            Exit_Green;
+            Active (Chart.Longer) := False;
+            Active (Chart.Green) := False;
             Enter_Yellow;
          when Start =>
             Exit_Red_Yellow;
@@ -1243,11 +989,11 @@ is
             Enter_Red;
             Enter_Stopping;
          when Ask =>
-            Exit_Nobody;
+            Active (Chart.Nobody) := False;
             Enter_Waiting;
          when Walk =>
-            Exit_Waiting;
-            Exit_Dont_Walk;
+            Active (Chart.Waiting) := False;
+            Active (Chart.Dont_Walk) := False;
             Enter_On_The_Road;
             Enter_Walking;
          when Last_Call =>
@@ -1260,7 +1006,10 @@ is
             Enter_Nobody;
          when Into_Service =>
             Exit_Blinking;
-            Enter_Working;
+            Self.Place.Top := Lights_States.Working;
+            Self.Place.In_Cars := Lights_States.Stopping;
+            Self.Place.In_Walkers := Lights_States.Nobody;
+            Active (Chart.Working) := True;
             Enter_Red;
             Enter_Stopping;
             Enter_Dont_Walk;
@@ -1268,7 +1017,7 @@ is
          when Out_Of_Service =>
             Leave_Cars;
             Leave_Walkers;
-            Exit_Working;
+            Active (Chart.Working) := False;
             Enter_Blinking;
          when Blink =>
             Self.Data.Cars_See :=

@@ -13,52 +13,6 @@ is
    use type Ravenchart.Event_Count;
    use type Deferrals.List;
 
-   function In_Turning
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Completion_Of_Turning then Turned else None)
-   with
-     Pre =>
-       Place.Top = Infusion_States.Self_Test
-       and then Place.In_Motor = Infusion_States.Turning,
-     Post =>
-       Is_Motor_Selection
-         (In_Turning'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Motor_Good
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (None)
-   with
-     Pre =>
-       Place.Top = Infusion_States.Self_Test
-       and then Place.In_Motor = Infusion_States.Motor_Good,
-     Post =>
-       Is_Motor_Selection
-         (In_Motor_Good'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
    function Select_Motor
      (Place : Infusion_States.Configuration;
       Now   : Occurrence;
@@ -70,62 +24,13 @@ is
      (if Place.Top = Infusion_States.Self_Test
          then (case Place.In_Motor is
                when Infusion_States.Turning =>
-                  In_Turning (Place, Now, Past, Data, Ins, Item),
-               when Infusion_States.Motor_Good =>
-                  In_Motor_Good (Place, Now, Past, Data, Ins, Item))
+                  (if Now = Completion_Of_Turning then Turned else None),
+               when Infusion_States.Motor_Good => None)
       else None)
    with
      Post =>
        Is_Motor_Selection
          (Select_Motor'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Listening
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Conditions and then Ins.Line.State = Ravenchart.Fresh
-         then Heard
-      else None)
-   with
-     Pre =>
-       Place.Top = Infusion_States.Self_Test
-       and then Place.In_Sensor = Infusion_States.Listening,
-     Post =>
-       Is_Sensor_Selection
-         (In_Listening'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Sensor_Good
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (None)
-   with
-     Pre =>
-       Place.Top = Infusion_States.Self_Test
-       and then Place.In_Sensor = Infusion_States.Sensor_Good,
-     Post =>
-       Is_Sensor_Selection
-         (In_Sensor_Good'Result,
           Place,
           Now,
           Past,
@@ -144,180 +49,16 @@ is
      (if Place.Top = Infusion_States.Self_Test
          then (case Place.In_Sensor is
                when Infusion_States.Listening =>
-                  In_Listening (Place, Now, Past, Data, Ins, Item),
-               when Infusion_States.Sensor_Good =>
-                  In_Sensor_Good (Place, Now, Past, Data, Ins, Item))
+                  (if Now = Conditions
+                      and then Ins.Line.State = Ravenchart.Fresh
+                      then Heard
+                   else None),
+               when Infusion_States.Sensor_Good => None)
       else None)
    with
      Post =>
        Is_Sensor_Selection
          (Select_Sensor'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Self_Test
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Completion_Of_Self_Test
-         then Ready
-      elsif Now = Expiry_Of_Again
-         then Again
-      elsif Now = On_New_Portion
-         then Defer_New_Portion_In_Self_Test
-      elsif Now = On_New_Volume
-         then Defer_New_Volume_In_Self_Test
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Self_Test,
-     Post =>
-       Is_Top_Selection
-         (In_Self_Test'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Programming
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = On_New_Portion
-         then Order_Portion
-      elsif Now = On_New_Volume
-         then Order_Volume
-      elsif Now = On_Start
-         and then Data.Portion > 0
-         and then Data.Volume > 0
-         then Start
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Programming,
-     Post =>
-       Is_Top_Selection
-         (In_Programming'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Filling
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Completion_Of_Filling
-         then Filled_Up
-      elsif Now = On_New_Portion
-         then Defer_New_Portion_In_Filling
-      elsif Now = Completion_Of_Running
-         then Finished
-      elsif Now = On_Stop
-         then Stop
-      elsif Now = On_Sensor_Lost
-         then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Filling,
-     Post =>
-       Is_Top_Selection
-         (In_Filling'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Loading
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Conditions and then Data.Given >= Ins.Loading
-         then Loaded
-      elsif Now = On_New_Portion
-         then Defer_New_Portion_In_Loading
-      elsif Now = Expiry_Of_Beat
-         then Beat
-      elsif Now = Conditions and then Data.Given >= Data.Volume
-         then Enough
-      elsif Now = Completion_Of_Running
-         then Finished
-      elsif Now = On_Stop
-         then Stop
-      elsif Now = On_Sensor_Lost
-         then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Loading,
-     Post =>
-       Is_Top_Selection
-         (In_Loading'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Maintaining
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = On_New_Portion and then Item.Value_Portion > 0
-         then Change
-      elsif Now = Expiry_Of_Beat
-         then Beat
-      elsif Now = Conditions and then Data.Given >= Data.Volume
-         then Enough
-      elsif Now = Completion_Of_Running
-         then Finished
-      elsif Now = On_Stop
-         then Stop
-      elsif Now = On_Sensor_Lost
-         then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Maintaining,
-     Post =>
-       Is_Top_Selection
-         (In_Maintaining'Result,
           Place,
           Now,
           Past,
@@ -335,44 +76,46 @@ is
      return Selection is
      (case Infusion_States.Giving'(Place.Top) is
         when Infusion_States.Loading =>
-           In_Loading (Place, Now, Past, Data, Ins, Item),
+           (if Now = Conditions and then Data.Given >= Ins.Loading
+               then Loaded
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Loading
+            elsif Now = Expiry_Of_Beat
+               then Beat
+            elsif Now = Conditions and then Data.Given >= Data.Volume
+               then Enough
+            elsif Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
         when Infusion_States.Maintaining =>
-           In_Maintaining (Place, Now, Past, Data, Ins, Item))
+           (if Now = On_New_Portion and then Item.Value_Portion > 0
+               then Change
+            elsif Now = Expiry_Of_Beat
+               then Beat
+            elsif Now = Conditions and then Data.Given >= Data.Volume
+               then Enough
+            elsif Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None))
    with
      Pre => Place.Top in Infusion_States.Giving,
      Post =>
        Is_Top_Selection
          (In_Giving'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_All_Given
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Completion_Of_Running
-         then Finished
-      elsif Now = On_Stop
-         then Stop
-      elsif Now = On_Sensor_Lost
-         then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.All_Given,
-     Post =>
-       Is_Top_Selection
-         (In_All_Given'Result,
           Place,
           Now,
           Past,
@@ -390,44 +133,38 @@ is
      return Selection is
      (case Infusion_States.Running'(Place.Top) is
         when Infusion_States.Filling =>
-           In_Filling (Place, Now, Past, Data, Ins, Item),
+           (if Now = Completion_Of_Filling
+               then Filled_Up
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Filling
+            elsif Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
         when Infusion_States.Giving =>
            In_Giving (Place, Now, Past, Data, Ins, Item),
         when Infusion_States.All_Given =>
-           In_All_Given (Place, Now, Past, Data, Ins, Item))
+           (if Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None))
    with
      Pre => Place.Top in Infusion_States.Running,
      Post =>
        Is_Top_Selection
          (In_Running'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Trickling
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = On_Stop
-         then Stop
-      elsif Now = On_Sensor_Lost
-         then Lost
-      elsif Now = Conditions
-         and then Ins.Line.Value /= Infusion_System.Clear
-         then Trouble
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Trickling,
-     Post =>
-       Is_Top_Selection
-         (In_Trickling'Result,
           Place,
           Now,
           Past,
@@ -479,7 +216,14 @@ is
         when Infusion_States.Running =>
            In_Running (Place, Now, Past, Data, Ins, Item),
         when Infusion_States.Trickling =>
-           In_Trickling (Place, Now, Past, Data, Ins, Item),
+           (if Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
         when Infusion_States.Where_It_Was =>
            In_Where_It_Was (Place, Now, Past, Data, Ins, Item))
    with
@@ -487,64 +231,6 @@ is
      Post =>
        Is_Top_Selection
          (In_Infusing'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Sounding
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = On_Silence
-         then Hush
-      elsif Now = On_Resume
-         then Resume
-      elsif Now = On_Stop
-         then Give_Up
-      elsif Now = On_New_Portion
-         then Defer_New_Portion_In_Alarm
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Sounding,
-     Post =>
-       Is_Top_Selection
-         (In_Sounding'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Silent
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (if Now = Expiry_Of_Remind
-         then Remind
-      elsif Now = On_Resume
-         then Resume
-      elsif Now = On_Stop
-         then Give_Up
-      elsif Now = On_New_Portion
-         then Defer_New_Portion_In_Alarm
-      else None)
-   with
-     Pre => Place.Top = Infusion_States.Silent,
-     Post =>
-       Is_Top_Selection
-         (In_Silent'Result,
           Place,
           Now,
           Past,
@@ -562,9 +248,25 @@ is
      return Selection is
      (case Infusion_States.Alarm'(Place.Top) is
         when Infusion_States.Sounding =>
-           In_Sounding (Place, Now, Past, Data, Ins, Item),
+           (if Now = On_Silence
+               then Hush
+            elsif Now = On_Resume
+               then Resume
+            elsif Now = On_Stop
+               then Give_Up
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Alarm
+            else None),
         when Infusion_States.Silent =>
-           In_Silent (Place, Now, Past, Data, Ins, Item))
+           (if Now = Expiry_Of_Remind
+               then Remind
+            elsif Now = On_Resume
+               then Resume
+            elsif Now = On_Stop
+               then Give_Up
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Alarm
+            else None))
    with
      Pre => Place.Top in Infusion_States.Alarm,
      Post =>
@@ -607,9 +309,25 @@ is
      return Selection is
      (case Place.Top is
         when Infusion_States.Self_Test =>
-           In_Self_Test (Place, Now, Past, Data, Ins, Item),
+           (if Now = Completion_Of_Self_Test
+               then Ready
+            elsif Now = Expiry_Of_Again
+               then Again
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Self_Test
+            elsif Now = On_New_Volume
+               then Defer_New_Volume_In_Self_Test
+            else None),
         when Infusion_States.Programming =>
-           In_Programming (Place, Now, Past, Data, Ins, Item),
+           (if Now = On_New_Portion
+               then Order_Portion
+            elsif Now = On_New_Volume
+               then Order_Volume
+            elsif Now = On_Start
+               and then Data.Portion > 0
+               and then Data.Volume > 0
+               then Start
+            else None),
         when Infusion_States.Infusing =>
            In_Infusing (Place, Now, Past, Data, Ins, Item),
         when Infusion_States.Alarm =>
@@ -837,14 +555,27 @@ is
      Post =>
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old, Self.Past'Old)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (1))
+       and then Self.Timers (2)
+         = Timer_After
+             (2,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (2))
+       and then Self.Timers (3)
+         = Timer_After
+             (3,
+              Domain_Of (Chosen),
+              Self.Place'Old,
+              Self.Place,
+              Self.Timers'Old (3))
        and then (if Self.Started'Old
              then Self.Past
                 = Remembered
@@ -852,6 +583,19 @@ is
                      Self.Place'Old,
                      Self.Past'Old)
           else Self.Past = Self.Past'Old)
+       and then (if Chosen
+             in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
+               | Defer_New_Portion_In_Self_Test
+               | Defer_New_Volume_In_Self_Test | Defer_New_Portion_In_Alarm
+             then Deferrals.Is_Appended
+                  (Self.Deferred'Old,
+                   Item,
+                   Self.Deferred)
+                and then Self.Lost
+                  = (Self.Lost'Old
+                     or (Deferrals.Count (Self.Deferred'Old) = 4))
+          else Self.Deferred = Self.Deferred'Old
+             and then Self.Lost = Self.Lost'Old)
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -904,72 +648,6 @@ is
          Self.Completed_Turning := False;
          Active (Chart.Turning) := False;
       end Exit_Turning;
-      procedure Exit_Motor_Good
-      with
-        Pre => Active (Chart.Motor_Good),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Motor_Good and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Active (Chart.Motor_Good) := False;
-      end Exit_Motor_Good;
-      procedure Exit_Listening
-      with
-        Pre => Active (Chart.Listening),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Listening and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Active (Chart.Listening) := False;
-      end Exit_Listening;
-      procedure Exit_Sensor_Good
-      with
-        Pre => Active (Chart.Sensor_Good),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.Sensor_Good and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Active (Chart.Sensor_Good) := False;
-      end Exit_Sensor_Good;
-      procedure Exit_Programming
-      with
-        Pre => Active (Chart.Programming),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.Programming and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Active (Chart.Programming) := False;
-      end Exit_Programming;
       procedure Exit_Infusing
       with
         Pre =>
@@ -1155,22 +833,6 @@ is
          Self.Data.Buzzer := False;
          Active (Chart.Alarm) := False;
       end Exit_Alarm;
-      procedure Exit_Sounding
-      with
-        Pre => Active (Chart.Sounding),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Sounding and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Active (Chart.Sounding) := False;
-      end Exit_Sounding;
       procedure Exit_Silent
       with
         Pre => Active (Chart.Silent),
@@ -1218,7 +880,7 @@ is
       begin
          case Infusion_States.Alarm'(Self.Place.Top) is
             when Infusion_States.Sounding =>
-               Exit_Sounding;
+               Active (Chart.Sounding) := False;
             when Infusion_States.Silent =>
                Exit_Silent;
          end case;
@@ -1344,7 +1006,7 @@ is
             when Infusion_States.Turning =>
                Exit_Turning;
             when Infusion_States.Motor_Good =>
-               Exit_Motor_Good;
+               Active (Chart.Motor_Good) := False;
          end case;
       end Leave_Motor;
       procedure Leave_Sensor
@@ -1369,9 +1031,9 @@ is
       begin
          case Self.Place.In_Sensor is
             when Infusion_States.Listening =>
-               Exit_Listening;
+               Active (Chart.Listening) := False;
             when Infusion_States.Sensor_Good =>
-               Exit_Sensor_Good;
+               Active (Chart.Sensor_Good) := False;
          end case;
       end Leave_Sensor;
       procedure Enter_Self_Test
@@ -1453,29 +1115,6 @@ is
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Motor_Good;
-      procedure Enter_Listening
-      with
-        Pre =>
-          Active (Chart.Self_Test)
-          and then (for all N in Chart.Listening .. Chart.Sensor_Good =>
-                not Active (N)),
-        Post =>
-          Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Sensor => Infusion_States.Listening,
-             In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Listening or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Self.Place.In_Sensor := Infusion_States.Listening;
-         Active (Chart.Listening) := True;
-      end Enter_Listening;
       procedure Enter_Sensor_Good
       with
         Pre =>
@@ -1540,25 +1179,6 @@ is
          Active (Chart.Infusing) := True;
          Self.Data.Lamp := Infusion_System.Steady;
       end Enter_Infusing;
-      procedure Enter_Running
-      with
-        Pre =>
-          Active (Chart.Infusing)
-          and then (for all N in Chart.Running .. Chart.Trickling =>
-                not Active (N)),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Running or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Active (Chart.Running) := True;
-      end Enter_Running;
       procedure Enter_Filling
       with
         Pre =>
@@ -1818,13 +1438,14 @@ is
          when Initial_Entry =>
             Enter_Self_Test;
             Enter_Turning;
-            Enter_Listening;
+            Self.Place.In_Sensor := Infusion_States.Listening;
+            Active (Chart.Listening) := True;
             Self.Started := True;
          when Turned =>
             Exit_Turning;
             Enter_Motor_Good;
          when Heard =>
-            Exit_Listening;
+            Active (Chart.Listening) := False;
             Enter_Sensor_Good;
          when Loaded =>
             Exit_Loading;
@@ -1868,7 +1489,7 @@ is
             Exit_Running;
             Enter_Trickling;
          when Hush =>
-            Exit_Sounding;
+            Active (Chart.Sounding) := False;
             Enter_Silent;
          when Remind =>
             Exit_Silent;
@@ -1877,31 +1498,31 @@ is
             if Past.Known_In_Infusing then
                case Past.Last_In_Infusing is
                   when Infusion_States.Filling =>
-                     Enter_Running;
+                     Active (Chart.Running) := True;
                      Enter_Filling;
                   when Infusion_States.Loading =>
-                     Enter_Running;
+                     Active (Chart.Running) := True;
                      Enter_Giving;
                      Enter_Loading;
                   when Infusion_States.Maintaining =>
-                     Enter_Running;
+                     Active (Chart.Running) := True;
                      Enter_Giving;
                      Enter_Maintaining;
                   when Infusion_States.All_Given =>
-                     Enter_Running;
+                     Active (Chart.Running) := True;
                      Enter_Filling;
                   when Infusion_States.Trickling =>
                      Enter_Trickling;
                   when Infusion_States.Where_It_Was =>
-                     Enter_Running;
+                     Active (Chart.Running) := True;
                      Enter_Filling;
                end case;
             else
-               Enter_Running;
+               Active (Chart.Running) := True;
                Enter_Filling;
             end if;
          when Default_Of_Where_It_Was =>
-            Enter_Running;
+            Active (Chart.Running) := True;
             Enter_Filling;
          when Ready =>
             Leave_Motor;
@@ -1914,17 +1535,18 @@ is
             Exit_Self_Test;
             Enter_Self_Test;
             Enter_Turning;
-            Enter_Listening;
+            Self.Place.In_Sensor := Infusion_States.Listening;
+            Active (Chart.Listening) := True;
          when Order_Portion =>
             Self.Data.Portion := Item.Value_Portion;
          when Order_Volume =>
             Self.Data.Volume := Item.Value_Volume;
          when Start =>
-            Exit_Programming;
+            Active (Chart.Programming) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Self.Data.Given := 0;
             Enter_Infusing;
-            Enter_Running;
+            Active (Chart.Running) := True;
             Enter_Filling;
          when Stop =>
             Leave_Infusing;

@@ -10,17 +10,13 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function In_Listening (Now : Occurrence) return Selection is
-     (if Now = On_Pressed then Pressed else None)
-   with
-     Post => Is_Selection (In_Listening'Result, Keys_States.Listening, Now);
-
    function Select_Transition
      (Leaf : Keys_States.Leaf;
       Now : Occurrence)
      return Selection is
      (case Leaf is
-        when Keys_States.Listening => In_Listening (Now))
+        when Keys_States.Listening =>
+           (if Now = On_Pressed then Pressed else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
 
    package Chart
@@ -64,23 +60,11 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Enter_Listening
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Keys_States.Listening
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Listening or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Keys_States.Listening;
-         Active (Chart.Listening) := True;
-      end Enter_Listening;
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Listening;
+            Self.Leaf := Keys_States.Listening;
+            Active (Chart.Listening) := True;
             Self.Started := True;
          when Pressed =>
             if Item.Value_Press.Key = Infusion_System.Start_Key then

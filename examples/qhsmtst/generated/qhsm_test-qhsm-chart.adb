@@ -10,32 +10,6 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function In_S11 (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = On_D and then Data.Foo
-         then S11_D
-      elsif Now = On_G
-         then S11_G
-      elsif Now = On_H
-         then S11_H
-      elsif Now = On_A
-         then S1_A
-      elsif Now = On_B
-         then S1_B
-      elsif Now = On_C
-         then S1_C
-      elsif Now = On_D and then not Data.Foo
-         then S1_D
-      elsif Now = On_F
-         then S1_F
-      elsif Now = On_I
-         then S1_I
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
-      else None)
-   with Post => Is_Selection (In_S11'Result, Chart_States.S11, Now, Data);
-
    function In_S1_Init (Now : Occurrence; Data : Variables) return Selection is
      (if Now = Passing
          then S1_Init
@@ -66,33 +40,32 @@ is
       Data : Variables)
      return Selection is
      (case Leaf is
-        when Chart_States.S11 => In_S11 (Now, Data),
+        when Chart_States.S11 =>
+           (if Now = On_D and then Data.Foo
+               then S11_D
+            elsif Now = On_G
+               then S11_G
+            elsif Now = On_H
+               then S11_H
+            elsif Now = On_A
+               then S1_A
+            elsif Now = On_B
+               then S1_B
+            elsif Now = On_C
+               then S1_C
+            elsif Now = On_D and then not Data.Foo
+               then S1_D
+            elsif Now = On_F
+               then S1_F
+            elsif Now = On_I
+               then S1_I
+            elsif Now = On_E
+               then S_E
+            elsif Now = On_I and then Data.Foo
+               then S_I
+            else None),
         when Chart_States.S1_Init => In_S1_Init (Now, Data))
    with Post => Is_Selection (In_S1'Result, Leaf, Now, Data);
-
-   function In_S211 (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = On_D
-         then S211_D
-      elsif Now = On_H
-         then S211_H
-      elsif Now = On_A
-         then S21_A
-      elsif Now = On_B
-         then S21_B
-      elsif Now = On_G
-         then S21_G
-      elsif Now = On_C
-         then S2_C
-      elsif Now = On_F
-         then S2_F
-      elsif Now = On_I and then not Data.Foo
-         then S2_I
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
-      else None)
-   with Post => Is_Selection (In_S211'Result, Chart_States.S211, Now, Data);
 
    function In_S21_Init
      (Now : Occurrence;
@@ -127,7 +100,28 @@ is
       Data : Variables)
      return Selection is
      (case Leaf is
-        when Chart_States.S211 => In_S211 (Now, Data),
+        when Chart_States.S211 =>
+           (if Now = On_D
+               then S211_D
+            elsif Now = On_H
+               then S211_H
+            elsif Now = On_A
+               then S21_A
+            elsif Now = On_B
+               then S21_B
+            elsif Now = On_G
+               then S21_G
+            elsif Now = On_C
+               then S2_C
+            elsif Now = On_F
+               then S2_F
+            elsif Now = On_I and then not Data.Foo
+               then S2_I
+            elsif Now = On_E
+               then S_E
+            elsif Now = On_I and then Data.Foo
+               then S_I
+            else None),
         when Chart_States.S21_Init => In_S21_Init (Now, Data))
    with Post => Is_Selection (In_S21'Result, Leaf, Now, Data);
 
@@ -228,72 +222,6 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Exit_S1
-      with
-        Pre =>
-          Active (Chart.S1)
-          and then (for all N in Chart.S11 .. Chart.S11 => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.S1 and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S1) := False;
-      end Exit_S1;
-      procedure Exit_S11
-      with
-        Pre => Active (Chart.S11),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.S11 and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S11) := False;
-      end Exit_S11;
-      procedure Exit_S2
-      with
-        Pre =>
-          Active (Chart.S2)
-          and then (for all N in Chart.S21 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.S2 and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S2) := False;
-      end Exit_S2;
-      procedure Exit_S21
-      with
-        Pre =>
-          Active (Chart.S21)
-          and then (for all N in Chart.S211 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.S21 and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S21) := False;
-      end Exit_S21;
-      procedure Exit_S211
-      with
-        Pre => Active (Chart.S211),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.S211 and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S211) := False;
-      end Exit_S211;
       procedure Leave_S21
       with
         Pre =>
@@ -310,7 +238,7 @@ is
       begin
          case Chart_States.S21'(Self.Leaf) is
             when Chart_States.S211 =>
-               Exit_S211;
+               Active (Chart.S211) := False;
             when Chart_States.S21_Init =>
                null;
          end case;
@@ -332,7 +260,7 @@ is
          case Chart_States.S2'(Self.Leaf) is
             when Chart_States.S21 =>
                Leave_S21;
-               Exit_S21;
+               Active (Chart.S21) := False;
          end case;
       end Leave_S2;
       procedure Leave_S1
@@ -351,7 +279,7 @@ is
       begin
          case Chart_States.S1'(Self.Leaf) is
             when Chart_States.S11 =>
-               Exit_S11;
+               Active (Chart.S11) := False;
             when Chart_States.S1_Init =>
                null;
          end case;
@@ -373,98 +301,14 @@ is
          case Chart_States.S'(Self.Leaf) is
             when Chart_States.S1 =>
                Leave_S1;
-               Exit_S1;
+               Active (Chart.S1) := False;
             when Chart_States.S2 =>
                Leave_S2;
-               Exit_S2;
+               Active (Chart.S2) := False;
             when Chart_States.S_Init =>
                null;
          end case;
       end Leave_S;
-      procedure Enter_S
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.S or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S) := True;
-      end Enter_S;
-      procedure Enter_S1
-      with
-        Pre =>
-          Active (Chart.S)
-          and then (for all N in Chart.S1 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.S1 or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S1) := True;
-      end Enter_S1;
-      procedure Enter_S11
-      with
-        Pre =>
-          Active (Chart.S1)
-          and then (for all N in Chart.S11 .. Chart.S11 => not Active (N)),
-        Post =>
-          Self.Leaf = Chart_States.S11
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.S11 or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Chart_States.S11;
-         Active (Chart.S11) := True;
-      end Enter_S11;
-      procedure Enter_S2
-      with
-        Pre =>
-          Active (Chart.S)
-          and then (for all N in Chart.S1 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.S2 or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S2) := True;
-      end Enter_S2;
-      procedure Enter_S21
-      with
-        Pre =>
-          Active (Chart.S2)
-          and then (for all N in Chart.S21 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.S21 or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.S21) := True;
-      end Enter_S21;
-      procedure Enter_S211
-      with
-        Pre =>
-          Active (Chart.S21)
-          and then (for all N in Chart.S211 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Chart_States.S211
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.S211 or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Chart_States.S211;
-         Active (Chart.S211) := True;
-      end Enter_S211;
       procedure Enter_S_Init
       with
         Pre =>
@@ -508,24 +352,26 @@ is
       case Chosen is
          when Initial_Entry =>
             Self.Data.Foo := False;
-            Enter_S;
-            Enter_S2;
+            Active (Chart.S) := True;
+            Active (Chart.S2) := True;
             Self.Data.Defaulted := True;
-            Enter_S21;
-            Enter_S211;
+            Active (Chart.S21) := True;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
             Self.Started := True;
          when S211_D =>
-            Exit_S211;
+            Active (Chart.S211) := False;
             Enter_S21_Init;
          when S211_H =>
-            Exit_S211;
-            Exit_S21;
-            Exit_S2;
+            Active (Chart.S211) := False;
+            Active (Chart.S21) := False;
+            Active (Chart.S2) := False;
             Enter_S_Init;
          when S21_Init =>
-            Enter_S211;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
          when S11_D =>
-            Exit_S11;
+            Active (Chart.S11) := False;
             pragma Assert
               ((for all N in Chart.Node =>
                    Active (N)
@@ -533,52 +379,60 @@ is
             Self.Data.Foo := False;
             Enter_S1_Init;
          when S11_G =>
-            Exit_S11;
-            Exit_S1;
-            Enter_S2;
-            Enter_S21;
-            Enter_S211;
+            Active (Chart.S11) := False;
+            Active (Chart.S1) := False;
+            Active (Chart.S2) := True;
+            Active (Chart.S21) := True;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
          when S11_H =>
-            Exit_S11;
-            Exit_S1;
+            Active (Chart.S11) := False;
+            Active (Chart.S1) := False;
             Enter_S_Init;
          when S21_A =>
             Leave_S21;
-            Exit_S21;
-            Enter_S21;
+            Active (Chart.S21) := False;
+            Active (Chart.S21) := True;
             Self.Data.Defaulted := True;
-            Enter_S211;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
          when S21_B =>
             Leave_S21;
-            Enter_S211;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
          when S21_G =>
             Leave_S21;
-            Exit_S21;
-            Exit_S2;
-            Enter_S1;
+            Active (Chart.S21) := False;
+            Active (Chart.S2) := False;
+            Active (Chart.S1) := True;
             Self.Data.Defaulted := True;
-            Enter_S11;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S1_Init =>
-            Enter_S11;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S1_A =>
             Leave_S1;
-            Exit_S1;
-            Enter_S1;
+            Active (Chart.S1) := False;
+            Active (Chart.S1) := True;
             Self.Data.Defaulted := True;
-            Enter_S11;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S1_B =>
             Leave_S1;
-            Enter_S11;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S1_C =>
             Leave_S1;
-            Exit_S1;
-            Enter_S2;
+            Active (Chart.S1) := False;
+            Active (Chart.S2) := True;
             Self.Data.Defaulted := True;
-            Enter_S21;
-            Enter_S211;
+            Active (Chart.S21) := True;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
          when S1_D =>
             Leave_S1;
-            Exit_S1;
+            Active (Chart.S1) := False;
             pragma Assert
               ((for all N in Chart.Node =>
                    Active (N)
@@ -587,32 +441,37 @@ is
             Enter_S_Init;
          when S1_F =>
             Leave_S1;
-            Exit_S1;
-            Enter_S2;
-            Enter_S21;
-            Enter_S211;
+            Active (Chart.S1) := False;
+            Active (Chart.S2) := True;
+            Active (Chart.S21) := True;
+            Self.Leaf := Chart_States.S211;
+            Active (Chart.S211) := True;
          when S1_I =>
             null;
          when S2_C =>
             Leave_S2;
-            Exit_S2;
-            Enter_S1;
+            Active (Chart.S2) := False;
+            Active (Chart.S1) := True;
             Self.Data.Defaulted := True;
-            Enter_S11;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S2_F =>
             Leave_S2;
-            Exit_S2;
-            Enter_S1;
-            Enter_S11;
+            Active (Chart.S2) := False;
+            Active (Chart.S1) := True;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S2_I =>
             Self.Data.Foo := True;
          when S_Init =>
-            Enter_S1;
-            Enter_S11;
+            Active (Chart.S1) := True;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S_E =>
             Leave_S;
-            Enter_S1;
-            Enter_S11;
+            Active (Chart.S1) := True;
+            Self.Leaf := Chart_States.S11;
+            Active (Chart.S11) := True;
          when S_I =>
             Self.Data.Foo := False;
       end case;

@@ -5,26 +5,15 @@
 package body Three_Components.Starter.Starting
 with SPARK_Mode
 is
-   function In_Before (Now : Occurrence) return Selection is
-     (if Now = Expiry_Of_Start then Start else None)
-   with Post => Is_Selection (In_Before'Result, Starting_States.Before, Now);
-
-   function In_After_Start (Now : Occurrence) return Selection is
-     (if Now = On_Token_Came then Again else None)
-   with
-     Post =>
-       Is_Selection
-         (In_After_Start'Result,
-          Starting_States.After_Start,
-          Now);
-
    function Select_Transition
      (Leaf : Starting_States.Leaf;
       Now : Occurrence)
      return Selection is
      (case Leaf is
-        when Starting_States.Before => In_Before (Now),
-        when Starting_States.After_Start => In_After_Start (Now))
+        when Starting_States.Before =>
+           (if Now = Expiry_Of_Start then Start else None),
+        when Starting_States.After_Start =>
+           (if Now = On_Token_Came then Again else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
 
    package Chart
@@ -77,14 +66,13 @@ is
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Leaf'Old,
-                  Self.Leaf,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Leaf'Old,
+              Self.Leaf,
+              Self.Timers'Old (1))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -111,20 +99,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active (Chart.Before) := False;
       end Exit_Before;
-      procedure Exit_After_Start
-      with
-        Pre => Active (Chart.After_Start),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.After_Start and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.After_Start) := False;
-      end Exit_After_Start;
       procedure Enter_Before
       with
         Pre => (for all N in Chart.Node => not Active (N)),
@@ -143,20 +117,6 @@ is
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
          Active (Chart.Before) := True;
       end Enter_Before;
-      procedure Enter_After_Start
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Starting_States.After_Start
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.After_Start or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Starting_States.After_Start;
-         Active (Chart.After_Start) := True;
-      end Enter_After_Start;
    begin
       case Chosen is
          when Initial_Entry =>
@@ -167,13 +127,15 @@ is
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Box.Token_Out := 1;
             Box.Token_Out_Sent := True;
-            Enter_After_Start;
+            Self.Leaf := Starting_States.After_Start;
+            Active (Chart.After_Start) := True;
          when Again =>
-            Exit_After_Start;
+            Active (Chart.After_Start) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Box.Token_Out := Ins.Token_In.Value;
             Box.Token_Out_Sent := True;
-            Enter_After_Start;
+            Self.Leaf := Starting_States.After_Start;
+            Active (Chart.After_Start) := True;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
    end Fire;

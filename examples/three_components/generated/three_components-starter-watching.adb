@@ -5,21 +5,15 @@
 package body Three_Components.Starter.Watching
 with SPARK_Mode
 is
-   function In_Quiet (Now : Occurrence) return Selection is
-     (if Now = On_Token_Came then Seen else None)
-   with Post => Is_Selection (In_Quiet'Result, Watching_States.Quiet, Now);
-
-   function In_Busy (Now : Occurrence) return Selection is
-     (if Now = Expiry_Of_Calm then Calm else None)
-   with Post => Is_Selection (In_Busy'Result, Watching_States.Busy, Now);
-
    function Select_Transition
      (Leaf : Watching_States.Leaf;
       Now : Occurrence)
      return Selection is
      (case Leaf is
-        when Watching_States.Quiet => In_Quiet (Now),
-        when Watching_States.Busy => In_Busy (Now))
+        when Watching_States.Quiet =>
+           (if Now = On_Token_Came then Seen else None),
+        when Watching_States.Busy =>
+           (if Now = Expiry_Of_Calm then Calm else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
 
    package Chart
@@ -68,14 +62,13 @@ is
      Post =>
        Self.Started
        and then Self.Leaf = Target (Chosen)
-       and then (for all I in Self.Timers'Range =>
-             Self.Timers (I)
-             = Timer_After
-                 (I,
-                  Domain_Of (Chosen),
-                  Self.Leaf'Old,
-                  Self.Leaf,
-                  Self.Timers'Old (I)))
+       and then Self.Timers (1)
+         = Timer_After
+             (1,
+              Domain_Of (Chosen),
+              Self.Leaf'Old,
+              Self.Leaf,
+              Self.Timers'Old (1))
    is
       use type Chart.Node;
       use type Chart.Node_Set;
@@ -85,19 +78,6 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Exit_Quiet
-      with
-        Pre => Active (Chart.Quiet),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Quiet and then Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Quiet) := False;
-      end Exit_Quiet;
       procedure Exit_Busy
       with
         Pre => Active (Chart.Busy),
@@ -115,20 +95,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active (Chart.Busy) := False;
       end Exit_Busy;
-      procedure Enter_Quiet
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Watching_States.Quiet
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Quiet or else Active'Old (N)))
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Watching_States.Quiet;
-         Active (Chart.Quiet) := True;
-      end Enter_Quiet;
       procedure Enter_Busy
       with
         Pre => (for all N in Chart.Node => not Active (N)),
@@ -150,14 +116,16 @@ is
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Quiet;
+            Self.Leaf := Watching_States.Quiet;
+            Active (Chart.Quiet) := True;
             Self.Started := True;
          when Seen =>
-            Exit_Quiet;
+            Active (Chart.Quiet) := False;
             Enter_Busy;
          when Calm =>
             Exit_Busy;
-            Enter_Quiet;
+            Self.Leaf := Watching_States.Quiet;
+            Active (Chart.Quiet) := True;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
    end Fire;

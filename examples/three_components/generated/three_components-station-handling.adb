@@ -5,22 +5,15 @@
 package body Three_Components.Station.Handling
 with SPARK_Mode
 is
-   function In_Empty (Now : Occurrence) return Selection is
-     (if Now = On_Token_Came then Take else None)
-   with Post => Is_Selection (In_Empty'Result, Handling_States.Empty, Now);
-
-   function In_Holding (Now : Occurrence) return Selection is
-     (if Now = On_Worked then Pass_On else None)
-   with
-     Post => Is_Selection (In_Holding'Result, Handling_States.Holding, Now);
-
    function Select_Transition
      (Leaf : Handling_States.Leaf;
       Now : Occurrence)
      return Selection is
      (case Leaf is
-        when Handling_States.Empty => In_Empty (Now),
-        when Handling_States.Holding => In_Holding (Now))
+        when Handling_States.Empty =>
+           (if Now = On_Token_Came then Take else None),
+        when Handling_States.Holding =>
+           (if Now = On_Worked then Pass_On else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
 
    package Chart
@@ -64,70 +57,23 @@ is
          else (others => False))
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
-      procedure Exit_Empty
-      with
-        Pre => Active (Chart.Empty),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Empty and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Empty) := False;
-      end Exit_Empty;
-      procedure Exit_Holding
-      with
-        Pre => Active (Chart.Holding),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Holding and then Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Active (Chart.Holding) := False;
-      end Exit_Holding;
-      procedure Enter_Empty
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Handling_States.Empty
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Empty or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Handling_States.Empty;
-         Active (Chart.Empty) := True;
-      end Enter_Empty;
-      procedure Enter_Holding
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Leaf = Handling_States.Holding
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Holding or else Active'Old (N)))
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Handling_States.Holding;
-         Active (Chart.Holding) := True;
-      end Enter_Holding;
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Empty;
+            Self.Leaf := Handling_States.Empty;
+            Active (Chart.Empty) := True;
             Self.Started := True;
          when Take =>
-            Exit_Empty;
-            Enter_Holding;
+            Active (Chart.Empty) := False;
+            Self.Leaf := Handling_States.Holding;
+            Active (Chart.Holding) := True;
          when Pass_On =>
-            Exit_Holding;
+            Active (Chart.Holding) := False;
             pragma Assert ((for all N in Chart.Node => not Active (N)));
             Box.Token_Out := Ins.Held;
             Box.Token_Out_Sent := True;
-            Enter_Empty;
+            Self.Leaf := Handling_States.Empty;
+            Active (Chart.Empty) := True;
       end case;
       pragma Assert (Active = Chart.Active_In (Self.Leaf));
    end Fire;

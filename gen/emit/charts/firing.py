@@ -76,16 +76,15 @@ class Moves:
     def fire(self) -> Subprogram:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
         shape = self.shape
-        rows: list[tuple[str, tuple[Stmt, ...]]] = [
-            (START, (*self._steps(shape.start), Assign("Self.Started", TRUE)))
-        ]
-        rows += [(ada_case(f.name), self._row(f)) for f in shape.firings]
+        start = (START, (*self._steps(shape.start), Assign("Self.Started", TRUE)))
+        rows = [(ada_case(f.name), self._row(f)) for f in shape.firings]
         ready = IfExpr(
             ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
             both(Ref("Self.Started"), call("In_Source", Ref("Chosen"), Ref(self.held))),
         )
         moved = equal(Ref(self.held), shape.target("Chosen"))
         done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"))
+        agreed = equal(Ref("Active"), self.active_in(self.held))
         before = IfExpr(
             ((Ref("Self.Started"), self.active_in(self.held)),),
             Aggregate((Arg("others", FALSE),)),
@@ -106,10 +105,7 @@ class Moves:
                 *past,
                 *self.moving.procedures(),
             ),
-            body=(
-                Case(Ref("Chosen"), tuple(rows)),
-                Pragma("Assert", (equal(Ref("Active"), self.active_in(self.held)),)),
-            ),
+            body=(Case(Ref("Chosen"), (start, *rows)), Pragma("Assert", (agreed,))),
         )
 
     def fire_params(self) -> tuple[Param, ...]:
@@ -185,9 +181,7 @@ class Moves:
         )
 
     def _defer(self, firing: Firing) -> tuple[Stmt, ...]:
-        (event,) = firing.triggers
-        assert isinstance(event, str)
-        item = Ref("Item" if self.shape.takes_item else self.shape.event(event))
+        item = self.shape.deferred_item(firing)
         full = equal(
             call("Deferrals.Count", Ref("Self.Deferred")), number(self.region.deferral_depth)
         )

@@ -35,7 +35,7 @@ from ..ada import (
     number,
 )
 from ..naming import ada_case
-from .compound import TOP, Firing, Place
+from .compound import TOP, Firing, Kind, Place
 from .places import flat
 from .shape import START, Memory, RegionShape
 
@@ -270,15 +270,11 @@ class Lasting:
         held = f"Self.{self.shape.place}"
         domain = call("Domain_Of", Ref(chosen))
         if self.shape.timers:
-            after = call(
-                "Timer_After",
-                Ref("I"),
-                domain,
-                Ref(f"{held}'Old"),
-                Ref(held),
-                Ref("Self.Timers'Old (I)"),
-            )
-            facts.append(self._each_timer(equal(Ref("Self.Timers (I)"), after)))
+            places = (Ref(f"{held}'Old"), Ref(held))
+            for i in range(1, len(self.shape.timers) + 1):
+                before = Ref(f"Self.Timers'Old ({i})")
+                after = call("Timer_After", number(i), domain, *places, before)
+                facts.append(equal(Ref(f"Self.Timers ({i})"), after))
         if self.shape.memories:
             recalled = call("Remembered", domain, Ref(f"{held}'Old"), Ref("Self.Past'Old"))
             known = equal(Ref("Self.Past"), recalled)
@@ -290,9 +286,31 @@ class Lasting:
                 facts.append(IfExpr(((starts, kept), (goes_on, known)), None))
             else:
                 facts.append(IfExpr(((Ref("Self.Started'Old"), known),), kept))
-        return facts
+        return [*facts, *self._deferred(chosen)]
 
     # --- parts
+
+    def _deferred(self, chosen: str) -> list[Expr]:
+        """A deferral keeps its event, or counts it as lost; nothing else touches what is kept."""
+        shape = self.shape
+        deferrals = [f for f in shape.firings if f.kind is Kind.DEFERRAL]
+        if not deferrals:
+            return []
+        kept, before = Ref("Self.Deferred"), Ref("Self.Deferred'Old")
+        full = equal(call("Deferrals.Count", before), number(self.region.deferral_depth))
+        lost = equal(Ref("Self.Lost"), Chain("or", (Ref("Self.Lost'Old"), full)))
+        names: dict[Ref, list[str]] = {}
+        for firing in deferrals:
+            names.setdefault(shape.deferred_item(firing), []).append(ada_case(firing.name))
+        added = tuple(
+            (
+                Chain("in", (Ref(chosen), Ref(" | ".join(of)))),
+                both(call("Deferrals.Is_Appended", before, item, kept), lost),
+            )
+            for item, of in names.items()
+        )
+        same = both(equal(kept, before), equal(Ref("Self.Lost"), Ref("Self.Lost'Old")))
+        return [IfExpr(added, same)]
 
     def _each_timer(self, fact: Expr) -> Expr:
         return ForAll("I", "Self.Timers'Range", fact)

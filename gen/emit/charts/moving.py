@@ -1,7 +1,8 @@
 """Exits and entries of one region: a procedure for each state where one does something.
 
 A state without actions, time-outs or history is exited and entered in the set of active
-states alone: a ghost, for which there is no code.
+states alone: a ghost, for which there is no code. When that is done is seen by the
+preconditions of the procedures and by what is claimed before an effect.
 """
 
 from __future__ import annotations
@@ -27,7 +28,6 @@ from ..ada import (
     both,
     call,
     chain,
-    do,
     equal,
     number,
 )
@@ -61,15 +61,13 @@ class Moving:
         self._exited: set[str] = set()
         self._entered: set[str] = set()
         self._left: set[Place] = set()
-        self._ghostly = False
 
     def exit(self, state: str) -> tuple[Stmt, ...]:
         """The exit of one state."""
         if self._work_of_exit(state):
             self._exited.add(state)
             return (Do(f"Exit_{ada_case(state)}"),)
-        self._ghostly = True
-        return (*self._noted(state, "exit"), do("Exited", Ref(_node(state))))
+        return (*self._noted(state, "exit"), Assign(f"Active ({_node(state)})", FALSE))
 
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
         """The entry of one state or pseudostate."""
@@ -77,8 +75,7 @@ class Moving:
         if passed or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
             return (Do(f"Enter_{ada_case(vertex)}"),)
-        self._ghostly = True
-        enter = do("Entered", Ref(_node(vertex)))
+        enter = Assign(f"Active ({_node(vertex)})", TRUE)
         return (*self._place(vertex), enter, *self._noted(vertex, "entry"))
 
     def leave(self, place: Place) -> Stmt:
@@ -101,8 +98,7 @@ class Moving:
         leavings = [self._leaving(p) for p in places if p in self._left]
         vertices = [s.name for s in states] + [p.name for p in self.region.pseudostates]
         entries = [self._entry(v) for v in vertices if v in self._entered]
-        ghosts = self.nodes.moves() if self._ghostly else ()
-        return (*ghosts, *exits, *leavings, *entries)
+        return (*exits, *leavings, *entries)
 
     def _kept(self) -> Expr:
         return equal(Ref(self.held), Ref(f"{self.held}'Old"))

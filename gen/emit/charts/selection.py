@@ -1,4 +1,8 @@
-"""Selection: for one occurrence the transition of each lane, by one small function per state."""
+"""Selection: for one occurrence the transition of each lane, by small functions.
+
+There is one for each composite state, with what its leaves select. A leaf has its own
+among many: what the prover must see at a time stays small.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +35,9 @@ from ..terms import emit_expression
 from .compound import PASSED, TOP, Firing, Kind, Place
 from .places import flat
 from .shape import HELD, PASSING, RegionShape, plain_args
+
+FEW = 4
+"""Up to so many leaves are selected for by the function of the state around them."""
 
 
 def selectors(shape: RegionShape) -> list[Decl]:
@@ -86,9 +93,13 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
     items: list[Decl] = []
     rows: list[tuple[str, Expr]] = []
     children = [s.name for s in shape.region.children(place.owner, place.region)]
-    for child in (*children, *shape.compounds.passed(place)):
+    passed = shape.compounds.passed(place)
+    few = sum(map(shape.is_literal, children)) <= FEW
+    for child in (*children, *passed):
         name = f"In_{ada_case(child)}"
-        if shape.is_literal(child):
+        if few and child not in passed and shape.is_literal(child):
+            rows.append((shape.literal(child), _in_leaf(shape, lane, child)))
+        elif shape.is_literal(child):
             items.append(_of_leaf(shape, lane, child))
             rows.append((shape.literal(child), Call(name, plain_args(beyond))))
         else:
@@ -124,15 +135,20 @@ def _is_right(shape: RegionShape, lane: Lane, function: str, place: str) -> Expr
     return Call(name, (Arg(None, Ref(f"{function}'Result")), Arg(None, Ref(place)), *beyond))
 
 
-def _of_leaf(shape: RegionShape, lane: Lane, leaf: str) -> Subprogram:
-    params = shape.choice_params()
+def _in_leaf(shape: RegionShape, lane: Lane, leaf: str) -> Expr:
+    """What is selected when this leaf is active."""
     inside = shape.region.ancestors(leaf)
     branches = [
         (_condition(shape, f, leaf), Ref(ada_case(f.name)))
         for f in shape.firings
         if f.lane == lane and f.sources[0] in inside
     ]
-    chosen: Expr = IfExpr(tuple(branches), Ref("None")) if branches else Ref("None")
+    return IfExpr(tuple(branches), Ref("None")) if branches else Ref("None")
+
+
+def _of_leaf(shape: RegionShape, lane: Lane, leaf: str) -> Subprogram:
+    params = shape.choice_params()
+    chosen = _in_leaf(shape, lane, leaf)
     name = f"In_{ada_case(leaf)}"
     if shape.single:
         post = _is_right(shape, lane, name, shape.literal(leaf))

@@ -356,6 +356,12 @@ class RegionShape(Places):
                     found.append("Conditions")
         return tuple(found)
 
+    def deferred_item(self, firing: Firing) -> Ref:
+        """What a deferral keeps: the event with its value, where events have one."""
+        (event,) = firing.triggers
+        assert isinstance(event, str)
+        return Ref("Item" if self.takes_item else self.event(event))
+
     def event(self, event: str) -> str:
         """The event as the region's package names it."""
         name = ada_case(event)
