@@ -18,7 +18,7 @@ from .toolchain import ROOT, ToolFailed, ToolMissing
 
 RECORDS = ROOT / "proofs" / "records"
 PATIENCE = 300.0
-"""Seconds for the rules of behaviour: a busy machine shall not turn them into a warning."""
+"""Seconds of processor time for the rules of behaviour: here they shall come to their end."""
 
 EXAMPLES = ("cartesian_robot", "crossing", "pump", "qhsmtst", "three_components")
 DRIVERS = ("loopback", "slcan")

@@ -6,8 +6,13 @@ the test is skipped, and says so.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pytest
 
+from gen.generate import generate
+from gen.model import System
+from gen.terms import Ns
 from ravenchart import toolchain
 from ravenchart.mutate.__main__ import Subject, mutants, tried
 from ravenchart.mutate.observing import Simulated
@@ -53,7 +58,12 @@ def test_one_break_of_each_kind_is_caught(subject: Subject) -> None:
 def test_a_program_that_is_not_clean_is_no_subject(
     subject: Subject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ravenchart.mutate.workbench.PROOF", ("--level=0", "--no-such-switch"))
-    chosen = mutants(subject, 1, 1, ("target",))
-    with pytest.raises(toolchain.ToolFailed):
+    chosen = [m for m in mutants(subject, 1, 1, ("target",)) if m.part == "code"]
+
+    def broken(system: System, bounds: Mapping[str, Ns]) -> Mapping[str, str]:
+        files = generate(system, bounds)
+        return {**files, chosen[0].file: chosen[0].applied(files[chosen[0].file])}
+
+    monkeypatch.setattr("ravenchart.mutate.workbench.generate", broken)
+    with pytest.raises(toolchain.ToolFailed, match=r"postcondition|assertion"):
         tried(subject, chosen, 1, ())

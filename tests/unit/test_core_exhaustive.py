@@ -110,7 +110,9 @@ def at_least(bound: Sequence[int | None], seen: Sequence[int]) -> bool:
 
 def long(*values: object) -> object:
     """A case of `make test-long`."""
-    return pytest.param(*values, marks=pytest.mark.skipif(not LONG, reason="long"))
+    return pytest.param(
+        *values, marks=pytest.mark.skipif(not LONG, reason="set RAVENCHART_LONG_TESTS")
+    )
 
 
 @pytest.mark.parametrize(
