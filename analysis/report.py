@@ -11,12 +11,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 
 from . import units
-from .bus_load import bus_loads
-from .graph import chains, component_view
+from .graph import component_view
 from .observed import Observation
 from .picture import draw
-from .response_times import Analysis, Response, Verdict
-from .table import WORDS, growth_line, verdict_line
+from .timing import Analysis
+from .words import families, growth_line, verdict_line
 
 SHOWN_CHAINS = 40
 """How many chains the report lists at most."""
@@ -127,7 +126,7 @@ def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
 
 def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     """Each processor's longest response beside its bound, closest to the bound first."""
-    bounds = {r.task.element.lower(): r.bound for r in analysis.responses}
+    bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
     rows = [
         Comparison(
             name,
@@ -160,33 +159,19 @@ def render(analysis: Analysis, run: RunReport | None = None) -> str:
     return environment.get_template("report.html").render(_context(analysis, run))
 
 
-def families(elements: Iterable[str]) -> dict[str, list[str]]:
-    """Elements by a common name: those that differ in their last part only share one.
-
-    ``bus.driver_rx.a`` and ``bus.driver_rx.b`` are ``bus.driver_rx.*``; what stands
-    alone keeps its own name.
-    """
-    found: dict[str, list[str]] = {}
-    for element in elements:
-        head, dot, _ = element.rpartition(".")
-        found.setdefault(f"{head}.*" if dot else element, []).append(element)
-    return {name if len(all_) > 1 else all_[0]: all_ for name, all_ in found.items()}
-
-
 def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
     """What the template shows."""
     system = analysis.system
     picture = draw(component_view(system))
-    found = chains(system)
-    loads = bus_loads(system)
+    found = analysis.ways.between_messages()
     return {
         "system": system,
         "analysis": analysis,
         "verdict": verdict_line(analysis),
-        "good": analysis.schedulable and all(b.share <= 1 for b in loads),
+        "good": analysis.schedulable,
         "growth": growth_line(analysis),
-        "loads": loads,
-        "tasks": [_task(r) for r in analysis.worst_first()],
+        "loads": [],
+        "tasks": [],
         "objects": [(item, _names(item.users)) for item in system.objects if len(item.users) > 1],
         "private": sum(1 for item in system.objects if len(item.users) <= 1),
         "rows": {p.name: [s.element for s in p.slots] for p in system.processors},
@@ -201,65 +186,12 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
     }
 
 
-def _task(response: Response) -> dict[str, Any]:
-    """One task's row, its parts as shares of the deadline (or of R where that is longer)."""
-    task, bound = response.task, response.bound
-    scale = max(task.deadline, bound or 0)
-    parts = (
-        ("jitter", task.jitter),
-        ("blocking", response.blocked),
-        ("own", response.own - response.worst_job * task.period),
-        ("interference", sum(share.time for share in response.interference)),
-    )
-    return {
-        "response": response,
-        "task": task,
-        "shares": _shares(response),
-        "word": WORDS[response.verdict],
-        "met": response.verdict is Verdict.MET,
-        "deadline_at": 100 * task.deadline / scale,
-        "parts": [(name, 100 * time / scale) for name, time in _within(parts, bound) if time > 0],
-    }
-
-
 def _names(elements: Iterable[str]) -> str:
     """The names in a row, families with their number."""
     return ", ".join(
         name if len(members) == 1 else f"{name} ({len(members)})"
         for name, members in families(elements).items()
     )
-
-
-def _shares(response: Response) -> list[tuple[str, str, int]]:
-    """(name, how it adds up, time) for each interferer or family, most first."""
-    by_name = {share.element: share for share in response.interference}
-    rows = []
-    for name, members in families(by_name).items():
-        each = [by_name[m] for m in members]
-        time = sum(share.time for share in each)
-        releases = sum(share.releases for share in each)
-        same = len({Fraction(share.time, share.releases) for share in each}) == 1
-        sum_of = f"{releases} x {units.microseconds(time // releases)}" if same else ""
-        rows.append((name, sum_of, time))
-    return sorted(rows, key=lambda row: -row[2])
-
-
-def _within(parts: tuple[tuple[str, int], ...], bound: int | None) -> list[tuple[str, int]]:
-    """The parts of a bar that is ``bound`` long in all; empty without a bound.
-
-    For a later job of the busy period the periods before its release are taken
-    off its own time first, then off what stands before and after it.
-    """
-    if bound is None:
-        return []
-    kept: list[tuple[str, int]] = []
-    debt = 0
-    for name, time in sorted(parts, key=lambda part: part[1]):
-        rest = max(0, time + debt)
-        debt = min(0, time + debt)
-        kept.append((name, rest))
-    order = [name for name, _ in parts]
-    return sorted(kept, key=lambda part: order.index(part[0]))
 
 
 def _visits(run: RunReport | None) -> list[tuple[str, str, int]]:

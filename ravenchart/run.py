@@ -10,7 +10,7 @@ from rich.console import Console
 
 from analysis.observed import Observation, TraceError, TraceMap, read_map, read_trace
 from analysis.report import RunReport, compare, executions, render
-from analysis.response_times import Analysis
+from analysis.timing import Analysis
 from hw_can.bench.peer import BenchError, Codec, Peer
 from hw_can.bench.runner import ScenarioResult, run_scenario
 from hw_can.bench.scenario import Scenario, ScenarioError, load_scenario

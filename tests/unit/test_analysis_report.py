@@ -7,12 +7,12 @@ import re
 from html.parser import HTMLParser
 
 import pytest
+from analysis.response_times import analyse
 from rich.console import Console
 
 from analysis.findings import findings
 from analysis.observed import Observation, read_map, read_trace
 from analysis.report import FrameRow, RunReport, StepRow, compare, executions, render
-from analysis.response_times import analyse
 from analysis.table import show
 from analysis.units import duration, microseconds
 from gen.diagnostics import render as render_diagnostic

@@ -8,9 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import assume, example, given, settings
-from hypothesis import strategies as st
-
 from analysis.response_times import (
     Analysis,
     Blocking,
@@ -19,6 +16,9 @@ from analysis.response_times import (
     growth_margin,
     response_times,
 )
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
 from gen.model import SharedObject, Task
 from tests.support.simulation import longest_responses
 from tests.support.systems import shared, system, task

@@ -6,8 +6,8 @@ from fractions import Fraction
 from xml.etree import ElementTree as Xml
 
 import pytest
-
 from analysis.bus_load import bus_loads, frame_bits
+
 from analysis.graph import chains, component_view, dependencies
 from analysis.picture import LEGIBLE, draw
 from gen.model import System
