@@ -22,6 +22,10 @@ EFFORT = 200_000
 """Work for the windows of one task or message: as much as for its response."""
 
 
+MOST_JOBS = 1_000
+"""Jobs or instances of one busy period that a certificate lists at most."""
+
+
 class Unclaimed(Exception):  # noqa: N818
     """Something has a bound, but no busy period that ends: its resource is full."""
 
@@ -39,22 +43,20 @@ def claims_of(analysis: Analysis) -> Claims:
     bounds = {row.row.name: Ns(row.bound) for _, row in analysis.rows()}
     rows = {step.element: bounds[step.element] for step in steps if step.kind == "row"}
     handed = {step.element for step in steps if step.kind == "handed"}
-    return Claims(items, rows, _turns(analysis, handed), chains)
+    waits, busiest = _capped(analysis)
+    return Claims(items, rows, waits, busiest, _turns(analysis, handed), chains)
 
 
 def _of_task(response: Response) -> Claim:
     """Every job of the busy period; the table begins with all its rows."""
     assert response.bound is not None
-    windows = [response.window]
-    if response.jobs > 1:
-        windows = _jobs(response)
-    if windows[-1] > len(windows) * response.task.period - response.jitter:
-        raise Unclaimed(f"{response.task.name} is never done before its next release")
+    alone = response.jobs == 1 and response.window + response.jitter <= response.task.period
+    windows = [response.window] if alone else _jobs(response)
     return Claim(Ns(response.bound), tuple(map(Ns, windows)))
 
 
 def _jobs(response: Response) -> list[int]:
-    """The window of each job."""
+    """The window of each job of the busy period."""
     task, level = response.task, response.level
     window, effort = Window(), Effort(EFFORT)
     platform = level.platform
@@ -69,12 +71,13 @@ def _jobs(response: Response) -> list[int]:
         release = fixed_cost(other.period, jitter_of(other, platform), platform.release)
         window.add(place, release)
     demand = demand_of(task, platform)
-    return _settled(
-        window,
-        [response.blocked + demand.most(job + 1) for job in range(response.jobs)],
-        effort,
-        task.name,
-    )
+    found: list[int] = []
+    while not found or found[-1] + response.jitter > len(found) * task.period:
+        if len(found) == MOST_JOBS:
+            raise Unclaimed(f"{task.name} is never done before its next release")
+        fixed = response.blocked + demand.most(len(found) + 1)
+        found += _settled(window, [fixed], effort, task.name)
+    return found
 
 
 def _settled(window: Window, fixed: list[int], effort: Effort, name: str) -> list[int]:
@@ -96,6 +99,7 @@ def _of(response: FrameResponse) -> Claim:
     if errors is not None:
         blocked += (errors.burst - 1) * level.error_cost
     waiting, busy = Window(), Window()
+    busy.length = 1  # zero is a fixed point too
     for number, other in enumerate(level.order[: level.reach]):
         late = level.jitter(other, frame)
         busy.add(number, fixed_cost(other.period, late, other.cost))
@@ -106,12 +110,28 @@ def _of(response: FrameResponse) -> Claim:
         waiting.add(ERRORS, fixed_cost(errors.period, frame.cost, level.error_cost))
         busy.add(ERRORS, fixed_cost(errors.period, 0, level.error_cost))
     effort = Effort(EFFORT)
-    busy.length = 1  # zero is a fixed point too
     (length,) = _settled(busy, [blocked], effort, frame.name)
     instances = -(-(length + frame.jitter) // frame.period)
+    if instances > MOST_JOBS:
+        raise Unclaimed(f"{frame.name} has {instances} instances in one busy period")
     fixed = [blocked + instance * frame.cost for instance in range(instances)]
     windows = _settled(waiting, fixed, effort, frame.name)
     return Claim(Ns(response.bound), tuple(map(Ns, windows)), Ns(length))
+
+
+def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
+    """The waits in queues that the busiest time of a bus bounds, and those times by bus."""
+    waits: dict[str, Ns] = {}
+    busiest: dict[str, Ns] = {}
+    for bus in analysis.system.buses:
+        for response in analysis.frames(bus):
+            frame, bound = response.frame, response.bound or 0
+            for other in analysis.frames(bus):
+                wait = other.level.delays.get(frame.name)
+                if wait is not None and wait < bound - frame.cost - frame.jitter:
+                    waits[frame.name] = Ns(wait)
+                    busiest[bus.name] = Ns(wait + frame.cost)
+    return waits, busiest
 
 
 def _turns(analysis: Analysis, handed: set[str]) -> dict[str, Claim]:

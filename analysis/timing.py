@@ -13,7 +13,6 @@ from gen.model import Task as ModelTask
 
 from . import latencies
 from .core import holistic
-from .core.can import load
 from .core.can_response import FrameResponse
 from .core.holistic import Holistic, Network
 from .core.responses import Level, Response, RowResponse
@@ -123,8 +122,9 @@ class Analysis:
         return Level(order, len(order), self.network.platforms[node]).load
 
     def bus_load(self, bus: Bus) -> Fraction:
-        """Share of a bus that its messages need, each at its longest and most frequent."""
-        return load(self.network.frames[bus.name])
+        """Share of a bus that messages and errors need, at their longest and most frequent."""
+        frames = self.frames(bus)
+        return frames[-1].level.load if frames else Fraction(0)
 
     @cached_property
     def ways(self) -> Ways:

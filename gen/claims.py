@@ -59,6 +59,11 @@ class Claims:
     """Tasks and messages."""
     rows: Mapping[str, Ns] = field(default_factory=dict)
     """Responses of rows inside their jobs: those that chains need."""
+    waits: Mapping[str, Ns] = field(default_factory=dict)
+    """Messages of a queue that wait no longer than their bus is ever busy, where their
+    own responses would let them wait longer."""
+    busiest: Mapping[str, Ns] = field(default_factory=dict)
+    """How long a bus is busy at most, by its name: where messages wait by that."""
     turns: Mapping[str, Claim] = field(default_factory=dict)
     """Received messages: when the reception turns to them."""
     chains: tuple[ChainClaim, ...] = ()

@@ -13,10 +13,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import behaviour.rules
 from analysis.core.fixed_priority import analyse
 from analysis.core.tasks import Task
-
-import behaviour.rules
 from gen.generate import generate
 from gen.load import load
 

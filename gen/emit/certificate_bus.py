@@ -121,63 +121,96 @@ class _Level:
         """The longest frame that an error may spoil."""
         return name_of(max(self.before, key=_bits).element)
 
-    def instances(self, other: Message, window: Expr) -> Expr:
+    def lost(self, bus: Bus, window: Expr) -> list[Expr]:
+        """The time lost to errors within a window."""
+        if bus.errors is None:
+            return []
+        line = ada_case(bus.name)
+        count = plus(Ref(f"{line}_Error_Burst - 1"), ceiling(window, Ref(f"{line}_Error_T")))
+        bits = times(Ref(f"{line}_Error_Bits"), Ref(f"{line}_Bit"))
+        return [times(count, plus(bits, Ref(f"{self.longest}_C")))]
+
+    def instances(self, other: Message, window: Expr, claims: Claims) -> Expr:
         """How often another message goes before this one within a window.
 
-        A frame of a queue is late by what it may have waited, R - C, for all but those
-        in the same queue.
+        A frame of a queue is late by what it may have waited, as a rule R - C, for all
+        but those in the same queue.
         """
         own = name_of(other.element)
         if other.source is None or self.message.source is not None:
             return within(own, window)
+        if other.element in claims.waits:
+            return within(own, plus(window, Ref(f"{own}_Wait")))
         return ceiling(
             plus(window, Chain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))), Ref(f"{own}_T")
         )
 
 
-def _bits(message: Message) -> tuple[int, bool]:
-    return message.length * 8 + (25 if message.extended else 0), message.extended
+def _bits(message: Message) -> int:
+    """The length of the longest frame, in bits, but for what all frames have."""
+    return 10 * message.length + (25 if message.extended else 0)
 
 
 def bus_claims(system: System, bus: Bus, claims: Claims) -> list[Decl]:
     """The instances of each message, and what they show of its response."""
     order = _of(system, bus)
     queued = [n for n, message in enumerate(order, 1) if message.source is not None]
-    items: list[Decl] = []
+    items = _waits(bus, order, claims)
     for number_, message in enumerate(order, 1):
         reach = max(queued) if message.source is not None else number_
         level = _Level(message, order[:reach], order[reach:])
-        items += _of_message(bus, level, claims.of(message.element))
+        items += _of_message(bus, level, claims)
     for message in order:
         if message.element in claims.turns:
             items += _turns(system, message, claims.turns[message.element])
     return items
 
 
-def _of_message(bus: Bus, level: _Level, claim: Claim) -> list[Decl]:
+def _waits(bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
+    """What waits no longer than the bus is ever busy, whatever the order."""
+    if bus.name not in claims.busiest:
+        return []
+    line = ada_case(bus.name)
+    busiest = Ref(f"{line}_Busiest")
+    works = [
+        times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
+    ]
+    lost = _Level(order[0], order, []).lost(bus, busiest)
+    items = [
+        Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
+        stated(f"{line}_Busiest", claims.busiest[bus.name]),
+        named(f"{line}_Busiest_Needs", plus(*works, *lost)),
+        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, "can be busy longer than claimed"),
+    ]
+    for message in order:
+        if message.element in claims.waits:
+            own, problem = name_of(message.element), "can wait longer than claimed"
+            longest = Chain("-", (busiest, Ref(f"{own}_C")))
+            items.append(stated(f"{own}_Wait", claims.waits[message.element]))
+            items.append(refuse(longest, Ref(f"{own}_Wait"), message.element, problem))
+    return items
+
+
+def _of_message(bus: Bus, level: _Level, claims: Claims) -> list[Decl]:
     """The claim about one message."""
-    message = level.message
+    message, claim = level.message, claims.of(level.message.element)
     own, line = name_of(message.element), ada_case(bus.name)
 
-    def lost(window: Expr) -> list[Expr]:
-        if bus.errors is None:
-            return []
-        count = plus(Ref(f"{line}_Error_Burst - 1"), ceiling(window, Ref(f"{line}_Error_T")))
-        each = Ref(f"({line}_Error_Bits * {line}_Bit + {level.longest}_C)")
-        return [times(count, each)]
-
     def rivals(window: Expr, others: list[Message]) -> list[Expr]:
-        return [times(level.instances(m, window), Ref(f"{name_of(m.element)}_C")) for m in others]
+        return [
+            times(level.instances(m, window, claims), Ref(f"{name_of(m.element)}_C"))
+            for m in others
+        ]
 
     def waiting(instance: int, window: Expr) -> Expr:
         others = [m for m in level.before if m is not message]
         earlier = [times(number(instance), Ref(f"{own}_C"))] if instance else []
         until = plus(window, Ref(f"{line}_Bit"))
-        hit = lost(plus(window, Ref(f"{own}_C")))
+        hit = level.lost(bus, plus(window, Ref(f"{own}_C")))
         return plus(level.blocking, *earlier, *rivals(until, others), *hit)
 
     def busy(window: Expr) -> Expr:
-        return plus(level.blocking, *rivals(window, level.before), *lost(window))
+        return plus(level.blocking, *rivals(window, level.before), *level.lost(bus, window))
 
     words = f"[{message.element}] what can delay it: frames that go before it"
     if level.behind:

@@ -60,7 +60,7 @@ def ceiling(dividend: Expr, divisor: Expr) -> Expr:
 
 def arrivals(own: str) -> Decl:
     """What makes a division count the releases of an element; see `within`."""
-    return named(f"{own}_A", Ref(f"{own}_J + ({own}_T - 1)"))
+    return named(f"{own}_A", plus(Ref(f"{own}_J"), Chain("-", (Ref(f"{own}_T"), ONE))))
 
 
 def within(own: str, window: Expr) -> Expr:
