@@ -21,7 +21,7 @@ def _calls(components: int, regions: int) -> int:
     with Profile() as profile:
         loaded = load(Path("model.yaml"), lambda path, limit: model)
         assert loaded.system is not None
-        generate(loaded.system, defaultdict(lambda: Ns(0)))
+        generate(loaded.system, Claims())
     calls: int = Stats(profile).total_calls  # type: ignore[attr-defined]
     return calls
 

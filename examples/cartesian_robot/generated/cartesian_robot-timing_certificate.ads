@@ -9,8 +9,9 @@ is
    --  longest time from the event to the release, C longest execution (with
    --  two context switches) or transmission, B blocking, R the claimed
    --  response from the event, W the time claimed from the start of a busy
-   --  period. Needs is the demand that arises within W: where it is more, W
-   --  is too short.
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 485_000;
@@ -45,6 +46,7 @@ is
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
+   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Robot_Bus_Receive_Budget + 2 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
@@ -57,6 +59,7 @@ is
    Trajectory_T : constant := 5_000_000;
    Trajectory_D : constant := 5_000_000;
    Trajectory_J : constant := 0;
+   Trajectory_A : constant := Trajectory_J + (Trajectory_T - 1);
    Trajectory_C : constant :=
      Joint_X_Trajectory_Step_Budget
      + Joint_Y_Trajectory_Step_Budget
@@ -78,6 +81,7 @@ is
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
    Control_J : constant := 0;
+   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
      Joint_X_Ports_Budget
      + Joint_X_Monitoring_Budget
@@ -105,6 +109,7 @@ is
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervision_J : constant := 0;
+   Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
      Coordinator_Ports_Budget
      + Coordinator_Mission_Budget
@@ -126,6 +131,9 @@ is
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_J : constant :=
      Robot_Bus_Robot_Command_R;
+   Robot_Bus_Driver_Rx_Robot_Command_A : constant :=
+     Robot_Bus_Driver_Rx_Robot_Command_J
+     + (Robot_Bus_Driver_Rx_Robot_Command_T - 1);
    Robot_Bus_Driver_Rx_Robot_Command_C : constant :=
      Robot_Bus_Driver_Rx_Robot_Command_Budget
      + 2 * Controller_Context_Switch;
@@ -139,6 +147,9 @@ is
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_J : constant := Supervision_R;
+   Robot_Bus_Driver_Tx_Robot_Status_A : constant :=
+     Robot_Bus_Driver_Tx_Robot_Status_J
+     + (Robot_Bus_Driver_Tx_Robot_Status_T - 1);
    Robot_Bus_Driver_Tx_Robot_Status_C : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
@@ -151,6 +162,9 @@ is
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_J : constant := Control_R;
+   Robot_Bus_Driver_Tx_X_Set_Point_A : constant :=
+     Robot_Bus_Driver_Tx_X_Set_Point_J
+     + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_X_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_X_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
@@ -163,6 +177,9 @@ is
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_J : constant := Control_R;
+   Robot_Bus_Driver_Tx_Y_Set_Point_A : constant :=
+     Robot_Bus_Driver_Tx_Y_Set_Point_J
+     + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_Y_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_Y_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
@@ -175,6 +192,9 @@ is
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_J : constant := Control_R;
+   Robot_Bus_Driver_Tx_Z_Set_Point_A : constant :=
+     Robot_Bus_Driver_Tx_Z_Set_Point_J
+     + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_Z_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_Z_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
@@ -187,6 +207,9 @@ is
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_J : constant := Robot_Bus_X_Feedback_R;
+   Robot_Bus_Driver_Rx_X_Feedback_A : constant :=
+     Robot_Bus_Driver_Rx_X_Feedback_J
+     + (Robot_Bus_Driver_Rx_X_Feedback_T - 1);
    Robot_Bus_Driver_Rx_X_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
@@ -199,6 +222,9 @@ is
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_J : constant := Robot_Bus_Y_Feedback_R;
+   Robot_Bus_Driver_Rx_Y_Feedback_A : constant :=
+     Robot_Bus_Driver_Rx_Y_Feedback_J
+     + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1);
    Robot_Bus_Driver_Rx_Y_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
@@ -211,6 +237,9 @@ is
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_J : constant := Robot_Bus_Z_Feedback_R;
+   Robot_Bus_Driver_Rx_Z_Feedback_A : constant :=
+     Robot_Bus_Driver_Rx_Z_Feedback_J
+     + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1);
    Robot_Bus_Driver_Rx_Z_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
@@ -222,6 +251,8 @@ is
    Controller_Probe_T : constant := 1_000_000;
    Controller_Probe_D : constant := 1_000_000;
    Controller_Probe_J : constant := 0;
+   Controller_Probe_A : constant :=
+     Controller_Probe_J + (Controller_Probe_T - 1);
    Controller_Probe_C : constant :=
      Controller_Probe_Budget + 2 * Controller_Context_Switch;
    Controller_Probe_B : constant := Controller_Critical_Section;
@@ -247,6 +278,8 @@ is
      ((Robot_Bus_Robot_Command_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Robot_Command_J : constant := 0;
+   Robot_Bus_Robot_Command_A : constant :=
+     Robot_Bus_Robot_Command_J + (Robot_Bus_Robot_Command_T - 1);
 
    --  [robot_bus.x_set_point] 11-bit identifier 0x110, 3 bytes from
    --  joint_x.drive
@@ -261,6 +294,8 @@ is
      ((Robot_Bus_X_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_X_Set_Point_J : constant := Robot_Bus_Driver_Tx_X_Set_Point_R;
+   Robot_Bus_X_Set_Point_A : constant :=
+     Robot_Bus_X_Set_Point_J + (Robot_Bus_X_Set_Point_T - 1);
 
    --  [robot_bus.y_set_point] 11-bit identifier 0x111, 3 bytes from
    --  joint_y.drive
@@ -275,6 +310,8 @@ is
      ((Robot_Bus_Y_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Y_Set_Point_J : constant := Robot_Bus_Driver_Tx_Y_Set_Point_R;
+   Robot_Bus_Y_Set_Point_A : constant :=
+     Robot_Bus_Y_Set_Point_J + (Robot_Bus_Y_Set_Point_T - 1);
 
    --  [robot_bus.z_set_point] 11-bit identifier 0x112, 3 bytes from
    --  joint_z.drive
@@ -289,6 +326,8 @@ is
      ((Robot_Bus_Z_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Z_Set_Point_J : constant := Robot_Bus_Driver_Tx_Z_Set_Point_R;
+   Robot_Bus_Z_Set_Point_A : constant :=
+     Robot_Bus_Z_Set_Point_J + (Robot_Bus_Z_Set_Point_T - 1);
 
    --  [robot_bus.x_feedback] 11-bit identifier 0x120, 6 bytes from somebody
    --  outside
@@ -303,6 +342,8 @@ is
      ((Robot_Bus_X_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_X_Feedback_J : constant := 0;
+   Robot_Bus_X_Feedback_A : constant :=
+     Robot_Bus_X_Feedback_J + (Robot_Bus_X_Feedback_T - 1);
 
    --  [robot_bus.y_feedback] 11-bit identifier 0x121, 6 bytes from somebody
    --  outside
@@ -317,6 +358,8 @@ is
      ((Robot_Bus_Y_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Y_Feedback_J : constant := 0;
+   Robot_Bus_Y_Feedback_A : constant :=
+     Robot_Bus_Y_Feedback_J + (Robot_Bus_Y_Feedback_T - 1);
 
    --  [robot_bus.z_feedback] 11-bit identifier 0x122, 6 bytes from somebody
    --  outside
@@ -331,6 +374,8 @@ is
      ((Robot_Bus_Z_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Z_Feedback_J : constant := 0;
+   Robot_Bus_Z_Feedback_A : constant :=
+     Robot_Bus_Z_Feedback_J + (Robot_Bus_Z_Feedback_T - 1);
 
    --  [robot_bus.robot_status] 11-bit identifier 0x180, 6 bytes from
    --  coordinator.status
@@ -346,54 +391,39 @@ is
      / Robot_Bus_Bit_Rate;
    Robot_Bus_Robot_Status_J : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_R;
+   Robot_Bus_Robot_Status_A : constant :=
+     Robot_Bus_Robot_Status_J + (Robot_Bus_Robot_Status_T - 1);
 
    --  [reception] what can delay it: jobs of the same or higher priority
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
      Reception_C
      + Reception_B
-     + (((Reception_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Reception_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Reception_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Reception_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -413,50 +443,32 @@ is
    Trajectory_Needs : constant :=
      Trajectory_C
      + Trajectory_B
-     + (((Trajectory_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Trajectory_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Trajectory_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Trajectory_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Trajectory_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -476,52 +488,33 @@ is
    Control_Needs : constant :=
      Control_C
      + Control_B
-     + (((Control_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Control_W + Trajectory_J + (Trajectory_T - 1)) / Trajectory_T)
-        * Trajectory_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Control_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Control_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Control_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Control_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -543,53 +536,33 @@ is
      2 * Controller_Context_Switch
      + Joint_X_Ports_Budget
      + Control_B
-     + (((Joint_X_Ports_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Joint_X_Ports_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_X_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_X_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Ports_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Ports_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Joint_X_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -607,55 +580,35 @@ is
      + Joint_X_Monitoring_Budget
      + Joint_X_Position_Control_Budget
      + Control_B
-     + (((Joint_X_Position_Control_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
+     + (((Joint_X_Position_Control_W + Reception_A) / Reception_T)
         * Reception_C)
-     + (((Joint_X_Position_Control_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
+     + (((Joint_X_Position_Control_W + Trajectory_A) / Trajectory_T)
         * Trajectory_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Position_Control_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Position_Control_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Joint_X_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -674,53 +627,33 @@ is
      + Joint_X_Position_Control_Budget
      + Joint_Y_Ports_Budget
      + Control_B
-     + (((Joint_Y_Ports_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Joint_Y_Ports_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_Y_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_Y_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Y_Ports_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Y_Ports_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Joint_Y_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -741,55 +674,35 @@ is
      + Joint_Y_Monitoring_Budget
      + Joint_Y_Position_Control_Budget
      + Control_B
-     + (((Joint_Y_Position_Control_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
+     + (((Joint_Y_Position_Control_W + Reception_A) / Reception_T)
         * Reception_C)
-     + (((Joint_Y_Position_Control_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
+     + (((Joint_Y_Position_Control_W + Trajectory_A) / Trajectory_T)
         * Trajectory_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Y_Position_Control_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Y_Position_Control_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Joint_Y_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -811,53 +724,33 @@ is
      + Joint_Y_Position_Control_Budget
      + Joint_Z_Ports_Budget
      + Control_B
-     + (((Joint_Z_Ports_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Joint_Z_Ports_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_Z_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_Z_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Z_Ports_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Z_Ports_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Joint_Z_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -881,55 +774,35 @@ is
      + Joint_Z_Monitoring_Budget
      + Joint_Z_Position_Control_Budget
      + Control_B
-     + (((Joint_Z_Position_Control_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
+     + (((Joint_Z_Position_Control_W + Reception_A) / Reception_T)
         * Reception_C)
-     + (((Joint_Z_Position_Control_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
+     + (((Joint_Z_Position_Control_W + Trajectory_A) / Trajectory_T)
         * Trajectory_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_Z_Position_Control_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_Z_Position_Control_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Joint_Z_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -943,54 +816,34 @@ is
    Supervision_Needs : constant :=
      Supervision_C
      + Supervision_B
-     + (((Supervision_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Supervision_W + Trajectory_J + (Trajectory_T - 1)) / Trajectory_T)
-        * Trajectory_C)
-     + (((Supervision_W + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Supervision_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Supervision_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Supervision_W + Control_A) / Control_T) * Control_C)
+     + (((Supervision_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Supervision_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Supervision_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Supervision_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Supervision_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -1012,58 +865,34 @@ is
      2 * Controller_Context_Switch
      + Coordinator_Ports_Budget
      + Supervision_B
-     + (((Coordinator_Ports_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
-        * Reception_C)
-     + (((Coordinator_Ports_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
-        * Trajectory_C)
-     + (((Coordinator_Ports_W + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Coordinator_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Coordinator_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Coordinator_Ports_W + Control_A) / Control_T) * Control_C)
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Coordinator_Ports_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Coordinator_Ports_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Coordinator_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -1081,58 +910,35 @@ is
      + Coordinator_Ports_Budget
      + Coordinator_Mission_Budget
      + Supervision_B
-     + (((Coordinator_Mission_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
-        * Reception_C)
-     + (((Coordinator_Mission_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
+     + (((Coordinator_Mission_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Coordinator_Mission_W + Trajectory_A) / Trajectory_T)
         * Trajectory_C)
-     + (((Coordinator_Mission_W + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Coordinator_Mission_W + Control_A) / Control_T) * Control_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Coordinator_Mission_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Coordinator_Mission_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Coordinator_Mission_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -1149,55 +955,34 @@ is
      + Coordinator_Mission_Budget
      + Joint_X_Motion_Budget
      + Supervision_B
-     + (((Joint_X_Motion_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Joint_X_Motion_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_X_Motion_W + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_X_Motion_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_X_Motion_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_X_Motion_W + Control_A) / Control_T) * Control_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Motion_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Motion_W + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Joint_X_Motion_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -1216,58 +1001,34 @@ is
      + Joint_Z_Motion_Budget
      + Joint_X_Supervise_Budget
      + Supervision_B
-     + (((Joint_X_Supervise_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
-        * Reception_C)
-     + (((Joint_X_Supervise_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
-        * Trajectory_C)
-     + (((Joint_X_Supervise_W + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Joint_X_Supervise_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_X_Supervise_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_X_Supervise_W + Control_A) / Control_T) * Control_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Supervise_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Supervise_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Joint_X_Supervise_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -1292,58 +1053,36 @@ is
      + Joint_Z_Supervise_Budget
      + Coordinator_Summarise_Budget
      + Supervision_B
-     + (((Coordinator_Summarise_W + Reception_J + (Reception_T - 1))
-         / Reception_T)
+     + (((Coordinator_Summarise_W + Reception_A) / Reception_T)
         * Reception_C)
-     + (((Coordinator_Summarise_W + Trajectory_J + (Trajectory_T - 1))
-         / Trajectory_T)
+     + (((Coordinator_Summarise_W + Trajectory_A) / Trajectory_T)
         * Trajectory_C)
-     + (((Coordinator_Summarise_W + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Coordinator_Summarise_W + Control_A) / Control_T) * Control_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Coordinator_Summarise_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Coordinator_Summarise_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Coordinator_Summarise_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
@@ -1359,43 +1098,34 @@ is
      Robot_Bus_Driver_Rx_Robot_Command_C
      + Robot_Bus_Driver_Rx_Robot_Command_B
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1429,43 +1159,34 @@ is
      Robot_Bus_Driver_Tx_Robot_Status_C
      + Robot_Bus_Driver_Tx_Robot_Status_B
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1499,43 +1220,34 @@ is
      Robot_Bus_Driver_Tx_X_Set_Point_C
      + Robot_Bus_Driver_Tx_X_Set_Point_B
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1566,43 +1278,34 @@ is
      Robot_Bus_Driver_Tx_Y_Set_Point_C
      + Robot_Bus_Driver_Tx_Y_Set_Point_B
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1633,43 +1336,34 @@ is
      Robot_Bus_Driver_Tx_Z_Set_Point_C
      + Robot_Bus_Driver_Tx_Z_Set_Point_B
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1700,43 +1394,34 @@ is
      Robot_Bus_Driver_Rx_X_Feedback_C
      + Robot_Bus_Driver_Rx_X_Feedback_B
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1767,43 +1452,34 @@ is
      Robot_Bus_Driver_Rx_Y_Feedback_C
      + Robot_Bus_Driver_Rx_Y_Feedback_B
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1834,43 +1510,34 @@ is
      Robot_Bus_Driver_Rx_Z_Feedback_C
      + Robot_Bus_Driver_Rx_Z_Feedback_B
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1917,9 +1584,7 @@ is
    Robot_Bus_Robot_Command_Busy : constant := 500_000;
    Robot_Bus_Robot_Command_Busy_Needs : constant :=
      Robot_Bus_X_Feedback_C
-     + (((Robot_Bus_Robot_Command_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C);
 
@@ -1955,44 +1620,28 @@ is
    Robot_Bus_X_Set_Point_Busy : constant := 1_700_000;
    Robot_Bus_X_Set_Point_Busy_Needs : constant :=
      0
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_Busy
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2010,44 +1659,25 @@ is
      0
      + (((Robot_Bus_X_Set_Point_W
           + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+          + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_X_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2071,44 +1701,28 @@ is
    Robot_Bus_Y_Set_Point_Busy : constant := 1_700_000;
    Robot_Bus_Y_Set_Point_Busy_Needs : constant :=
      0
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_Busy
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2126,44 +1740,25 @@ is
      0
      + (((Robot_Bus_Y_Set_Point_W
           + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+          + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Y_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2187,44 +1782,28 @@ is
    Robot_Bus_Z_Set_Point_Busy : constant := 1_700_000;
    Robot_Bus_Z_Set_Point_Busy_Needs : constant :=
      0
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_Busy
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2242,44 +1821,25 @@ is
      0
      + (((Robot_Bus_Z_Set_Point_W
           + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+          + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Z_Set_Point_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2304,29 +1864,25 @@ is
    Robot_Bus_X_Feedback_Busy : constant := 1_240_000;
    Robot_Bus_X_Feedback_Busy_Needs : constant :=
      Robot_Bus_Y_Feedback_C
-     + (((Robot_Bus_X_Feedback_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_X_Feedback_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
      + (((Robot_Bus_X_Feedback_Busy
-          + Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
           + (Robot_Bus_X_Set_Point_T - 1))
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
      + (((Robot_Bus_X_Feedback_Busy
-          + Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
           + (Robot_Bus_Y_Set_Point_T - 1))
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
      + (((Robot_Bus_X_Feedback_Busy
-          + Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
           + (Robot_Bus_Z_Set_Point_T - 1))
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_X_Feedback_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C);
 
@@ -2342,27 +1898,24 @@ is
    Robot_Bus_X_Feedback_W : constant := 1_010_000;
    Robot_Bus_X_Feedback_Needs : constant :=
      Robot_Bus_Y_Feedback_C
-     + (((Robot_Bus_X_Feedback_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_X_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
      + (((Robot_Bus_X_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
           + (Robot_Bus_X_Set_Point_T - 1))
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
      + (((Robot_Bus_X_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
           + (Robot_Bus_Y_Set_Point_T - 1))
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
      + (((Robot_Bus_X_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
           + (Robot_Bus_Z_Set_Point_T - 1))
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C);
@@ -2388,34 +1941,28 @@ is
    Robot_Bus_Y_Feedback_Busy : constant := 1_470_000;
    Robot_Bus_Y_Feedback_Busy_Needs : constant :=
      Robot_Bus_Z_Feedback_C
-     + (((Robot_Bus_Y_Feedback_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
      + (((Robot_Bus_Y_Feedback_Busy
-          + Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
           + (Robot_Bus_X_Set_Point_T - 1))
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
      + (((Robot_Bus_Y_Feedback_Busy
-          + Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
           + (Robot_Bus_Y_Set_Point_T - 1))
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
      + (((Robot_Bus_Y_Feedback_Busy
-          + Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
           + (Robot_Bus_Z_Set_Point_T - 1))
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Y_Feedback_Busy
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C);
 
@@ -2431,34 +1978,28 @@ is
    Robot_Bus_Y_Feedback_W : constant := 1_240_000;
    Robot_Bus_Y_Feedback_Needs : constant :=
      Robot_Bus_Z_Feedback_C
-     + (((Robot_Bus_Y_Feedback_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Y_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
      + (((Robot_Bus_Y_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
           + (Robot_Bus_X_Set_Point_T - 1))
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
      + (((Robot_Bus_Y_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
           + (Robot_Bus_Y_Set_Point_T - 1))
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
      + (((Robot_Bus_Y_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
           + (Robot_Bus_Z_Set_Point_T - 1))
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Y_Feedback_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Y_Feedback_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C);
 
@@ -2483,39 +2024,31 @@ is
    Robot_Bus_Z_Feedback_Busy : constant := 1_700_000;
    Robot_Bus_Z_Feedback_Busy_Needs : constant :=
      Robot_Bus_Robot_Status_C
-     + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
      + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
           + (Robot_Bus_X_Set_Point_T - 1))
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
      + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
           + (Robot_Bus_Y_Set_Point_T - 1))
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
      + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
           + (Robot_Bus_Z_Set_Point_T - 1))
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Z_Feedback_Busy
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C);
 
@@ -2531,40 +2064,31 @@ is
    Robot_Bus_Z_Feedback_W : constant := 1_470_000;
    Robot_Bus_Z_Feedback_Needs : constant :=
      Robot_Bus_Robot_Status_C
-     + (((Robot_Bus_Z_Feedback_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
      + (((Robot_Bus_Z_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
           + (Robot_Bus_X_Set_Point_T - 1))
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
      + (((Robot_Bus_Z_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
           + (Robot_Bus_Y_Set_Point_T - 1))
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
      + (((Robot_Bus_Z_Feedback_W
           + Robot_Bus_Bit
-          + Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
           + (Robot_Bus_Z_Set_Point_T - 1))
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Z_Feedback_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Z_Feedback_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C);
 
@@ -2588,44 +2112,28 @@ is
    Robot_Bus_Robot_Status_Busy : constant := 1_700_000;
    Robot_Bus_Robot_Status_Busy_Needs : constant :=
      0
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C)
-     + (((Robot_Bus_Robot_Status_Busy
-          + Robot_Bus_Robot_Status_J
-          + (Robot_Bus_Robot_Status_T - 1))
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_A)
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
@@ -2643,44 +2151,25 @@ is
      0
      + (((Robot_Bus_Robot_Status_W
           + Robot_Bus_Bit
-          + Robot_Bus_Robot_Command_J
-          + (Robot_Bus_Robot_Command_T - 1))
+          + Robot_Bus_Robot_Command_A)
          / Robot_Bus_Robot_Command_T)
         * Robot_Bus_Robot_Command_C)
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Set_Point_J
-          + (Robot_Bus_X_Set_Point_T - 1))
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
          / Robot_Bus_X_Set_Point_T)
         * Robot_Bus_X_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Set_Point_J
-          + (Robot_Bus_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
          / Robot_Bus_Y_Set_Point_T)
         * Robot_Bus_Y_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Set_Point_J
-          + (Robot_Bus_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C)
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_X_Feedback_J
-          + (Robot_Bus_X_Feedback_T - 1))
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C)
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Y_Feedback_J
-          + (Robot_Bus_Y_Feedback_T - 1))
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C)
-     + (((Robot_Bus_Robot_Status_W
-          + Robot_Bus_Bit
-          + Robot_Bus_Z_Feedback_J
-          + (Robot_Bus_Z_Feedback_T - 1))
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
          / Robot_Bus_Z_Feedback_T)
         * Robot_Bus_Z_Feedback_C);
 

@@ -14,8 +14,24 @@ is
    --  longest time from the event to the release, C longest execution (with
    --  two context switches) or transmission, B blocking, R the claimed
    --  response from the event, W the time claimed from the start of a busy
-   --  period. Needs is the demand that arises within W: where it is more, W
-   --  is too short.
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
+   --  The claimed responses: each is some other's lateness, or its own
+   --  bound.
+   Reception_R : constant := 245_000;
+   Control_R : constant := 665_000;
+   Street_Driver_Rx_Order_R : constant := 1_245_000;
+   Street_Driver_Rx_Button_R : constant := 1_765_000;
+   Street_Driver_Tx_Car_Lamp_R : constant := 870_000;
+   Street_Driver_Tx_Walk_Lamp_R : constant := 870_000;
+   Street_Driver_Tx_Sign_R : constant := 870_000;
+   Street_Order_R : constant := 1_040_000;
+   Street_Button_R : constant := 1_560_000;
+   Street_Car_Lamp_R : constant := 3_470_000;
+   Street_Walk_Lamp_R : constant := 3_470_000;
+   Street_Sign_R : constant := 3_470_000;
+
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
@@ -26,10 +42,10 @@ is
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
+   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Street_Receive_Budget + 2 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
-   Reception_R : constant := 245_000;
 
    --  [control] priority 1, released every T. B: main may be inside health.
    School_Ports_Budget : constant := 100_000;
@@ -38,13 +54,13 @@ is
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
    Control_J : constant := 0;
+   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
      School_Ports_Budget
      + School_Lights_Budget
      + School_Show_Budget
      + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
-   Control_R : constant := 665_000;
 
    --  [street.driver_rx.order] priority 3, the driver's work, released by
    --  street.order, which is J late. B: control may be inside
@@ -53,10 +69,11 @@ is
    Street_Driver_Rx_Order_T : constant := 1_000_000_000;
    Street_Driver_Rx_Order_D : constant := 1_000_000_000;
    Street_Driver_Rx_Order_J : constant := Street_Order_R;
+   Street_Driver_Rx_Order_A : constant :=
+     Street_Driver_Rx_Order_J + (Street_Driver_Rx_Order_T - 1);
    Street_Driver_Rx_Order_C : constant :=
      Street_Driver_Rx_Order_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Order_B : constant := Board_Critical_Section;
-   Street_Driver_Rx_Order_R : constant := 1_245_000;
 
    --  [street.driver_rx.button] priority 3, the driver's work, released by
    --  street.button, which is J late. B: control may be inside
@@ -65,10 +82,11 @@ is
    Street_Driver_Rx_Button_T : constant := 50_000_000;
    Street_Driver_Rx_Button_D : constant := 50_000_000;
    Street_Driver_Rx_Button_J : constant := Street_Button_R;
+   Street_Driver_Rx_Button_A : constant :=
+     Street_Driver_Rx_Button_J + (Street_Driver_Rx_Button_T - 1);
    Street_Driver_Rx_Button_C : constant :=
      Street_Driver_Rx_Button_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Button_B : constant := Board_Critical_Section;
-   Street_Driver_Rx_Button_R : constant := 1_765_000;
 
    --  [street.driver_tx.car_lamp] priority 3, the driver's work, released
    --  by control, which is J late. B: control may be inside
@@ -77,10 +95,11 @@ is
    Street_Driver_Tx_Car_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_D : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_J : constant := Control_R;
+   Street_Driver_Tx_Car_Lamp_A : constant :=
+     Street_Driver_Tx_Car_Lamp_J + (Street_Driver_Tx_Car_Lamp_T - 1);
    Street_Driver_Tx_Car_Lamp_C : constant :=
      Street_Driver_Tx_Car_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Car_Lamp_B : constant := Board_Critical_Section;
-   Street_Driver_Tx_Car_Lamp_R : constant := 870_000;
 
    --  [street.driver_tx.walk_lamp] priority 3, the driver's work, released
    --  by control, which is J late. B: control may be inside
@@ -89,10 +108,11 @@ is
    Street_Driver_Tx_Walk_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_D : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_J : constant := Control_R;
+   Street_Driver_Tx_Walk_Lamp_A : constant :=
+     Street_Driver_Tx_Walk_Lamp_J + (Street_Driver_Tx_Walk_Lamp_T - 1);
    Street_Driver_Tx_Walk_Lamp_C : constant :=
      Street_Driver_Tx_Walk_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Walk_Lamp_B : constant := Board_Critical_Section;
-   Street_Driver_Tx_Walk_Lamp_R : constant := 870_000;
 
    --  [street.driver_tx.sign] priority 3, the driver's work, released by
    --  control, which is J late. B: control may be inside street.transmit.
@@ -100,112 +120,100 @@ is
    Street_Driver_Tx_Sign_T : constant := 100_000_000;
    Street_Driver_Tx_Sign_D : constant := 100_000_000;
    Street_Driver_Tx_Sign_J : constant := Control_R;
+   Street_Driver_Tx_Sign_A : constant :=
+     Street_Driver_Tx_Sign_J + (Street_Driver_Tx_Sign_T - 1);
    Street_Driver_Tx_Sign_C : constant :=
      Street_Driver_Tx_Sign_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Sign_B : constant := Board_Critical_Section;
-   Street_Driver_Tx_Sign_R : constant := 870_000;
 
-   --  [street] bits in a second, and one bit in nanoseconds, rounded up
+   --  [street] bits in a second, and one bit in nanoseconds, rounded up. Of
+   --  a message, Stuffed: bits that stuffing can lengthen by a quarter;
+   --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
+   --  the next frame.
    Street_Bit_Rate : constant := 125_000;
    Street_Bit : constant :=
      (1_000_000_000 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
 
-   --  [street.order] 11-bit identifier 0x100, 1 bytes from somebody
-   --  outside. Stuffed: bits exposed to stuffing; Bits: the longest frame,
-   --  13 more and 3 bits to the next frame among them.
+   --  [street.order] 11-bit identifier 0x100, 1 bytes from somebody outside
    Street_Order_T : constant := 1_000_000_000;
    Street_Order_D : constant := 1_000_000_000;
    Street_Order_Stuffed : constant := 34 + 8 * 1;
    Street_Order_Bits : constant :=
-     Street_Order_Stuffed + 13 + (Street_Order_Stuffed - 1) / 4;
+     Street_Order_Stuffed + 13 + ((Street_Order_Stuffed - 1) / 4);
    Street_Order_C : constant :=
-     (Street_Order_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     ((Street_Order_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
    Street_Order_J : constant := 0;
-   Street_Order_R : constant := 1_040_000;
+   Street_Order_A : constant := Street_Order_J + (Street_Order_T - 1);
 
    --  [street.button] 11-bit identifier 0x110, 1 bytes from somebody
-   --  outside. Stuffed: bits exposed to stuffing; Bits: the longest frame,
-   --  13 more and 3 bits to the next frame among them.
+   --  outside
    Street_Button_T : constant := 50_000_000;
    Street_Button_D : constant := 50_000_000;
    Street_Button_Stuffed : constant := 34 + 8 * 1;
    Street_Button_Bits : constant :=
-     Street_Button_Stuffed + 13 + (Street_Button_Stuffed - 1) / 4;
+     Street_Button_Stuffed + 13 + ((Street_Button_Stuffed - 1) / 4);
    Street_Button_C : constant :=
-     (Street_Button_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     ((Street_Button_Bits * 10**9) + (Street_Bit_Rate - 1))
+     / Street_Bit_Rate;
    Street_Button_J : constant := 0;
-   Street_Button_R : constant := 1_560_000;
+   Street_Button_A : constant := Street_Button_J + (Street_Button_T - 1);
 
    --  [street.car_lamp] 11-bit identifier 0x120, 1 bytes from
-   --  school.car_lamp. Stuffed: bits exposed to stuffing; Bits: the longest
-   --  frame, 13 more and 3 bits to the next frame among them.
+   --  school.car_lamp
    Street_Car_Lamp_T : constant := 100_000_000;
    Street_Car_Lamp_D : constant := 100_000_000;
    Street_Car_Lamp_Stuffed : constant := 34 + 8 * 1;
    Street_Car_Lamp_Bits : constant :=
-     Street_Car_Lamp_Stuffed + 13 + (Street_Car_Lamp_Stuffed - 1) / 4;
+     Street_Car_Lamp_Stuffed + 13 + ((Street_Car_Lamp_Stuffed - 1) / 4);
    Street_Car_Lamp_C : constant :=
-     (Street_Car_Lamp_Bits * 10**9 + (Street_Bit_Rate - 1))
+     ((Street_Car_Lamp_Bits * 10**9) + (Street_Bit_Rate - 1))
      / Street_Bit_Rate;
    Street_Car_Lamp_J : constant := Street_Driver_Tx_Car_Lamp_R;
-   Street_Car_Lamp_R : constant := 3_470_000;
+   Street_Car_Lamp_A : constant :=
+     Street_Car_Lamp_J + (Street_Car_Lamp_T - 1);
 
    --  [street.walk_lamp] 11-bit identifier 0x121, 1 bytes from
-   --  school.walk_lamp. Stuffed: bits exposed to stuffing; Bits: the
-   --  longest frame, 13 more and 3 bits to the next frame among them.
+   --  school.walk_lamp
    Street_Walk_Lamp_T : constant := 100_000_000;
    Street_Walk_Lamp_D : constant := 100_000_000;
    Street_Walk_Lamp_Stuffed : constant := 34 + 8 * 1;
    Street_Walk_Lamp_Bits : constant :=
-     Street_Walk_Lamp_Stuffed + 13 + (Street_Walk_Lamp_Stuffed - 1) / 4;
+     Street_Walk_Lamp_Stuffed + 13 + ((Street_Walk_Lamp_Stuffed - 1) / 4);
    Street_Walk_Lamp_C : constant :=
-     (Street_Walk_Lamp_Bits * 10**9 + (Street_Bit_Rate - 1))
+     ((Street_Walk_Lamp_Bits * 10**9) + (Street_Bit_Rate - 1))
      / Street_Bit_Rate;
    Street_Walk_Lamp_J : constant := Street_Driver_Tx_Walk_Lamp_R;
-   Street_Walk_Lamp_R : constant := 3_470_000;
+   Street_Walk_Lamp_A : constant :=
+     Street_Walk_Lamp_J + (Street_Walk_Lamp_T - 1);
 
-   --  [street.sign] 11-bit identifier 0x122, 1 bytes from school.sign.
-   --  Stuffed: bits exposed to stuffing; Bits: the longest frame, 13 more
-   --  and 3 bits to the next frame among them.
+   --  [street.sign] 11-bit identifier 0x122, 1 bytes from school.sign
    Street_Sign_T : constant := 100_000_000;
    Street_Sign_D : constant := 100_000_000;
    Street_Sign_Stuffed : constant := 34 + 8 * 1;
    Street_Sign_Bits : constant :=
-     Street_Sign_Stuffed + 13 + (Street_Sign_Stuffed - 1) / 4;
+     Street_Sign_Stuffed + 13 + ((Street_Sign_Stuffed - 1) / 4);
    Street_Sign_C : constant :=
-     (Street_Sign_Bits * 10**9 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+     ((Street_Sign_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
    Street_Sign_J : constant := Street_Driver_Tx_Sign_R;
-   Street_Sign_R : constant := 3_470_000;
+   Street_Sign_A : constant := Street_Sign_J + (Street_Sign_T - 1);
 
-   --  [reception] what can delay it
+   --  [reception] what can delay it: jobs of the same or higher priority
    Reception_W : constant := Reception_R - Reception_J;
    Reception_Needs : constant :=
      Reception_C
      + Reception_B
-     + (((Reception_W
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
-         / Street_Driver_Rx_Order_T)
+     + (((Reception_W + Street_Driver_Rx_Order_A) / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Reception_W
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Reception_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Reception_W
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Reception_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Reception_W
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Reception_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Reception_W
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
-         / Street_Driver_Tx_Sign_T)
+     + (((Reception_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
@@ -220,37 +228,23 @@ is
    pragma Assert (Reception_Needs <= Reception_W);
    pragma Assert (Reception_R <= Reception_D);
 
-   --  [control] what can delay it
+   --  [control] what can delay it: jobs of the same or higher priority
    Control_W : constant := Control_R - Control_J;
    Control_Needs : constant :=
      Control_C
      + Control_B
-     + (((Control_W + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Control_W
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
-         / Street_Driver_Rx_Order_T)
+     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Control_W + Street_Driver_Rx_Order_A) / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Control_W
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
-         / Street_Driver_Rx_Button_T)
+     + (((Control_W + Street_Driver_Rx_Button_A) / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Control_W
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Control_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Control_W
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Control_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Control_W
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
-         / Street_Driver_Tx_Sign_T)
+     + (((Control_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
@@ -265,30 +259,23 @@ is
    pragma Assert (Control_Needs <= Control_W);
    pragma Assert (Control_R <= Control_D);
 
-   --  [street.driver_rx.order] what can delay it
+   --  [street.driver_rx.order] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Rx_Order_W : constant :=
      Street_Driver_Rx_Order_R - Street_Driver_Rx_Order_J;
    Street_Driver_Rx_Order_Needs : constant :=
      Street_Driver_Rx_Order_C
      + Street_Driver_Rx_Order_B
-     + (((Street_Driver_Rx_Order_W
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Rx_Order_W
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Rx_Order_W
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Rx_Order_W
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
@@ -307,30 +294,23 @@ is
    pragma Assert (Street_Driver_Rx_Order_Needs <= Street_Driver_Rx_Order_W);
    pragma Assert (Street_Driver_Rx_Order_R <= Street_Driver_Rx_Order_D);
 
-   --  [street.driver_rx.button] what can delay it
+   --  [street.driver_rx.button] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Rx_Button_W : constant :=
      Street_Driver_Rx_Button_R - Street_Driver_Rx_Button_J;
    Street_Driver_Rx_Button_Needs : constant :=
      Street_Driver_Rx_Button_C
      + Street_Driver_Rx_Button_B
-     + (((Street_Driver_Rx_Button_W
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Rx_Button_W
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Rx_Button_W
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Rx_Button_W
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
@@ -350,30 +330,23 @@ is
      (Street_Driver_Rx_Button_Needs <= Street_Driver_Rx_Button_W);
    pragma Assert (Street_Driver_Rx_Button_R <= Street_Driver_Rx_Button_D);
 
-   --  [street.driver_tx.car_lamp] what can delay it
+   --  [street.driver_tx.car_lamp] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Tx_Car_Lamp_W : constant :=
      Street_Driver_Tx_Car_Lamp_R - Street_Driver_Tx_Car_Lamp_J;
    Street_Driver_Tx_Car_Lamp_Needs : constant :=
      Street_Driver_Tx_Car_Lamp_C
      + Street_Driver_Tx_Car_Lamp_B
-     + (((Street_Driver_Tx_Car_Lamp_W
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Car_Lamp_W
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Car_Lamp_W
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Tx_Car_Lamp_W
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
@@ -394,30 +367,23 @@ is
    pragma Assert
      (Street_Driver_Tx_Car_Lamp_R <= Street_Driver_Tx_Car_Lamp_D);
 
-   --  [street.driver_tx.walk_lamp] what can delay it
+   --  [street.driver_tx.walk_lamp] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Tx_Walk_Lamp_W : constant :=
      Street_Driver_Tx_Walk_Lamp_R - Street_Driver_Tx_Walk_Lamp_J;
    Street_Driver_Tx_Walk_Lamp_Needs : constant :=
      Street_Driver_Tx_Walk_Lamp_C
      + Street_Driver_Tx_Walk_Lamp_B
-     + (((Street_Driver_Tx_Walk_Lamp_W
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Walk_Lamp_W
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Walk_Lamp_W
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Tx_Walk_Lamp_W
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
@@ -438,30 +404,23 @@ is
    pragma Assert
      (Street_Driver_Tx_Walk_Lamp_R <= Street_Driver_Tx_Walk_Lamp_D);
 
-   --  [street.driver_tx.sign] what can delay it
+   --  [street.driver_tx.sign] what can delay it: jobs of the same or higher
+   --  priority
    Street_Driver_Tx_Sign_W : constant :=
      Street_Driver_Tx_Sign_R - Street_Driver_Tx_Sign_J;
    Street_Driver_Tx_Sign_Needs : constant :=
      Street_Driver_Tx_Sign_C
      + Street_Driver_Tx_Sign_B
-     + (((Street_Driver_Tx_Sign_W
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Sign_W
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Sign_W
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Tx_Sign_W
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C);
 
@@ -479,12 +438,12 @@ is
    pragma Assert (Street_Driver_Tx_Sign_Needs <= Street_Driver_Tx_Sign_W);
    pragma Assert (Street_Driver_Tx_Sign_R <= Street_Driver_Tx_Sign_D);
 
-   --  [street.order] what can delay it
+   --  [street.order] what can delay it: frames that go before it, and one
+   --  of those that go behind it, the longest of which counts once
    Street_Order_Busy : constant := 1_040_000;
    Street_Order_Busy_Needs : constant :=
      Street_Button_C
-     + (((Street_Order_Busy + Street_Order_J + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Order_Busy + Street_Order_A) / Street_Order_T)
         * Street_Order_C);
 
    pragma Compile_Time_Error
@@ -508,15 +467,14 @@ is
       "street.order " & "can miss its deadline");
    pragma Assert (Street_Order_R <= Street_Order_D);
 
-   --  [street.button] what can delay it
+   --  [street.button] what can delay it: frames that go before it, and one
+   --  of those that go behind it, the longest of which counts once
    Street_Button_Busy : constant := 1_560_000;
    Street_Button_Busy_Needs : constant :=
      Street_Car_Lamp_C
-     + (((Street_Button_Busy + Street_Order_J + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Button_Busy + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Button_Busy + Street_Button_J + (Street_Button_T - 1))
-         / Street_Button_T)
+     + (((Street_Button_Busy + Street_Button_A) / Street_Button_T)
         * Street_Button_C);
 
    pragma Compile_Time_Error
@@ -529,11 +487,7 @@ is
    Street_Button_W : constant := 1_040_000;
    Street_Button_Needs : constant :=
      Street_Car_Lamp_C
-     + (((Street_Button_W
-          + Street_Bit
-          + Street_Order_J
-          + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Button_W + Street_Bit + Street_Order_A) / Street_Order_T)
         * Street_Order_C);
 
    pragma Compile_Time_Error
@@ -548,26 +502,19 @@ is
       "street.button " & "can miss its deadline");
    pragma Assert (Street_Button_R <= Street_Button_D);
 
-   --  [street.car_lamp] what can delay it
+   --  [street.car_lamp] what can delay it: frames that go before it
    Street_Car_Lamp_Busy : constant := 2_600_000;
    Street_Car_Lamp_Busy_Needs : constant :=
      0
-     + (((Street_Car_Lamp_Busy + Street_Order_J + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Car_Lamp_Busy + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Car_Lamp_Busy + Street_Button_J + (Street_Button_T - 1))
-         / Street_Button_T)
+     + (((Street_Car_Lamp_Busy + Street_Button_A) / Street_Button_T)
         * Street_Button_C)
-     + (((Street_Car_Lamp_Busy + Street_Car_Lamp_J + (Street_Car_Lamp_T - 1))
-         / Street_Car_Lamp_T)
+     + (((Street_Car_Lamp_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
         * Street_Car_Lamp_C)
-     + (((Street_Car_Lamp_Busy
-          + Street_Walk_Lamp_J
-          + (Street_Walk_Lamp_T - 1))
-         / Street_Walk_Lamp_T)
+     + (((Street_Car_Lamp_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
         * Street_Walk_Lamp_C)
-     + (((Street_Car_Lamp_Busy + Street_Sign_J + (Street_Sign_T - 1))
-         / Street_Sign_T)
+     + (((Street_Car_Lamp_Busy + Street_Sign_A) / Street_Sign_T)
         * Street_Sign_C);
 
    pragma Compile_Time_Error
@@ -580,29 +527,15 @@ is
    Street_Car_Lamp_W : constant := 2_080_000;
    Street_Car_Lamp_Needs : constant :=
      0
-     + (((Street_Car_Lamp_W
-          + Street_Bit
-          + Street_Order_J
-          + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Car_Lamp_W
-          + Street_Bit
-          + Street_Button_J
-          + (Street_Button_T - 1))
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Button_A)
          / Street_Button_T)
         * Street_Button_C)
-     + (((Street_Car_Lamp_W
-          + Street_Bit
-          + Street_Walk_Lamp_J
-          + (Street_Walk_Lamp_T - 1))
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Walk_Lamp_A)
          / Street_Walk_Lamp_T)
         * Street_Walk_Lamp_C)
-     + (((Street_Car_Lamp_W
-          + Street_Bit
-          + Street_Sign_J
-          + (Street_Sign_T - 1))
-         / Street_Sign_T)
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
         * Street_Sign_C);
 
    pragma Compile_Time_Error
@@ -617,28 +550,19 @@ is
       "street.car_lamp " & "can miss its deadline");
    pragma Assert (Street_Car_Lamp_R <= Street_Car_Lamp_D);
 
-   --  [street.walk_lamp] what can delay it
+   --  [street.walk_lamp] what can delay it: frames that go before it
    Street_Walk_Lamp_Busy : constant := 2_600_000;
    Street_Walk_Lamp_Busy_Needs : constant :=
      0
-     + (((Street_Walk_Lamp_Busy + Street_Order_J + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Walk_Lamp_Busy + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Walk_Lamp_Busy + Street_Button_J + (Street_Button_T - 1))
-         / Street_Button_T)
+     + (((Street_Walk_Lamp_Busy + Street_Button_A) / Street_Button_T)
         * Street_Button_C)
-     + (((Street_Walk_Lamp_Busy
-          + Street_Car_Lamp_J
-          + (Street_Car_Lamp_T - 1))
-         / Street_Car_Lamp_T)
+     + (((Street_Walk_Lamp_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
         * Street_Car_Lamp_C)
-     + (((Street_Walk_Lamp_Busy
-          + Street_Walk_Lamp_J
-          + (Street_Walk_Lamp_T - 1))
-         / Street_Walk_Lamp_T)
+     + (((Street_Walk_Lamp_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
         * Street_Walk_Lamp_C)
-     + (((Street_Walk_Lamp_Busy + Street_Sign_J + (Street_Sign_T - 1))
-         / Street_Sign_T)
+     + (((Street_Walk_Lamp_Busy + Street_Sign_A) / Street_Sign_T)
         * Street_Sign_C);
 
    pragma Compile_Time_Error
@@ -652,29 +576,15 @@ is
    Street_Walk_Lamp_W : constant := 2_080_000;
    Street_Walk_Lamp_Needs : constant :=
      0
-     + (((Street_Walk_Lamp_W
-          + Street_Bit
-          + Street_Order_J
-          + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Walk_Lamp_W
-          + Street_Bit
-          + Street_Button_J
-          + (Street_Button_T - 1))
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Button_A)
          / Street_Button_T)
         * Street_Button_C)
-     + (((Street_Walk_Lamp_W
-          + Street_Bit
-          + Street_Car_Lamp_J
-          + (Street_Car_Lamp_T - 1))
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Car_Lamp_A)
          / Street_Car_Lamp_T)
         * Street_Car_Lamp_C)
-     + (((Street_Walk_Lamp_W
-          + Street_Bit
-          + Street_Sign_J
-          + (Street_Sign_T - 1))
-         / Street_Sign_T)
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
         * Street_Sign_C);
 
    pragma Compile_Time_Error
@@ -689,25 +599,19 @@ is
       "street.walk_lamp " & "can miss its deadline");
    pragma Assert (Street_Walk_Lamp_R <= Street_Walk_Lamp_D);
 
-   --  [street.sign] what can delay it
+   --  [street.sign] what can delay it: frames that go before it
    Street_Sign_Busy : constant := 2_600_000;
    Street_Sign_Busy_Needs : constant :=
      0
-     + (((Street_Sign_Busy + Street_Order_J + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Sign_Busy + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Sign_Busy + Street_Button_J + (Street_Button_T - 1))
-         / Street_Button_T)
+     + (((Street_Sign_Busy + Street_Button_A) / Street_Button_T)
         * Street_Button_C)
-     + (((Street_Sign_Busy + Street_Car_Lamp_J + (Street_Car_Lamp_T - 1))
-         / Street_Car_Lamp_T)
+     + (((Street_Sign_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
         * Street_Car_Lamp_C)
-     + (((Street_Sign_Busy + Street_Walk_Lamp_J + (Street_Walk_Lamp_T - 1))
-         / Street_Walk_Lamp_T)
+     + (((Street_Sign_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
         * Street_Walk_Lamp_C)
-     + (((Street_Sign_Busy + Street_Sign_J + (Street_Sign_T - 1))
-         / Street_Sign_T)
-        * Street_Sign_C);
+     + (((Street_Sign_Busy + Street_Sign_A) / Street_Sign_T) * Street_Sign_C);
 
    pragma Compile_Time_Error
      (Street_Sign_Busy_Needs > Street_Sign_Busy,
@@ -719,25 +623,14 @@ is
    Street_Sign_W : constant := 2_080_000;
    Street_Sign_Needs : constant :=
      0
-     + (((Street_Sign_W + Street_Bit + Street_Order_J + (Street_Order_T - 1))
-         / Street_Order_T)
+     + (((Street_Sign_W + Street_Bit + Street_Order_A) / Street_Order_T)
         * Street_Order_C)
-     + (((Street_Sign_W
-          + Street_Bit
-          + Street_Button_J
-          + (Street_Button_T - 1))
-         / Street_Button_T)
+     + (((Street_Sign_W + Street_Bit + Street_Button_A) / Street_Button_T)
         * Street_Button_C)
-     + (((Street_Sign_W
-          + Street_Bit
-          + Street_Car_Lamp_J
-          + (Street_Car_Lamp_T - 1))
+     + (((Street_Sign_W + Street_Bit + Street_Car_Lamp_A)
          / Street_Car_Lamp_T)
         * Street_Car_Lamp_C)
-     + (((Street_Sign_W
-          + Street_Bit
-          + Street_Walk_Lamp_J
-          + (Street_Walk_Lamp_T - 1))
+     + (((Street_Sign_W + Street_Bit + Street_Walk_Lamp_A)
          / Street_Walk_Lamp_T)
         * Street_Walk_Lamp_C);
 

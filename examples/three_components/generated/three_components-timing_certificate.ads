@@ -9,8 +9,15 @@ is
    --  longest time from the event to the release, C longest execution (with
    --  two context switches) or transmission, B blocking, R the claimed
    --  response from the event, W the time claimed from the start of a busy
-   --  period. Needs is the demand that arises within W: where it is more, W
-   --  is too short.
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
+   --  The claimed responses: each is some other's lateness, or its own
+   --  bound.
+   Processor_1_R : constant := 625_000;
+   Processor_2_R : constant := 1_245_000;
+   Processor_3_R : constant := 2_265_000;
+
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
@@ -24,10 +31,10 @@ is
    Processor_1_T : constant := 10_000_000;
    Processor_1_D : constant := 10_000_000;
    Processor_1_J : constant := 0;
+   Processor_1_A : constant := Processor_1_J + (Processor_1_T - 1);
    Processor_1_C : constant := One_Ports_Budget + 2 * Board_Context_Switch;
    Processor_1_C_2 : constant := One_Starting_Budget + One_Watching_Budget;
    Processor_1_B : constant := Board_Critical_Section;
-   Processor_1_R : constant := 625_000;
 
    --  [processor_2] priority 2, released every T. B: processor_3 may be
    --  inside one.token_in.mailbox. C: what every release executes; C_2:
@@ -38,11 +45,11 @@ is
    Processor_2_T : constant := 10_000_000;
    Processor_2_D : constant := 10_000_000;
    Processor_2_J : constant := 0;
+   Processor_2_A : constant := Processor_2_J + (Processor_2_T - 1);
    Processor_2_C : constant :=
      Two_Ports_Budget + Two_Handling_Budget + 2 * Board_Context_Switch;
    Processor_2_C_2 : constant := Three_Watching_Budget;
    Processor_2_B : constant := Board_Critical_Section;
-   Processor_2_R : constant := 1_245_000;
 
    --  [processor_3] priority 1, released every T. B: main may be inside
    --  health. C: what every release executes; C_2: rows of every 2th
@@ -55,14 +62,14 @@ is
    Processor_3_T : constant := 10_000_000;
    Processor_3_D : constant := 10_000_000;
    Processor_3_J : constant := 0;
+   Processor_3_A : constant := Processor_3_J + (Processor_3_T - 1);
    Processor_3_C : constant :=
      Three_Ports_Budget + Three_Handling_Budget + 2 * Board_Context_Switch;
    Processor_3_C_2 : constant :=
      Two_Watching_Budget + Two_Work_Budget + Three_Work_Budget;
    Processor_3_B : constant := Board_Critical_Section;
-   Processor_3_R : constant := 2_265_000;
 
-   --  [processor_1] what can delay it
+   --  [processor_1] what can delay it: jobs of the same or higher priority
    Processor_1_W : constant := Processor_1_R - Processor_1_J;
    Processor_1_Needs : constant :=
      Processor_1_C + Processor_1_C_2 + Processor_1_B;
@@ -79,19 +86,14 @@ is
    pragma Assert (Processor_1_Needs <= Processor_1_W);
    pragma Assert (Processor_1_R <= Processor_1_D);
 
-   --  [processor_2] what can delay it
+   --  [processor_2] what can delay it: jobs of the same or higher priority
    Processor_2_W : constant := Processor_2_R - Processor_2_J;
    Processor_2_Needs : constant :=
      Processor_2_C
      + Processor_2_C_2
      + Processor_2_B
-     + (((Processor_2_W + Processor_1_J + (Processor_1_T - 1))
-         / Processor_1_T)
-        * Processor_1_C)
-     + (((((Processor_2_W + Processor_1_J + (Processor_1_T - 1))
-           / Processor_1_T)
-          + (2 - 1))
-         / 2)
+     + (((Processor_2_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
+     + (((((Processor_2_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
         * Processor_1_C_2);
 
    pragma Compile_Time_Error
@@ -106,27 +108,17 @@ is
    pragma Assert (Processor_2_Needs <= Processor_2_W);
    pragma Assert (Processor_2_R <= Processor_2_D);
 
-   --  [processor_3] what can delay it
+   --  [processor_3] what can delay it: jobs of the same or higher priority
    Processor_3_W : constant := Processor_3_R - Processor_3_J;
    Processor_3_Needs : constant :=
      Processor_3_C
      + Processor_3_C_2
      + Processor_3_B
-     + (((Processor_3_W + Processor_1_J + (Processor_1_T - 1))
-         / Processor_1_T)
-        * Processor_1_C)
-     + (((((Processor_3_W + Processor_1_J + (Processor_1_T - 1))
-           / Processor_1_T)
-          + (2 - 1))
-         / 2)
+     + (((Processor_3_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
+     + (((((Processor_3_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
         * Processor_1_C_2)
-     + (((Processor_3_W + Processor_2_J + (Processor_2_T - 1))
-         / Processor_2_T)
-        * Processor_2_C)
-     + (((((Processor_3_W + Processor_2_J + (Processor_2_T - 1))
-           / Processor_2_T)
-          + (2 - 1))
-         / 2)
+     + (((Processor_3_W + Processor_2_A) / Processor_2_T) * Processor_2_C)
+     + (((((Processor_3_W + Processor_2_A) / Processor_2_T) + (2 - 1)) / 2)
         * Processor_2_C_2);
 
    pragma Compile_Time_Error
