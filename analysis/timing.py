@@ -10,6 +10,7 @@ from functools import cached_property
 
 from gen.model import Bus, Chain, Message, System
 from gen.model import Task as ModelTask
+from gen.terms import Origin
 
 from . import latencies
 from .core import holistic
@@ -56,6 +57,10 @@ class Analysis:
     def messages(self) -> dict[str, Message]:
         """The messages of the system by element."""
         return {message.element: message for message in self.system.messages}
+
+    def origin(self, name: str) -> Origin:
+        """Where a task or message stands in the model."""
+        return (self.tasks.get(name) or self.messages[name]).origin
 
     @cached_property
     def responses(self) -> tuple[Response, ...]:

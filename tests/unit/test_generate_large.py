@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from cProfile import Profile
 from pathlib import Path
 from pstats import Stats
 
+from gen.claims import Claims
 from gen.emit.naming import ada_case
 from gen.generate import generate
 from gen.load import load
-from gen.terms import Ns
 from ravenchart.large_models import large_model
 
 
