@@ -199,7 +199,10 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],
-        "chains": [(_hops(found), found) for found in analysis.chains[:SHOWN_CHAINS]],
+        "chains": [
+            (_hops(found), found, way)
+            for found, way in zip(analysis.chains, analysis.ways.between_messages(), strict=True)
+        ][:SHOWN_CHAINS],
         "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
         "factors": factors,
         "room": Markup(plots.svg(plots.room(factors, _whole(analysis)))) if factors else None,
