@@ -93,7 +93,9 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
     if not parts:
         return (f"{name} {room}",)
     total = sum(part.time for part in parts)
-    return (f"{name} {room}: {percent(Fraction(parts[0].time, total))} is {parts[0].name}",)
+    return (
+        f"{name} {room}: {percent(Fraction(parts[0].time, total))} of its time is {parts[0].name}",
+    )
 
 
 def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:

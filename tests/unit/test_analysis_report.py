@@ -104,9 +104,9 @@ def test_a_reception_that_loses_frames_is_a_finding() -> None:
 def test_what_limits_a_system_is_said_in_a_sentence() -> None:
     tasks = [task("plan", 2, 620_000, 2_000_000), task("axis", 1, 510_000, 2_000_000, 1_000_000)]
     (line,) = binding_lines(analyse(system(tasks)))
-    assert line == "axis misses by 130 us: 54.9 % is plan"
+    assert line == "axis misses by 130 us: 54.9 % of its time is plan"
     (line,) = binding_lines(analyse(system(tasks[:1])))
-    assert line == "plan comes first, with 1380 us left: 100.0 % is its own work"
+    assert line == "plan comes first, with 1380 us left: 100.0 % of its time is its own work"
 
 
 @pytest.mark.parametrize("one", [random_system(seed) for seed in range(20)])
