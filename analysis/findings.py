@@ -2,79 +2,105 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 from gen.diagnostics import Diagnostic, error
-from gen.model import System
+from gen.model import Bus, Chain
 from gen.terms import Origin
 
-from .bus_load import BusLoad, bus_loads
-from .response_times import Analysis, Response, Verdict, more_urgent
+from .core.can_response import FrameResponse
+from .core.responses import Interference, Reason, Response
+from .latencies import Latency
+from .timing import Analysis
 from .units import duration, microseconds, percent
 
 MISSED = "RV-0901"
-"""A task may complete after its deadline."""
+"""A task or message may complete after its deadline."""
 
 NO_BOUND = "RV-0902"
-"""No bound of a task's response is known."""
+"""No bound of a task's or message's response is known."""
 
 BUS_OVERLOAD = "RV-0903"
 """The messages of a bus need more than all of its time."""
+
+NO_WAY, CHAIN_LATE = "RV-0904", "RV-0905"
+"""A chain is broken; it may take longer than its limit."""
 
 LARGEST = 3
 """How many interferers a diagnostic names."""
 
 
 def findings(analysis: Analysis) -> tuple[Diagnostic, ...]:
-    """One error for each task that may miss its deadline and each bus loaded over 100 %."""
-    tasks = (_of_task(response, analysis.system) for response in analysis.failed())
-    buses = (_of_bus(load) for load in bus_loads(analysis.system) if load.share > 1)
-    return (*tasks, *buses)
+    """One error for each deadline that may be missed, each overload, and each limit of a chain."""
+    found: list[Diagnostic] = []
+    for name in analysis.failed():
+        response = analysis.found.responses[name]
+        if isinstance(response, Response):
+            found.append(_of_task(response, analysis))
+        else:
+            found.append(_of_message(response, analysis))
+    overloaded = [bus for bus in analysis.system.buses if analysis.bus_load(bus) > 1]
+    found += [_of_bus(bus, analysis) for bus in overloaded]
+    return (*found, *_of_receptions(analysis), *_of_chains(analysis))
 
 
-def _of_task(response: Response, system: System) -> Diagnostic:
+def no_bound_reason(response: Response | FrameResponse) -> str:
+    """Why there is no bound, in words."""
+    reason = response.reason or Reason.EFFORT
+    if reason is not Reason.OVERLOAD:
+        return str(reason.value)
+    if isinstance(response, Response):
+        return f"it and what preempts it need {percent(response.level.load)} of the core"
+    return f"it and what goes before it need {percent(response.level.load)} of the bus"
+
+
+def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
     """What is wrong with one task."""
-    task = response.task
-    if response.verdict is Verdict.NO_BOUND:
+    task = analysis.tasks[response.task.name]
+    if response.bound is None:
         return error(
             NO_BOUND,
             task.origin,
-            f"{task.element} has no response-time bound: {response.reason}",
-            notes=_notes(response, system),
+            f"{task.element} has no response-time bound: {no_bound_reason(response)}",
+            notes=_task_notes(response, analysis),
             hint="shorten worst-case execution times, or lengthen periods",
         )
     return error(
         MISSED,
         task.origin,
         f"{task.element} needs over {duration(task.deadline)}: "
-        f"it may take {microseconds(response.bound or 0)} us",
-        notes=_notes(response, system),
+        f"it may take {microseconds(response.bound)} us",
+        notes=_task_notes(response, analysis),
         hint="lengthen its period, or move an activity to a slower processor",
     )
 
 
-def _notes(response: Response, system: System) -> tuple[tuple[Origin, str], ...]:
+def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, str], ...]:
     """Its own time, the largest interferers and the blocker, each where it is declared."""
-    tasks = {t.element: t for t in system.tasks}
-    task, blocking = response.task, response.blocking
+    tasks, blocking = analysis.tasks, response.blocking
+    task = tasks[response.task.name]
     notes = [(task.origin, f"it runs for up to {duration(task.budget)} itself")]
-    if response.verdict is Verdict.NO_BOUND:
-        load = sorted(more_urgent(task, system.tasks), key=lambda t: -t.budget / t.period)
+    if response.jitter:
+        notes.append((task.origin, f"its release is late by up to {duration(response.jitter)}"))
+    if response.bound is None:
+        others = response.level.order[: response.level.reach]
+        load = [other for other in others if other.name != task.element]
+        load.sort(key=lambda other: -other.utilisation)
         notes += [
             (
-                other.origin,
-                f"it is preempted by {other.element}, period {duration(other.period)}: "
-                f"{percent(Fraction(other.budget, other.period))} of the core",
+                tasks[other.name].origin,
+                f"it is preempted by {other.name}, period {duration(other.period)}: "
+                f"{percent(other.utilisation)} of the core",
             )
             for other in load[:LARGEST]
         ]
     for share in response.interference[:LARGEST]:
-        other = tasks[share.element]
         notes.append(
             (
-                other.origin,
-                f"it is preempted by {share.element}, period {duration(other.period)}: "
-                f"{share.releases} x {duration(other.budget)} = {duration(share.time)}",
+                tasks[share.task.name].origin,
+                f"it is preempted by {share.task.name}, period {duration(share.task.period)}: "
+                f"{taken(share)}",
             )
         )
     if blocking is not None:
@@ -82,27 +108,126 @@ def _notes(response: Response, system: System) -> tuple[tuple[Origin, str], ...]
         notes.append(
             (
                 origin,
-                f"{blocking.user} may hold it up for {duration(blocking.section)} "
-                f"inside {blocking.element}",
+                f"{blocking.user} may hold it up for {duration(blocking.length)} "
+                f"inside {blocking.resource}",
             )
         )
     return tuple(notes)
 
 
-def _of_bus(load: BusLoad) -> Diagnostic:
+def taken(share: Interference) -> str:
+    """How the time of an interferer adds up."""
+    cost = share.task.plain_cost
+    if share.time == share.releases * cost:
+        return f"{share.releases} x {duration(cost)} = {duration(share.time)}"
+    return f"{share.releases} releases, not all with every row, take {duration(share.time)}"
+
+
+def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
+    """What is wrong with one message."""
+    message = analysis.messages[response.frame.name]
+    notes = [(message.origin, f"its frame takes {duration(response.frame.cost)}")]
+    if response.frame.jitter:
+        late = duration(response.frame.jitter)
+        notes.append((message.origin, f"it is handed to the controller up to {late} late"))
+    notes += [
+        (
+            analysis.messages[share.frame.name].origin,
+            f"{share.frame.name} goes before it: {share.instances} x "
+            f"{duration(share.frame.cost)} = {duration(share.time)}",
+        )
+        for share in response.interference[:LARGEST]
+    ]
+    if response.bound is None:
+        return error(
+            NO_BOUND,
+            message.origin,
+            f"message {message.name} has no response-time bound: {no_bound_reason(response)}",
+            notes=notes,
+            hint="lengthen periods, or raise the bit rate",
+        )
+    return error(
+        MISSED,
+        message.origin,
+        f"message {message.name} needs over {duration(message.limit)}: "
+        f"it may take {microseconds(response.bound)} us",
+        notes=notes,
+        hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
+    )
+
+
+def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
     """What is wrong with one bus."""
-    largest = sorted(load.messages, key=lambda item: -item.share)[:LARGEST]
+    frames = sorted(analysis.network.frames[bus.name], key=lambda frame: -frame.utilisation)
+    notes = []
+    for frame in frames[:LARGEST]:
+        message = analysis.messages[frame.name]
+        notes.append(
+            (
+                message.origin,
+                f"{message.name} takes {percent(frame.utilisation)}: "
+                f"{duration(frame.cost)} every {duration(frame.period)}",
+            )
+        )
     return error(
         BUS_OVERLOAD,
-        load.bus.origin,
-        f"{load.bus.name} may be loaded to {percent(load.share)}",
-        notes=[
-            (
-                item.message.origin,
-                f"{item.message.name} takes {percent(item.share)}: "
-                f"{item.bits} bits every {duration(item.message.period)}",
-            )
-            for item in largest
-        ],
+        bus.origin,
+        f"{bus.name} may be loaded to {percent(analysis.bus_load(bus))}",
+        notes=notes,
         hint="lengthen periods, or raise the bit rate",
+    )
+
+
+def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Receptions that take frames more slowly than they come."""
+    for processor in analysis.system.processors:
+        taken_here = [
+            one.message
+            for one in analysis.deliveries.values()
+            if one.message.bus == processor.released_by
+        ]
+        load = sum((Fraction(processor.period, m.period) for m in taken_here), Fraction(0))
+        if load > 1:
+            yield error(
+                NO_BOUND,
+                processor.origin,
+                f"{processor.name} takes a frame every {duration(processor.period)}, and "
+                f"{percent(load)} of that are needed: frames will be lost",
+                notes=[
+                    (m.origin, f"{m.name} comes every {duration(m.period)}") for m in taken_here
+                ],
+                hint="shorten the period of the processor",
+            )
+
+
+def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Chains without a way, and those that may take too long."""
+    for chain in analysis.system.chains:
+        gap = analysis.ways.through(chain.path).gap
+        if gap is not None:
+            message = f"the chain {chain.name} is broken: no values go from {gap[0]} to {gap[1]}"
+            yield error(NO_WAY, chain.origin, message, hint="name what lies between them")
+    for chain, found in analysis.limited:
+        pairs = (("reaction", found.reaction, chain.reaction), ("age", found.age, chain.age))
+        for what, value, limit in pairs:
+            if limit is not None and (value is None or value > limit):
+                yield _late_chain(chain, found, what, value, limit)
+
+
+def _late_chain(
+    chain: Chain, found: Latency, what: str, value: int | None, limit: int
+) -> Diagnostic:
+    """A limit that is not kept, with the slowest hops."""
+    hops = [(hop.step.name, (hop.wait or 0) + (hop.response or 0)) for hop in found.hops]
+    hops.sort(key=lambda hop: -hop[1])
+    takes = "has no bound" if value is None else f"may take {microseconds(value)} us"
+    return error(
+        CHAIN_LATE,
+        chain.origin,
+        f"the {what} of {chain.name} {takes}, and its limit is {duration(limit)}",
+        notes=[
+            (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
+            for name, time in hops[:LARGEST]
+        ],
+        hint="let its rows run more often, or in one processor in the order of the chain",
     )

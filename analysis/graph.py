@@ -8,7 +8,9 @@ it ``runs`` and an instance to its component (``is``).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 
 import networkx as nx
 
@@ -45,20 +47,51 @@ def dependencies(system: System) -> nx.DiGraph[str]:
     return graph
 
 
-def chains(system: System) -> tuple[tuple[str, ...], ...]:
-    """From each message received to each message sent: the shortest way through the rows.
+@dataclass(frozen=True, slots=True)
+class Way:
+    """The places on a way, none where it is broken; then ``gap`` says between what."""
 
-    Each chain lists the message, then every port, row and data item on its way.
-    """
-    graph = dependencies(system)
-    flow = nx.subgraph_view(graph, filter_edge=lambda a, b: graph.edges[a, b]["kind"] in FLOW)
-    arriving = [f"message {m.name}" for m in system.messages if m.source is None]
-    leaving = [f"message {m.name}" for m in system.messages if not m.targets]
-    found = []
-    for first in arriving:
-        ways = nx.single_source_shortest_path(flow, first)
-        found += [tuple(ways[last]) for last in leaving if last in ways]
-    return tuple(found)
+    places: tuple[str, ...]
+    gap: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """The ways that values can take through messages, ports, rows and data."""
+
+    system: System
+    flow: nx.DiGraph[str]
+
+    @classmethod
+    def of(cls, system: System) -> Ways:
+        """Of the whole system."""
+        graph = dependencies(system)
+        carries = {edge for edge in graph.edges if graph.edges[edge]["kind"] in FLOW}
+        return cls(system, nx.subgraph_view(graph, filter_edge=lambda a, b: (a, b) in carries))
+
+    def through(self, path: Sequence[str]) -> Way:
+        """The way along a path of messages and rows, the shortest from each to the next."""
+        nodes = [place if "." in place else f"message {place}" for place in path]
+        places = [nodes[0]]
+        for before, after in pairwise(nodes):
+            try:
+                places += nx.shortest_path(self.flow, before, after)[1:]
+            except nx.NetworkXNoPath:
+                return Way((), (before.removeprefix("message "), after.removeprefix("message ")))
+        return Way(tuple(places))
+
+    def between_messages(self) -> tuple[tuple[str, ...], ...]:
+        """From each message received to each message sent: the shortest way through the rows.
+
+        Each lists the message, then every port, row and data item on its way.
+        """
+        arriving = [f"message {m.name}" for m in self.system.messages if m.source is None]
+        leaving = [f"message {m.name}" for m in self.system.messages if not m.targets]
+        found = []
+        for first in arriving:
+            ways = nx.single_source_shortest_path(self.flow, first)
+            found += [tuple(ways[last]) for last in leaving if last in ways]
+        return tuple(found)
 
 
 def component_view(system: System) -> nx.DiGraph[str]:

@@ -10,16 +10,39 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from . import units
-from .bus_load import bus_loads
-from .graph import chains, component_view
+from gen.model import Bus
+
+from . import plots, units
+from .core.responses import Response
+from .core.tasks import plain
+from .critical import schedule
+from .findings import no_bound_reason
+from .graph import component_view
+from .latencies import Hop, Latency
+from .network import frame_length
 from .observed import Observation
 from .picture import draw
-from .response_times import Analysis, Response, Verdict
-from .table import WORDS, growth_line, verdict_line
+from .timing import Analysis, Verdict
+from .words import (
+    WORDS,
+    binding_lines,
+    families,
+    growth_line,
+    verdict_line,
+    window_parts,
+)
 
 SHOWN_CHAINS = 40
 """How many chains the report lists at most."""
+
+SHOWN_INSTANTS = 6
+"""How many critical instants it draws."""
+
+SCALED = 12
+"""Of how many tasks it looks for the factors."""
+
+KINDS = ("jitter", "blocking", "own", "interference", "overhead")
+"""What a response is made of, in the order of a bar."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +150,7 @@ def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
 
 def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     """Each processor's longest response beside its bound, closest to the bound first."""
-    bounds = {r.task.element.lower(): r.bound for r in analysis.responses}
+    bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
     rows = [
         Comparison(
             name,
@@ -156,43 +179,37 @@ def render(analysis: Analysis, run: RunReport | None = None) -> str:
         "duration": units.duration,
         "percent": units.percent,
         "seconds": units.seconds,
+        "plain_load": lambda task: plain(task).utilisation,
     }
     return environment.get_template("report.html").render(_context(analysis, run))
-
-
-def families(elements: Iterable[str]) -> dict[str, list[str]]:
-    """Elements by a common name: those that differ in their last part only share one.
-
-    ``bus.driver_rx.a`` and ``bus.driver_rx.b`` are ``bus.driver_rx.*``; what stands
-    alone keeps its own name.
-    """
-    found: dict[str, list[str]] = {}
-    for element in elements:
-        head, dot, _ = element.rpartition(".")
-        found.setdefault(f"{head}.*" if dot else element, []).append(element)
-    return {name if len(all_) > 1 else all_[0]: all_ for name, all_ in found.items()}
 
 
 def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
     """What the template shows."""
     system = analysis.system
     picture = draw(component_view(system))
-    found = chains(system)
-    loads = bus_loads(system)
+    factors = _factors(analysis)
     return {
         "system": system,
         "analysis": analysis,
         "verdict": verdict_line(analysis),
-        "good": analysis.schedulable and all(b.share <= 1 for b in loads),
+        "good": analysis.schedulable,
         "growth": growth_line(analysis),
-        "loads": loads,
-        "tasks": [_task(r) for r in analysis.worst_first()],
+        "binding": binding_lines(analysis),
+        "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
+        "buses": [_bus(analysis, bus) for bus in system.buses],
+        "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],
+        "chains": [
+            (_hops(found), found, way)
+            for found, way in zip(analysis.chains, analysis.ways.between_messages(), strict=True)
+        ][:SHOWN_CHAINS],
+        "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
+        "factors": factors,
+        "room": Markup(plots.svg(plots.room(factors, _whole(analysis)))) if factors else None,
+        "instants": _instants(analysis),
         "objects": [(item, _names(item.users)) for item in system.objects if len(item.users) > 1],
         "private": sum(1 for item in system.objects if len(item.users) <= 1),
-        "rows": {p.name: [s.element for s in p.slots] for p in system.processors},
         "graph": None if picture is None else Markup(picture),
-        "chains": found[:SHOWN_CHAINS],
-        "chains_left": max(0, len(found) - SHOWN_CHAINS),
         "run": run,
         "pictures": [(c, Markup(svg)) for c, svg in run.pictures] if run else [],
         "compared": compare(analysis, run.observation) if run and run.observation else (),
@@ -201,25 +218,127 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
     }
 
 
-def _task(response: Response) -> dict[str, Any]:
-    """One task's row, its parts as shares of the deadline (or of R where that is longer)."""
-    task, bound = response.task, response.bound
-    scale = max(task.deadline, bound or 0)
-    parts = (
-        ("jitter", task.jitter),
-        ("blocking", response.blocked),
-        ("own", response.own - response.worst_job * task.period),
-        ("interference", sum(share.time for share in response.interference)),
-    )
+def _item(analysis: Analysis, name: str) -> dict[str, Any]:
+    """The row of a task or message, its parts as shares of the deadline (or of R if longer)."""
+    found, response = analysis.found, analysis.found.responses[name]
+    bound, deadline = found.from_event(name), found.deadline(name)
+    plain = analysis.plain.from_event(name)
+    item = analysis.network.items()[name]
+    parts = window_parts(analysis, name)
+    scale = max(deadline, bound or 0)
+    kinds = {kind: sum(p.time for p in parts if p.kind == kind) for kind in KINDS}
     return {
+        "name": name,
+        "origin": analysis.origin(name),
         "response": response,
-        "task": task,
-        "shares": _shares(response),
-        "word": WORDS[response.verdict],
-        "met": response.verdict is Verdict.MET,
-        "deadline_at": 100 * task.deadline / scale,
-        "parts": [(name, 100 * time / scale) for name, time in _within(parts, bound) if time > 0],
+        "item": item,
+        "cost": analysis.tasks[name].budget if name in analysis.tasks else item.cost,
+        "deadline": deadline,
+        "jitter": item.jitter + found.inherited.get(name, 0),
+        "bound": bound,
+        "plain": plain,
+        "slack": analysis.slack(name),
+        "word": WORDS[analysis.verdict(name)],
+        "met": analysis.verdict(name) is Verdict.MET,
+        "reason": "" if bound is not None else no_bound_reason(response),
+        "shares": parts,
+        "deadline_at": 100 * deadline / scale,
+        "bar": [(k, 100 * time / scale) for k, time in _within(kinds, bound) if time > 0],
+        "rows": _rows(analysis, name),
     }
+
+
+def _rows(analysis: Analysis, name: str) -> list[dict[str, Any]]:
+    """The activities of a task inside its job: each with its own deadline."""
+    task = analysis.tasks.get(name)
+    response = analysis.found.responses[name]
+    slots = {} if task is None else {slot.element: slot for slot in task.slots}
+    rows = []
+    for row in response.rows if isinstance(response, Response) else ():
+        slot = slots[row.row.name]
+        deadline = slot.timing.deadline
+        scale = max(deadline, row.bound)
+        rows.append(
+            {
+                "slot": slot,
+                "bound": row.bound,
+                "slack": deadline - row.bound,
+                "width": 100 * row.bound / scale,
+                "deadline_at": 100 * deadline / scale,
+            }
+        )
+    return rows
+
+
+def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
+    """A bus and its messages, most urgent first."""
+    messages = []
+    for sent in analysis.frames(bus):
+        message = analysis.messages[sent.frame.name]
+        bits = frame_length(message).nominal
+        row = _item(analysis, sent.frame.name)
+        delivery = analysis.deliveries.get(message.element)
+        messages.append(row | {"message": message, "bits": bits, "delivery": delivery})
+    return {"bus": bus, "load": analysis.bus_load(bus), "messages": messages}
+
+
+def _hops(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
+    """Each hop: its name, how data come to it, what it waits, takes and is renewed after."""
+    words = {
+        Hop.RELEASED: "at once",
+        Hop.SAMPLED: "samples, every T",
+        Hop.QUEUED: "takes the oldest of a queue",
+    }
+    return [
+        (hop.step.name, words[hop.step.hop], hop.wait, hop.response, hop.renewal)
+        for hop in found.hops
+    ]
+
+
+def _whole(analysis: Analysis) -> float | None:
+    return None if analysis.scaling is None else float(analysis.scaling.factor)
+
+
+def _factors(analysis: Analysis) -> list[tuple[str, float]]:
+    """How far each of the tightest tasks can be scaled alone; a driver's work together."""
+    tight = [name for name in analysis.worst_first() if name in analysis.tasks]
+    found = []
+    for name, members in list(families(tight).items())[:SCALED]:
+        scaling = analysis.scaling_of(*members)
+        if scaling is not None:
+            found.append((name, float(scaling.factor)))
+    return sorted(found, key=lambda pair: pair[1])
+
+
+def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
+    """The critical instants of the tasks with tables, tightest first, as pictures."""
+    found = []
+    tight = [n for n in analysis.worst_first() if n in analysis.tasks and analysis.tasks[n].slots]
+    for name in tight[:SHOWN_INSTANTS] or list(analysis.tasks)[:1]:
+        response = analysis.response(name)
+        slices = schedule(response)
+        if slices:
+            period = response.worst_job * response.task.period
+            deadline = response.task.deadline - response.jitter + period
+            found.append((name, response.window, Markup(plots.svg(plots.gantt(slices, deadline)))))
+    return found
+
+
+def _within(kinds: Mapping[str, int], bound: int | None) -> list[tuple[str, int]]:
+    """The parts of a bar that is ``bound`` long in all; empty without a bound.
+
+    For a later job of the busy period the periods before its release are taken
+    off its own time first, then off what stands before and after it.
+    """
+    if bound is None:
+        return []
+    debt = sum(kinds.values()) - bound
+    kept = dict(kinds)
+    for kind in ("own", *KINDS):
+        less = min(debt, kept[kind])
+        kept[kind] -= less
+        debt -= less
+    return list(kept.items())
 
 
 def _names(elements: Iterable[str]) -> str:
@@ -228,38 +347,6 @@ def _names(elements: Iterable[str]) -> str:
         name if len(members) == 1 else f"{name} ({len(members)})"
         for name, members in families(elements).items()
     )
-
-
-def _shares(response: Response) -> list[tuple[str, str, int]]:
-    """(name, how it adds up, time) for each interferer or family, most first."""
-    by_name = {share.element: share for share in response.interference}
-    rows = []
-    for name, members in families(by_name).items():
-        each = [by_name[m] for m in members]
-        time = sum(share.time for share in each)
-        releases = sum(share.releases for share in each)
-        same = len({Fraction(share.time, share.releases) for share in each}) == 1
-        sum_of = f"{releases} x {units.microseconds(time // releases)}" if same else ""
-        rows.append((name, sum_of, time))
-    return sorted(rows, key=lambda row: -row[2])
-
-
-def _within(parts: tuple[tuple[str, int], ...], bound: int | None) -> list[tuple[str, int]]:
-    """The parts of a bar that is ``bound`` long in all; empty without a bound.
-
-    For a later job of the busy period the periods before its release are taken
-    off its own time first, then off what stands before and after it.
-    """
-    if bound is None:
-        return []
-    kept: list[tuple[str, int]] = []
-    debt = 0
-    for name, time in sorted(parts, key=lambda part: part[1]):
-        rest = max(0, time + debt)
-        debt = min(0, time + debt)
-        kept.append((name, rest))
-    order = [name for name, _ in parts]
-    return sorted(kept, key=lambda part: order.index(part[0]))
 
 
 def _visits(run: RunReport | None) -> list[tuple[str, str, int]]:

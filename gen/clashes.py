@@ -15,13 +15,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from .claims import Claims
 from .diagnostics import Diagnostic, error
 from .emit import ada
 from .emit.ada_text import WIDTH, print_unit
 from .emit.naming import ada_case, root_package
 from .generate import units
 from .model import Component, System
-from .terms import EnumerationType, Ns, Origin
+from .terms import EnumerationType, Origin
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})
 """Words that no GNAT project can have as its name, beside those of Ada."""
@@ -161,7 +162,7 @@ def _of_item(unit: _Unit, outer: Sequence[_Name]) -> list[_Name]:
 
 def _clashing(system: System) -> Iterator[tuple[str, str]]:
     """(Ada name, unit) of whatever clashes."""
-    made = units(system, defaultdict(lambda: Ns(0)))
+    made = units(system, Claims())
     root = root_package(system)
     specs: dict[str, list[_Name]] = {}
     for unit in made:
@@ -257,7 +258,7 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
     if all(len(e.name) <= LONG_NAME for e in _elements(system)):
         return
     reported: set[Origin] = set()
-    for unit in units(system, defaultdict(lambda: Ns(0))):
+    for unit in units(system, Claims()):
         for line in print_unit(unit).splitlines():
             if len(line) <= WIDTH:
                 continue

@@ -9,6 +9,8 @@ from .components import Parts, timing_of
 from .derive import table_deadline, table_period
 from .model import (
     Bus,
+    BusErrors,
+    Chain,
     Connection,
     Direction,
     End,
@@ -19,11 +21,14 @@ from .model import (
     Processor,
     Shutdown,
     Slot,
+    Tick,
     Work,
 )
 from .names import Findings, Scope
+from .quantities import shown
 from .schema import (
     BusForm,
+    ChainForm,
     ConnectionForm,
     InstanceForm,
     MessageForm,
@@ -54,7 +59,16 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
     probe = None
     if form.probe is not None:
         probe = timing_of("the probe", form.probe, findings)
-    return Node(name, form.origin, *times, form.trace, probe)
+    tick = None
+    if form.tick is not None:
+        tick = Tick(Ns(form.tick.period), Ns(form.tick.wcet))
+        if tick.wcet > tick.period:
+            message = (
+                f"the tick may take {shown(tick.wcet)}, longer than its period, "
+                f"{shown(tick.period)}"
+            )
+            findings.error("RV-0703", form.tick.at("wcet"), message)
+    return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick)
 
 
 def bus_of(name: str, form: BusForm) -> Bus:
@@ -66,6 +80,7 @@ def bus_of(name: str, form: BusForm) -> Bus:
         form.receive_depth,
         form.transmit_depth,
         Ns(form.driver_wcet),
+        None if form.errors is None else BusErrors(Ns(form.errors.period), form.errors.burst),
     )
 
 
@@ -207,6 +222,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
         period=period,
+        deadline=None if form.deadline is None else Ns(form.deadline),
     )
 
 
@@ -336,6 +352,38 @@ def _receive_slot(
     deadline = form.period if form.deadline is None else form.deadline
     timing = Timing(Ns(form.period), bus.driver_wcet, Ns(deadline))
     return Slot(origin, bus.name, Work.BUS_RECEIVE, "receive", timing, 1, 0)
+
+
+def chain_of(name: str, form: ChainForm, messages: Scope[Message], site: Site) -> Chain | None:
+    """A chain whose messages and rows exist."""
+    places: list[str | None] = []
+    for index, text in enumerate(form.path):
+        origin = form.item_at("path", index)
+        if "." in text:
+            places.append(_row_at(text, origin, site))
+        else:
+            message = messages.look_up(text, origin, site.findings)
+            places.append(None if message is None else message.name)
+    if form.reaction is None and form.age is None and not form.damaged:
+        message_text = f"the chain {name} has no limit"
+        hint = "add `reaction:`, `age:`, or both"
+        site.findings.error("RV-0612", form.origin, message_text, hint=hint)
+    if None in places or form.list_damaged("path"):
+        return None
+    reaction = None if form.reaction is None else Ns(form.reaction)
+    age = None if form.age is None else Ns(form.age)
+    return Chain(name, form.origin, tuple(p for p in places if p), reaction, age)
+
+
+def _row_at(text: str, origin: Origin, site: Site) -> str | None:
+    """The id of the row ``instance.name``."""
+    pair = _split(text, "a message or instance.row", origin, site.findings)
+    instance = None if pair is None else site.instances.look_up(pair[0], origin, site.findings)
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    if pair is None or instance is None or parts is None:
+        return None
+    row = parts.rows.look_up(pair[1], origin, site.findings)
+    return None if row is None else f"{instance.name}.{row}"
 
 
 def shutdown_of(form: ShutdownForm | None, site: Site) -> Shutdown:

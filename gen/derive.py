@@ -8,7 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from .model import Activity, Bus, Instance, Processor, SharedObject, Slot, System, Task
+from .model import (
+    Activity,
+    Bus,
+    Instance,
+    Message,
+    Processor,
+    SharedObject,
+    Slot,
+    System,
+    Task,
+)
 from .statechart import Region
 from .terms import Ns
 
@@ -83,7 +93,8 @@ def tasks_of(system: System) -> tuple[Task, ...]:
 
     A driver has two tasks, one that receives and one that transmits, both of
     the priority above all processors. Each serves a frame at a time, so what it
-    does is described by one entry for each message, at the message's period.
+    does is described by one entry for each message, at the message's period: it
+    follows the processor that sends the frame, or the frame's arrival.
     """
     tasks = [
         Task(
@@ -93,38 +104,68 @@ def tasks_of(system: System) -> tuple[Task, ...]:
             period=processor.period,
             offset=processor.offset,
             deadline=processor.deadline,
-            budget=Ns(processor.wcet + 2 * _switch(system, processor.node)),
+            budget=processor.wcet,
             priority=processor.priority,
+            slots=processor.slots,
+            sporadic=processor.released_by is not None,
+            timed=True,
         )
         for processor in system.processors
     ]
     top = max((processor.priority for processor in system.processors), default=0)
     for message in system.messages:
-        bus = next(item for item in system.buses if item.name == message.bus)
-        node = system.nodes[0].name
-        budget = Ns(bus.driver_wcet + 2 * _switch(system, node))
-        ways = [] if message.source is None else ["tx"]
-        ways += ["rx"] if message.targets else []
-        for way in ways:
-            element = f"{bus.name}.driver_{way}.{message.name}"
-            period = message.period
-            tasks.append(
-                Task(element, message.origin, node, period, Ns(0), period, budget, top + 1)
+        bus = system.bus(message.bus)
+        ways = [] if message.source is None else [("tx", sender_of(system, message))]
+        ways += [("rx", message.element)] if message.targets else []
+        tasks += [
+            Task(
+                element=message.driver(way),
+                origin=message.origin,
+                node=system.nodes[0].name,
+                period=message.period,
+                offset=Ns(0),
+                deadline=message.limit,
+                budget=bus.driver_wcet,
+                priority=top + 1,
+                released_by=releaser,
             )
+            for way, releaser in ways
+        ]
     for host in system.nodes:
         if host.probe is not None:
-            budget = Ns(host.probe.wcet + 2 * host.context_switch)
-            period, deadline = host.probe.period, host.probe.deadline
-            element = f"{host.name}.{PROBE}"
-            level = top + (2 if system.messages else 1)
             tasks.append(
-                Task(element, host.origin, host.name, period, Ns(0), deadline, budget, level)
+                Task(
+                    element=f"{host.name}.{PROBE}",
+                    origin=host.origin,
+                    node=host.name,
+                    period=host.probe.period,
+                    offset=Ns(0),
+                    deadline=host.probe.deadline,
+                    budget=host.probe.wcet,
+                    priority=top + (2 if system.messages else 1),
+                    timed=True,
+                )
             )
     return tuple(tasks)
 
 
-def _switch(system: System, node: str) -> Ns:
-    return next(item.context_switch for item in system.nodes if item.name == node)
+def sender_of(system: System, message: Message) -> str | None:
+    """The processor whose row sends a message; None for one from outside."""
+    for row in sending_rows(system, message):
+        return system.processor_of(row).name
+    return None
+
+
+def sending_rows(system: System, message: Message) -> tuple[str, ...]:
+    """The rows that send a message: one, by the rules."""
+    if message.source is None:
+        return ()
+    source = system.instance(message.source.instance)
+    return tuple(
+        f"{source.name}.{item.name}"
+        for item in source.component.runnables()
+        if message.source.port in item.sends
+    )
 
 
 # --- Shared objects ----------------------------------------------------------------
@@ -245,12 +286,10 @@ def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...
         objects.extend(sharing.of_instance(instance))
     for bus in system.buses:
         senders = [
-            sharing.runs(source.instance, sender.name)
+            system.processor_of(row).name
             for message in system.messages
-            for source in (message.source,)
-            if message.bus == bus.name and source is not None
-            for sender in system.instance(source.instance).component.runnables()
-            if source.port in sender.sends
+            if message.bus == bus.name
+            for row in sending_rows(system, message)
         ]
         receivers = [p.name for p in system.processors if p.released_by == bus.name]
         drivers = [t.element for t in tasks if t.element.startswith(f"{bus.name}.driver_")]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
+from .claims import Claims
 from .emit.ada import Unit
 from .emit.ada_text import print_item, print_unit
 from .emit.certificate import emit_certificate
@@ -21,7 +21,7 @@ from .emit.quiet import has_decided_conditions, quiet
 from .emit.simulation import emit_simulation, simulated
 from .emit.types import emit_root
 from .model import System
-from .terms import IntegerType, Ns
+from .terms import IntegerType
 from .trace import trace_json
 
 HEADER = (
@@ -30,11 +30,11 @@ HEADER = (
 )
 
 
-def units(system: System, bounds: Mapping[str, Ns]) -> tuple[Unit, ...]:
-    """Every Ada unit of the program; ``bounds`` claims each task's response time in ns."""
+def units(system: System, claims: Claims) -> tuple[Unit, ...]:
+    """Every Ada unit of the program; ``claims`` are what its certificate shows."""
     header = HEADER.format(system=system.name)
     before, after = _without_claims(system)
-    return (*before, *_finished(system, [emit_certificate(system, bounds, header)]), *after)
+    return (*before, *_finished(system, [emit_certificate(system, claims, header)]), *after)
 
 
 @lru_cache(maxsize=1)
@@ -131,10 +131,10 @@ def _printed(found: list[Unit], root: str) -> dict[str, str]:
     return {u.file_name: print_unit(u, text) for u, text in zip(pruned, texts, strict=True)}
 
 
-def generate(system: System, bounds: Mapping[str, Ns]) -> dict[str, str]:
+def generate(system: System, claims: Claims) -> dict[str, str]:
     """File name to text, the same bytes for the same model."""
     root = ada_case(system.name)
-    files = _printed(list(units(system, bounds)), root)
+    files = _printed(list(units(system, claims)), root)
     name = root.lower()
     files[f"{name}.gpr"] = project_text(system, has_user_code=bool(user_units(system)))
     files["trace.json"] = trace_json(system)

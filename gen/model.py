@@ -180,6 +180,14 @@ class Component:
 
 
 @dataclass(frozen=True, slots=True)
+class Tick:
+    """A timer that interrupts a node every ``period`` for up to ``wcet``."""
+
+    period: Ns
+    wcet: Ns
+
+
+@dataclass(frozen=True, slots=True)
 class Node:
     """A processor core with its platform figures, all worst cases in ns."""
 
@@ -192,6 +200,18 @@ class Node:
     """Records that the trace holds between two looks at it; 0: no trace."""
     probe: Timing | None = None
     """The host probe: a task above all others that measures how late it wakes."""
+    release: Ns = NO_TIME
+    """Work above all tasks that makes one job ready."""
+    tick: Tick | None = None
+    """What makes timed releases late by up to its period; None: a timer that is exact."""
+
+
+@dataclass(frozen=True, slots=True)
+class BusErrors:
+    """At most ``burst`` errors at once, and one more every ``period``."""
+
+    period: Ns
+    burst: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,6 +225,7 @@ class Bus:
     receive_depth: int
     transmit_depth: int
     driver_wcet: Ns
+    errors: BusErrors | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,6 +295,22 @@ class Message:
     source: End | None
     targets: tuple[End, ...]
     period: Ns
+    deadline: Ns | None = None
+    """From the event that leads to it; None: the period."""
+
+    @property
+    def element(self) -> str:
+        """Stable id of the frame: ``bus.message``."""
+        return f"{self.bus}.{self.name}"
+
+    @property
+    def limit(self) -> Ns:
+        """The deadline that holds."""
+        return self.period if self.deadline is None else self.deadline
+
+    def driver(self, way: str) -> str:
+        """The driver's work on it, as a task: ``way`` is ``tx`` or ``rx``."""
+        return f"{self.bus}.driver_{way}.{self.name}"
 
 
 class Work(Enum):
@@ -339,9 +376,12 @@ class Processor:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One schedulable task as the analysis sees it: a processor or a driver's.
+    """One schedulable task as the analysis sees it: a processor, or a driver's work.
 
-    ``budget`` includes two context switches.
+    ``budget`` is the longest execution of a job, overheads apart: of one that runs
+    all of ``slots`` where there are some. ``released_by`` names the task or message
+    whose completion releases it; ``jitter`` and ``deadline`` count from the event
+    that begins that chain. ``timed``: the node's timer releases it.
     """
 
     element: str
@@ -353,6 +393,10 @@ class Task:
     budget: Ns
     priority: int
     jitter: Ns = NO_TIME
+    slots: tuple[Slot, ...] = ()
+    released_by: str | None = None
+    sporadic: bool = False
+    timed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -366,6 +410,23 @@ class SharedObject:
     ceiling: int
     section: Ns
     """Longest time inside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """A way that values take, and how long it may take them; None: no limit.
+
+    ``path`` names messages and rows (``owner.name``), in order; between two of
+    them the shortest way is meant.
+    """
+
+    name: str
+    origin: Origin
+    path: tuple[str, ...]
+    reaction: Ns | None
+    """From an input until the first output that knows it."""
+    age: Ns | None
+    """From the sampling of an input until the output made of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -393,6 +454,7 @@ class System:
     messages: tuple[Message, ...]
     processors: tuple[Processor, ...]
     shutdown: Shutdown
+    chains: tuple[Chain, ...] = ()
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
 
@@ -403,6 +465,14 @@ class System:
     @cached_property
     def _instances(self) -> dict[str, Instance]:
         return {i.name.lower(): i for i in self.instances}
+
+    def node(self, name: str) -> Node:
+        """The node called ``name``; KeyError where there is none."""
+        return named(self.nodes, name)
+
+    def bus(self, name: str) -> Bus:
+        """The bus called ``name``; KeyError where there is none."""
+        return named(self.buses, name)
 
     def processor_of(self, element: str) -> Processor:
         """The processor whose table holds the row ``owner.name``; KeyError where none does."""

@@ -41,11 +41,14 @@ TITLES: Mapping[str, str] = {
     "IfForm": "Action: if",
     "NodeForm": "Node",
     "ProbeForm": "Probe",
+    "TickForm": "Tick",
     "BusForm": "Bus",
+    "ErrorsForm": "Errors of a bus",
     "InstanceForm": "Instance",
     "ConnectionForm": "Connection",
     "MessageForm": "Message",
     "ProcessorForm": "Processor",
+    "ChainForm": "Chain",
     "ShutdownForm": "Shutdown",
 }
 """The forms in the order of the reference, with their headings."""

@@ -14,6 +14,7 @@ from .components import parts_of
 from .deployment import (
     Site,
     bus_of,
+    chain_of,
     connection_of,
     instance_of,
     message_of,
@@ -244,6 +245,9 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         for made, form in ((processors.find(k), f) for k, f in model.entries("processors"))
     ):
         sections.sound.discard("processors")
+    chains = sections.named(
+        "chains", "chain", lambda key, form: chain_of(key, form, messages, site)
+    )
     stop = sections.shutdown(site)
     damaged = {part.component.name for part in parts.sound() if part.is_damaged}
     for part in parts.sound():
@@ -261,6 +265,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         messages=messages.sound(),
         processors=processors.sound(),
         shutdown=stop,
+        chains=chains.sound(),
     )
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
 

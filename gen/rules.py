@@ -203,7 +203,43 @@ def one_step_regions_send_messages(resolved: Resolved) -> Iterator[Diagnostic]:
                 yield error("RV-0611", item.origin, message, notes=notes, hint=hint)
 
 
+def messages_have_one_sender(resolved: Resolved) -> Iterator[Diagnostic]:
+    """One region or activity sends a message: its period is that row's."""
+    for item in resolved.system.messages:
+        if item.source is None:
+            continue
+        component = resolved.system.instance(item.source.instance).component
+        senders = [one for one in component.runnables() if item.source.port in one.sends]
+        for other in senders[1:]:
+            message = (
+                f"{senders[0].name} and {other.name} both send {item.name}, so it may be sent more "
+                "often than once in its period"
+            )
+            notes = [(one.origin, f"{one.name} is declared here") for one in (senders[0], other)]
+            hint = "let one of them send, or give each a port and a message of its own"
+            yield error("RV-0611", item.origin, message, notes=notes, hint=hint)
+
+
 # --- Processors --------------------------------------------------------------------
+
+
+def sections_are_part_of_work(resolved: Resolved) -> Iterator[Diagnostic]:
+    """What runs inside a protected operation is part of some worst-case execution time."""
+    system = resolved.system
+    for node in system.nodes:
+        runs = [(p.origin, f"all of {p.name}", p.wcet) for p in system.processors if p.slots]
+        runs += [(bus.origin, f"the driver of {bus.name}", bus.driver_wcet) for bus in system.buses]
+        if node.probe is not None:
+            runs.append((node.origin, "the probe", node.probe.wcet))
+        short = min(runs, key=lambda run: run[2], default=None)
+        if short is not None and short[2] < node.critical_section:
+            message = (
+                f"the critical section of {node.name} may take {shown(node.critical_section)}, "
+                f"longer than {short[1]}, {shown(short[2])}"
+            )
+            notes = [(short[0], "that is given here")]
+            hint = "a worst-case execution time includes protected operations: raise it"
+            yield error("RV-0709", node.origin, message, notes=notes, hint=hint)
 
 
 def _rows(system: System) -> Iterator[tuple[Processor, Slot]]:
@@ -364,6 +400,8 @@ RULES: tuple[Rule, ...] = (
     identifiers_are_unique,
     payloads_fit,
     one_step_regions_send_messages,
+    messages_have_one_sender,
+    sections_are_part_of_work,
     rows_are_allocated_once,
     rows_are_on_their_node,
     periods_are_multiples,

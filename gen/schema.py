@@ -378,6 +378,13 @@ class ProbeForm(Element):
     wcet: PositiveSpan = key("Worst-case execution time of one wake-up; at most the period.")
 
 
+class TickForm(Element):
+    """A timer that interrupts periodically: timed releases wait for it."""
+
+    period: PositiveSpan = key("Time from one interrupt to the next.")
+    wcet: Span = key("Longest time of one interrupt; at most the period.")
+
+
 class NodeForm(Element):
     """A processor core and its platform figures, all of them worst cases."""
 
@@ -389,6 +396,21 @@ class NodeForm(Element):
     probe: ProbeForm | None = optional(
         "A task above all others that measures how long a host withholds the processor."
     )
+    release: Span = PydanticField(
+        default=0, description="Longest work above all tasks that makes one job ready."
+    )
+    tick: TickForm | None = optional(
+        "The timer's periodic interrupt, where it has one; exact time-outs unless given."
+    )
+
+
+class ErrorsForm(Element):
+    """What errors of a bus are reckoned with."""
+
+    period: PositiveSpan = key("Least time from one error to the next.")
+    burst: int = PydanticField(
+        default=1, ge=1, le=1000, description="Errors that may come at once besides, 1 to 1000."
+    )
 
 
 class BusForm(Element):
@@ -398,6 +420,7 @@ class BusForm(Element):
     driver_wcet: PositiveSpan = key("Worst-case time of the driver for one frame in or out.")
     receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
     transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
+    errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
 
 
 class InstanceForm(Element):
@@ -436,6 +459,10 @@ class MessageForm(Element):
         "Least time between two frames; only for messages from outside, the others have the period "
         "of what sends them."
     )
+    deadline: PositiveSpan | None = optional(
+        "From the release of what sends it, or from its arrival, until it is received; the period "
+        "unless given."
+    )
 
 
 class ProcessorForm(Element):
@@ -471,6 +498,22 @@ class ShutdownForm(Element):
     grace: Span = key("Time between these events and the end.")
 
 
+class ChainForm(Element):
+    """A way from inputs to outputs, and how long values may be under way."""
+
+    path: list[Reference] = key(
+        "Messages and rows (`instance.activity`, `instance.Region`) on the way; "
+        "between two of them the shortest way is meant.",
+        min_length=2,
+    )
+    reaction: PositiveSpan | None = optional(
+        "Longest time from an input to the first output that knows it."
+    )
+    age: PositiveSpan | None = optional(
+        "Longest time from the sampling of an input to an output made of it."
+    )
+
+
 class ModelFile(Element):
     """A model file. Every section may stand in any file, `system` in one only."""
 
@@ -486,4 +529,5 @@ class ModelFile(Element):
     connections: list[ConnectionForm] | None = optional("Connections inside a node.")
     messages: dict[Name, MessageForm] | None = optional("Messages on buses.")
     processors: dict[Name, ProcessorForm] | None = optional("Processors: the tasks.")
+    chains: dict[Name, ChainForm] | None = optional("Limits of latencies from end to end.")
     shutdown: ShutdownForm | None = optional("What a request to stop does; nothing unless given.")

@@ -14,17 +14,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import behaviour.rules
-from analysis.response_times import response_times
+from analysis.core.fixed_priority import analyse
+from analysis.core.tasks import Task
 from gen.generate import generate
 from gen.load import load
-from gen.model import Task
-from gen.terms import Ns, Origin
 
 from . import bench_charts, steps, toolchain
 from .large_models import large_model
 from .toolchain import ROOT
 
-PLACE = Origin("bench", 1, 1)
 ROUNDS = 5
 MOST_SECONDS = 10.0
 """What the program of 1,000 regions may take."""
@@ -56,7 +54,7 @@ def generator() -> None:
     """Load, analyse and generate the robot."""
     path = ROOT / "examples" / "cartesian_robot" / "model.yaml"
     checked = steps.check(path)
-    claims = steps.bounds(checked)
+    claims = steps.claims(checked)
     print("the Cartesian robot (medians):")
     print(f"  load and check the model: {median_ms(lambda: load(path)):.0f} ms")
     print(f"  generate its program: {median_ms(lambda: generate(checked.system, claims)):.0f} ms")
@@ -87,10 +85,9 @@ def task_set(count: int) -> tuple[Task, ...]:
     """``count`` tasks with periods of 10, 20, 50, 100 and 200 ms, 70 % load in all."""
     tasks = []
     for index in range(count):
-        period = Ns(1_000_000 * (10, 20, 50, 100, 200)[index * 5 // count])
-        budget = Ns(period * 7 // (10 * count))
-        name = f"task_{index}"
-        tasks.append(Task(name, PLACE, "node", period, Ns(0), period, budget, count - index))
+        period = 1_000_000 * (10, 20, 50, 100, 200)[index * 5 // count]
+        cost = period * 7 // (10 * count)
+        tasks.append(Task(f"task_{index}", count - index, period, period, cost))
     return tuple(tasks)
 
 
@@ -101,7 +98,7 @@ def analysis() -> None:
     for count in (10, 30, 100):
         tasks = task_set(count)
         start = time.perf_counter()
-        response_times(tasks, ())
+        analyse(tasks)
         spent = 1e3 * (time.perf_counter() - start)
         grown = f", {spent / before:.1f} times the one before" if before else ""
         print(f"  {count} tasks: {spent:.1f} ms{grown}")

@@ -36,7 +36,7 @@ def main() -> None:
     source = home / "generated"
     source.mkdir(parents=True, exist_ok=True)
     checked = steps.check(HERE / "model.yaml")
-    for name, text in generate(checked.system, steps.bounds(checked)).items():
+    for name, text in generate(checked.system, steps.claims(checked)).items():
         replace_file(source / name, text)
     variables = {
         "MODE": "release",

@@ -9,8 +9,9 @@ from pathlib import Path
 from rich.console import Console
 
 from analysis.observed import Observation, TraceError, TraceMap, read_map, read_trace
+from analysis.plots import svg
 from analysis.report import RunReport, compare, executions, render
-from analysis.response_times import Analysis
+from analysis.timing import Analysis
 from hw_can.bench.peer import BenchError, Codec, Peer
 from hw_can.bench.runner import ScenarioResult, run_scenario
 from hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
@@ -142,7 +143,7 @@ def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple
         picture.write_bytes(plots.png(figure))
         written.append(picture)
         caption = "Target and true position of each axis, its states in the band above."
-        pictures.append((caption, plots.svg(figure)))
+        pictures.append((caption, svg(figure)))
     run = RunReport(
         title=outcome.title,
         passed=outcome.passed,

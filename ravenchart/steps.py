@@ -5,20 +5,21 @@ from __future__ import annotations
 import gc
 import hashlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import behaviour.rules
+from analysis.claims import Unclaimed, claims_of
 from analysis.findings import findings
-from analysis.response_times import Analysis, analyse
+from analysis.timing import Analysis, analyse
+from gen.claims import Claims
 from gen.diagnostics import Diagnostic, render
 from gen.emit.naming import ada_case
 from gen.generate import generate, user_units
 from gen.load import Loaded, load
 from gen.model import System
-from gen.terms import Ns
 
 from . import toolchain
 from .toolchain import ROOT
@@ -87,13 +88,12 @@ def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
     return "\n".join(render(d, loaded.sources) for d in diagnostics)
 
 
-def bounds(checked: Checked) -> Mapping[str, Ns]:
-    """The claimed response time of each task from its release, in ns."""
-    found: dict[str, Ns] = {}
-    for response in checked.analysis.responses:
-        assert response.bound is not None  # a model with a task without bound is refused
-        found[response.task.element] = Ns(response.bound - response.task.jitter)
-    return found
+def claims(checked: Checked) -> Claims:
+    """What the program's certificate claims, in ns. Refused when something cannot be shown."""
+    try:
+        return claims_of(checked.analysis)
+    except Unclaimed as problem:
+        raise Refused(f"{checked.path}: error: {problem}: leave some of its time unused") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +115,7 @@ def write_program(checked: Checked) -> Written:
     """
     folder = checked.folder / "generated"
     folder.mkdir(parents=True, exist_ok=True)
-    files = generate(checked.system, bounds(checked))
+    files = generate(checked.system, claims(checked))
     manifest = folder / MANIFEST
     old = manifest.read_text(encoding="utf-8").split() if manifest.is_file() else []
     changed = 0

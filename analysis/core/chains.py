@@ -170,10 +170,11 @@ def _check(chain: Chain, network: Network) -> None:
 
 def _cycle(name: str, network: Network) -> int | None:
     """The longest time between two of its events; None where they are sporadic."""
-    root = network.items()[(name, *network.releasers(name))[-1]]
+    items = network.items()
+    root = items[(name, *network.releasers(name))[-1]]
     if isinstance(root, Task) and root.sporadic:
         return None
-    return root.period
+    return items[name].period
 
 
 def _queue(

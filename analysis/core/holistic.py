@@ -41,9 +41,9 @@ class Network:
 
     ``frames`` and ``buses`` go by the name of a bus. ``released_by`` says, for each
     task or frame that is released by the completion of another, by which; its own
-    jitter then comes on top, and it should have the period of what releases it. Names
-    are distinct over tasks and frames. ``platforms`` goes by the name of a core,
-    ``ceilings`` by resource, as in `fixed_priority.analyse`.
+    jitter then comes on top. Its period is that of what releases it, or a multiple where
+    not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
+    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`.
     """
 
     tasks: tuple[Task, ...]
@@ -61,10 +61,10 @@ class Network:
             for one in (name, by):
                 if one not in items:
                     raise ValueError(f"{one} is neither a task nor a message")
-            if items[name].period != items[by].period:
+            if items[name].period % items[by].period:
                 raise ValueError(
-                    f"period of {name} must be {items[by].period}, that of {by} which "
-                    f"releases it, not {items[name].period}"
+                    f"period of {name} must be a multiple of {items[by].period}, that of {by} "
+                    f"which releases it, not {items[name].period}"
                 )
             if name in self.releasers(name):
                 raise ValueError(f"{name} is released by itself")

@@ -1,144 +1,236 @@
 """The timing certificate: every term a named number, every claim checked by the compiler.
 
-For each task the response-time recurrence (Joseph and Pandya 1986; Audsley et
-al. 1993) is evaluated at the claimed bound R: W = C + B + sum of
-ceil ((R + J) / T) * C over the tasks of the same or higher priority. W <= R
-and R <= T show that R bounds the response of the first and only job of the
-busy period; R <= D is the deadline. The recurrence runs from the release, so a
-task's own jitter is added to the claim before it is compared.
+Named numbers are universal integers: exact, without a largest value, and known
+before anything runs. Each claim is a time within which something must be done, and
+beside it stands the demand that can arise within that time; the least time that
+holds its demand bounds the response, so a claim that holds its demand is no less.
+The recurrences are those of Joseph and Pandya 1986, Audsley et al. 1993 (tasks),
+Lehoczky 1990 (several jobs) and Davis, Burns, Bril, Lukkien 2007 (frames).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from ..model import Processor, SharedObject, System, Task
-from ..terms import Ns
-from .ada import (
-    SPARK,
-    Aspect,
-    Chain,
-    Comment,
-    Decl,
-    Expr,
-    Object,
-    Package,
-    Pragma,
-    Ref,
-    Unit,
-    chain,
-    number,
+from ..claims import Claims
+from ..model import SharedObject, System, Task
+from .ada import SPARK, Aspect, Comment, Decl, Expr, Package, Ref, Unit, number
+from .certificate_bus import bus_claims, bus_terms
+from .certificate_chains import chain_claims
+from .certificate_terms import (
+    SLOW,
+    arrivals,
+    assured,
+    before,
+    ceiling,
+    name_of,
+    named,
+    plus,
+    refuse,
+    stated,
+    times,
+    within,
 )
-from .naming import ada_case, constant_name
+from .naming import ada_case
+
+LETTERS = (
+    "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
+    "event to the release, C longest execution (with two context switches) or transmission, "
+    "B blocking, R the claimed response from the event, W the time claimed from the start of a "
+    "busy period. A is J + T - 1, so that (W + A) / T is the number of releases within W. Needs "
+    "is the demand that arises within W: where it is more, W is too short."
+)
 
 
-def emit_certificate(system: System, bounds: Mapping[str, Ns], header: str) -> Unit:
-    """``bounds`` claims a response time for every task, in ns from its release."""
-    items: list[Decl] = [
-        Comment(
-            "Times in nanoseconds. For each task: T period or least separation, D deadline, "
-            "C budget with two context switches, B blocking, J release jitter, R the claimed "
-            "response time, W the demand that arises within R."
-        )
-    ]
+def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
+    """The certificate of a system; its claims are those of the analysis."""
+    items: list[Decl] = [Comment(LETTERS)]
+    elements = [task.element for task in system.tasks] + [m.element for m in system.messages]
+    items.append(Comment("The claimed responses: each is some other's lateness, or its own bound."))
+    items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
     for node in system.nodes:
-        name = ada_case(node.name)
-        items.append(
-            Object(f"{name}_Context_Switch", None, number(node.context_switch), constant=True)
-        )
-        items.append(
-            Object(f"{name}_Critical_Section", None, number(node.critical_section), constant=True)
-        )
+        own = ada_case(node.name)
+        items += [
+            Comment(f"[{node.name}] what the platform takes, each at its longest"),
+            stated(f"{own}_Context_Switch", node.context_switch),
+            stated(f"{own}_Critical_Section", node.critical_section),
+        ]
+        if node.release:
+            items.append(stated(f"{own}_Release", node.release))
+        if node.tick is not None:
+            items.append(stated(f"{own}_Tick_T", node.tick.period))
+            items.append(stated(f"{own}_Tick_C", node.tick.wcet))
     for task in system.tasks:
-        items += _terms(system, task, bounds[task.element])
+        items += _terms(system, task)
+    for bus in system.buses:
+        items += bus_terms(system, bus)
     for task in system.tasks:
-        items += _claims(system, task)
+        items += _claims(system, task, claims)
+    for bus in system.buses:
+        items += bus_claims(system, bus, claims)
+    for chain in claims.chains:
+        items += chain_claims(system, chain)
     package = Package(
         f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
     )
     return Unit(header, (), package)
 
 
-def blocker(system: System, task: Task) -> SharedObject | None:
-    """The object through which a task of lower priority can delay ``task`` longest."""
+def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
+    """The object through which a task of lower priority can delay ``task`` longest, and that."""
     level = {t.element: t.priority for t in system.tasks} | {"main": 0}
-    found: SharedObject | None = None
+    found: tuple[SharedObject, str] | None = None
     for item in system.objects:
-        lower = any(level[u] < task.priority for u in item.users)
-        longer = found is None or item.section > found.section
-        if item.node == task.node and item.ceiling >= task.priority and lower and longer:
-            found = item
+        lower = next((user for user in item.users if level[user] < task.priority), None)
+        longer = found is None or item.section > found[0].section
+        reaches = item.node == task.node and item.ceiling >= task.priority
+        if reaches and lower is not None and longer:
+            found = item, lower
     return found
 
 
-def _terms(system: System, task: Task, bound: Ns) -> list[Decl]:
-    name = constant_name(task.element)
-    node = ada_case(task.node)
-    processor = _processor(system, task)
-    items: list[Decl] = [Comment(f"[{task.element}]")]
-    budgets: list[str] = []
-    if processor is not None:
-        for slot in processor.slots:
-            budget = f"{constant_name(slot.element)}_Budget"
-            items.append(Object(budget, None, number(slot.timing.wcet), constant=True))
-            budgets.append(budget)
-    else:
-        items.append(
-            Object(
-                f"{name}_Budget",
-                None,
-                Ref(f"{task.budget:_} - 2 * {node}_Context_Switch"),
-                constant=True,
-            )
-        )
-        budgets.append(f"{name}_Budget")
-    total = Chain("+", tuple(Ref(b) for b in (*budgets, f"2 * {node}_Context_Switch")))
-    blocking = Ref(f"{node}_Critical_Section") if blocker(system, task) else number(0)
-    for letter, value in (
-        ("T", number(task.period)),
-        ("D", number(task.deadline)),
-        ("J", number(task.jitter)),
-        ("C", total),
-        ("B", blocking),
-        ("R", number(bound)),
-    ):
-        items.append(Object(f"{name}_{letter}", None, value, constant=True))
+# --- Terms ---------------------------------------------------------------------------
+
+
+def _terms(system: System, task: Task) -> list[Decl]:
+    """What is known of a task."""
+    own, node = name_of(task.element), ada_case(task.node)
+    held = blocker(system, task)
+    blocking = Ref(f"{node}_Critical_Section") if held else number(0)
+    items: list[Decl] = [Comment(_words(task, held))]
+    for slot in task.slots:
+        items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
+    if not task.slots:
+        items.append(stated(f"{own}_Budget", task.budget))
+    items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
+    items.append(named(f"{own}_J", _jitter(system, task)))
+    items.append(arrivals(own))
+    items += [named(f"{own}_{letter}", value) for letter, value in _costs(task).items()]
+    items.append(named(f"{own}_B", blocking))
     return items
 
 
-def _processor(system: System, task: Task) -> Processor | None:
-    return next((p for p in system.processors if p.name == task.element), None)
+def _words(task: Task, held: tuple[SharedObject, str] | None) -> str:
+    """What the numbers of a task are."""
+    if task.released_by is not None:
+        what = f"the driver's work, released by {task.released_by}, which is J late"
+    elif task.sporadic:
+        what = "released by arrivals, no closer than T"
+    else:
+        what = "released every T"
+    text = f"[{task.element}] priority {task.priority}, {what}."
+    text += f" B: {held[1]} may be inside {held[0].element}." if held else " Nothing blocks it."
+    rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
+    if rare:
+        every = ", ".join(f"C_{n}: rows of every {n}th release" for n in rare)
+        text += f" C: what every release executes; {every}."
+    return text
 
 
-def _claims(system: System, task: Task) -> list[Decl]:
-    own = constant_name(task.element)
-    terms: list[Expr] = [Ref(f"{own}_C"), Ref(f"{own}_B")]
+def _jitter(system: System, task: Task) -> Expr:
+    """The latest release after the event: the tick, and the response of what releases it."""
+    terms: list[Expr] = []
+    if task.jitter or task.released_by is None:
+        terms.append(number(task.jitter))
+    if task.released_by is not None:
+        terms.append(Ref(f"{name_of(task.released_by)}_R"))
+    if task.timed and system.node(task.node).tick is not None:
+        terms = [term for term in terms if term != number(0)]
+        terms.append(Ref(f"{ada_case(task.node)}_Tick_T"))
+    return plus(*terms)
+
+
+def _costs(task: Task) -> dict[str, Expr]:
+    """C of what every release executes, and C_n of the rows of every n-th release."""
+    switches: Expr = Ref(f"2 * {ada_case(task.node)}_Context_Switch")
+    if not task.slots:
+        return {"C": plus(Ref(f"{name_of(task.element)}_Budget"), switches)}
+    groups: dict[int, list[Expr]] = {1: []}
+    for slot in task.slots:
+        groups.setdefault(slot.divisor, []).append(Ref(f"{name_of(slot.element)}_Budget"))
+    groups[1].append(switches)
+    return {
+        "C" if divisor == 1 else f"C_{divisor}": plus(*groups[divisor])
+        for divisor in sorted(groups)
+    }
+
+
+# --- Claims --------------------------------------------------------------------------
+
+
+def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:
+    """What ``own`` work of a task needs within a window, with all that can delay it."""
+    node = system.node(task.node)
+    terms = [own, Ref(f"{name_of(task.element)}_B")]
     for other in system.tasks:
-        if other.node == task.node and other is not task and other.priority >= task.priority:
-            name = constant_name(other.element)
-            arrivals = Chain(
-                "/",
-                (
-                    Chain("+", (Ref(f"{own}_R"), Ref(f"{name}_J"), Ref(f"({name}_T - 1)"))),
-                    Ref(f"{name}_T"),
-                ),
+        if other.node != task.node:
+            continue
+        if other is not task and other.priority >= task.priority:
+            terms.append(_work(other, within(name_of(other.element), window)))
+        if node.release:
+            terms.append(
+                times(within(name_of(other.element), window), Ref(f"{ada_case(node.name)}_Release"))
             )
-            terms.append(Chain("*", (arrivals, Ref(f"{name}_C"))))
-    label = task.element
-    total = Chain("+", (Ref(f"{own}_R"), Ref(f"{own}_J")))
-    return [
-        Comment(f"[{label}] what can delay it"),
-        Object(f"{own}_W", None, Chain("+", tuple(terms)), constant=True),
-        _refuse((f"{own}_W",), f"{own}_R", label, "can take longer than its claimed response time"),
-        _refuse((f"{own}_R",), f"{own}_T", label, "can be released again before it completes"),
-        _refuse((f"{own}_R", f"{own}_J"), f"{own}_D", label, "can miss its deadline"),
-        Pragma("Assert", (Chain("<=", (Ref(f"{own}_W"), Ref(f"{own}_R"))),)),
-        Pragma("Assert", (Chain("<=", (total, Ref(f"{own}_D"))),)),
+    if node.tick is not None and node.tick.wcet:
+        tick = ada_case(node.name)
+        terms.append(times(ceiling(window, Ref(f"{tick}_Tick_T")), Ref(f"{tick}_Tick_C")))
+    return plus(*terms)
+
+
+def _work(task: Task, releases: Expr) -> Expr:
+    """The most that so many releases in a row execute: they begin with all rows at once."""
+    own = name_of(task.element)
+    terms = []
+    for letter in _costs(task):
+        divisor = int(letter.partition("_")[2] or 1)
+        count = releases if divisor == 1 else ceiling(releases, number(divisor))
+        terms.append(times(count, Ref(f"{own}_{letter}")))
+    return plus(*terms)
+
+
+def _claims(system: System, task: Task, claims: Claims) -> list[Decl]:
+    """The jobs of a task, one after the other, and what they show of its response."""
+    own, label = name_of(task.element), task.element
+    windows = claims.of(label).windows
+    jitter, period, bound = (Ref(f"{own}_{letter}") for letter in "JTR")
+    items: list[Decl] = [
+        Comment(f"[{label}] what can delay it: jobs of the same or higher priority")
     ]
+    last: Expr = Ref(f"{own}_W")
+    for job, window in enumerate(windows):
+        tail = "" if len(windows) == 1 else f"_{job + 1}"
+        last, needs = Ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
+        if len(windows) == 1:
+            items.append(named(f"{own}_W", Ref(f"{own}_R - {own}_J")))
+        else:
+            items.append(stated(f"{own}_W{tail}", window))
+        work = _work(task, number(job + 1))
+        if len(windows) == 1:
+            work = plus(*(Ref(f"{own}_{letter}") for letter in _costs(task)))
+        items.append(named(needs, demand(system, task, last, work)))
+        items.append(refuse(Ref(needs), last, label, SLOW))
+        if len(windows) > 1:
+            items.append(refuse(plus(jitter, last, *before(own, job)), bound, label, SLOW))
+    limit = times(number(len(windows)), period)
+    problem = "can be released again before it completes"
+    items.append(refuse(plus(jitter, last), limit, label, problem))
+    items.append(refuse(bound, Ref(f"{own}_D"), label, "can miss its deadline"))
+    items += [assured(Ref(f"{own}_Needs{tail}"), last), assured(bound, Ref(f"{own}_D"))]
+    for place, slot in enumerate(task.slots, 1):
+        if slot.element in claims.rows:
+            items += _row(system, task, place, claims.rows[slot.element])
+    return items
 
 
-def _refuse(left: tuple[str, ...], right: str, element: str, problem: str) -> Pragma:
-    """A build fails, with our words, when the sum of ``left`` exceeds ``right``."""
-    total = chain("+", [Ref(name) for name in left])
-    words = Chain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
-    return Pragma("Compile_Time_Error", (Chain(">", (total, Ref(right))), words))
+def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
+    """When the first ``place`` rows of a job are done, in a release that executes them all."""
+    row, own = task.slots[place - 1].element, name_of(task.element)
+    done = name_of(row)
+    budgets = [Ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
+    work = plus(Ref(f"2 * {ada_case(task.node)}_Context_Switch"), *budgets)
+    window = Ref(f"{done}_W")
+    return [
+        Comment(f"[{row}] done, from the event that releases its processor"),
+        stated(f"{done}_Done", bound),
+        named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
+        named(f"{done}_Needs", demand(system, task, window, work)),
+        refuse(Ref(f"{done}_Needs"), window, row, SLOW),
+    ]

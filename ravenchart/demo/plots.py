@@ -7,15 +7,12 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analysis.plots import INK
 from hw_can.bench.drives import Track
-
-INK = "#1c2128"
-"""Of text and axes; a page may replace it by its own."""
 
 PALETTE = (
     "#8aa4bf",
@@ -88,15 +85,6 @@ def png(figure: Figure) -> bytes:
     out = io.BytesIO()
     figure.savefig(out, format="png", dpi=130, facecolor="white")
     return out.getvalue()
-
-
-def svg(figure: Figure) -> str:
-    """The picture on nothing, its text and axes in the colour of the page around it."""
-    out = io.StringIO()
-    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "ravenchart"}):
-        figure.savefig(out, format="svg", transparent=True, metadata={"Date": None})
-    text = out.getvalue()
-    return text[text.index("<svg") :].replace(INK, "currentColor")
 
 
 def _panel(panel: Axes, name: str, track: Track) -> None:

@@ -45,7 +45,7 @@ class Workbench:
         checked = steps.check(model)
         self.folder = folder
         self.driver = steps.default_driver(checked)
-        files = dict(generate(checked.system, steps.bounds(checked)))
+        files = dict(generate(checked.system, steps.claims(checked)))
         self.model = checked.path
         self.files: Files = {
             **{n: t for n, t in files.items() if n.endswith((".ads", ".adb"))},

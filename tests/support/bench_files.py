@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.response_times import Analysis, analyse
+from analysis.timing import Analysis, analyse
 from tests.support.robot_files import dbc, trace_map
 from tests.support.systems import bus, message, system, task
 

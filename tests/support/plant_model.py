@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from gen.derive import completed
 from gen.model import (
     Activity,
     Bus,
@@ -25,7 +26,6 @@ from gen.model import (
 from gen.statechart import Initial, OnEvent, Region, State, Timing, Transition, TransitionKind
 from gen.statechart import Overflow as Full
 from gen.terms import IntegerType, Ns, Origin
-from tests.support.systems import shared, task
 
 HERE = Origin("plant.yaml", 1, 1)
 LEVEL = IntegerType("Level", HERE, 0, 100, "mm")
@@ -109,7 +109,7 @@ def plant() -> System:
     )
     slots = tuple(Slot(HERE, o, w, n, _timing(10 * MS, MS), 1, 0) for o, w, n in rows)
     receive = Slot(HERE, "field", Work.BUS_RECEIVE, "receive", _timing(MS, 60_000), 1, 0)
-    return System(
+    made = System(
         name="Plant",
         origin=HERE,
         digest="5" * 64,
@@ -159,14 +159,5 @@ def plant() -> System:
             ),
         ),
         shutdown=Shutdown((), Ns(0)),
-        tasks=(
-            task("field.driver_rx.raw_level", 10, 80_000, 5 * MS, MS),
-            task("reception", 2, 80_000, MS, line=7),
-            task("control", 1, 5_300_000, 10 * MS, line=9),
-        ),
-        objects=(
-            shared("sensor.filtered", 1, 5_000, "control"),
-            shared("field.received", 10, 5_000, "field.driver_rx.raw_level", "reception"),
-            shared("trace", 10, 4_000, "control", "main"),
-        ),
     )
+    return completed(made)

@@ -7,9 +7,10 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from analysis.bus_load import bus_loads, frame_bits
-from analysis.graph import chains, component_view, dependencies
+from analysis.graph import Way, Ways, component_view, dependencies
+from analysis.network import frame_length
 from analysis.picture import LEGIBLE, draw
+from analysis.timing import analyse
 from gen.model import System
 from tests.support.plant_model import plant
 from tests.support.systems import bus, message, system
@@ -20,19 +21,19 @@ from tests.support.systems import bus, message, system
     [(0, False, 55), (1, False, 65), (8, False, 135), (0, True, 80), (8, True, 160)],
 )
 def test_frames_are_taken_at_their_longest(length: int, extended: bool, bits: int) -> None:
-    assert frame_bits(length, extended=extended) == bits
+    assert frame_length(message("a", length=length, extended=extended)).nominal == bits
 
 
 def test_the_load_of_a_bus_is_the_sum_of_its_messages() -> None:
-    messages = [message("a", period=5_000_000), message("b", length=0, period=10_000_000)]
-    (load,) = bus_loads(system([], (), [bus()], messages))
-    assert [m.time for m in load.messages] == [270_000, 110_000]
-    assert load.share == Fraction(27, 500) + Fraction(11, 1000)
+    messages = [message("a", period=5_000_000), message("b", 2, length=0, period=10_000_000)]
+    found = analyse(system([], (), [bus()], messages))
+    assert [frame.cost for frame in found.network.frames["bus"]] == [270_000, 110_000]
+    assert found.bus_load(bus()) == Fraction(27, 500) + Fraction(11, 1000)
 
 
 def test_frame_times_round_up() -> None:
-    (load,) = bus_loads(system([], (), [bus(bit_rate=300_000)], [message("a", length=0)]))
-    assert load.messages[0].time == 183_334
+    found = analyse(system([], (), [bus(bit_rate=300_000)], [message("a", length=0)]))
+    assert found.network.frames["bus"][0].cost == 183_334
 
 
 def test_the_graph_holds_every_kind_of_edge_in_its_direction() -> None:
@@ -61,7 +62,7 @@ def test_parameters_are_no_nodes() -> None:
 
 
 def test_a_chain_leads_from_the_message_received_to_the_message_sent() -> None:
-    assert chains(plant()) == (
+    assert Ways.of(plant()).between_messages() == (
         (
             "message raw_level",
             "sensor.raw",
@@ -75,6 +76,13 @@ def test_a_chain_leads_from_the_message_received_to_the_message_sent() -> None:
             "message valve_position",
         ),
     )
+
+
+def test_a_way_goes_through_the_places_named_or_says_where_it_is_broken() -> None:
+    ways = Ways.of(plant())
+    whole = ways.through(["raw_level", "pump.drive"])
+    assert (whole.places[0], whole.places[-1]) == ("message raw_level", "pump.drive")
+    assert ways.through(["pump.drive", "raw_level"]) == Way((), ("pump.drive", "raw_level"))
 
 
 def boxes_of(svg: str) -> list[tuple[float, float]]:

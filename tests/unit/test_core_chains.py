@@ -178,8 +178,8 @@ def test_what_is_released_without_bound_takes_those_below_with_it() -> None:
         (lambda: Network((task("a", 1, 9, "x"),) * 2), "two tasks or messages have the name a"),
         (lambda: Network(LINE.tasks, released_by={"read": "gone"}), "gone is neither a task nor"),
         (
-            lambda: Network(LINE.tasks, released_by={"plan": "read"}),
-            "period of plan must be 10, that of read which releases it, not 20",
+            lambda: Network(LINE.tasks, released_by={"read": "plan"}),
+            "period of read must be a multiple of 20, that of plan which releases it, not 10",
         ),
         (
             lambda: Network((task("a", 1, 9, "x"),), released_by={"a": "a"}),

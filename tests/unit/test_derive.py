@@ -69,10 +69,22 @@ def test_deadline_of_a_processor_is_the_shortest_of_its_table() -> None:
     assert given.processors[1].deadline == 8_000_000
 
 
-def test_budget_is_the_table_and_two_context_switches() -> None:
+def test_budget_is_the_table_and_the_rows_are_told() -> None:
     tasks = {task.element: task for task in system_of().tasks}
-    assert tasks["regulation"].budget == 20_000 + 30_000 + 30_000 + 2 * 5_000
-    assert tasks["reception"].budget == 20_000 + 2 * 5_000
+    assert tasks["regulation"].budget == 20_000 + 30_000 + 30_000
+    assert tasks["reception"].budget == 20_000
+    rows = [(slot.element, slot.divisor, slot.phase) for slot in tasks["regulation"].slots]
+    assert rows == [("north.ports", 1, 0), ("north.Control", 1, 0), ("north.tell", 2, 0)]
+
+
+def test_what_a_driver_does_follows_the_sender_or_the_frame() -> None:
+    released = {task.element: task.released_by for task in system_of().tasks}
+    assert released == {
+        "reception": None,
+        "regulation": None,
+        "can_bus.driver_rx.level_in": "can_bus.level_in",
+        "can_bus.driver_tx.valve_out": "regulation",
+    }
 
 
 def test_driver_tasks_stand_above_all_processors() -> None:
@@ -88,8 +100,8 @@ def test_driver_task_of_a_message_has_the_message_s_period() -> None:
     assert frame_distance(system.buses[0]) == 94_000
     drivers = [task for task in system.tasks if ".driver_" in task.element]
     assert [(t.element, t.period, t.deadline, t.budget) for t in drivers] == [
-        ("can_bus.driver_rx.level_in", 10_000_000, 10_000_000, 30_000),
-        ("can_bus.driver_tx.valve_out", 20_000_000, 20_000_000, 30_000),
+        ("can_bus.driver_rx.level_in", 10_000_000, 10_000_000, 20_000),
+        ("can_bus.driver_tx.valve_out", 20_000_000, 20_000_000, 20_000),
     ]
 
 
@@ -178,5 +190,5 @@ def test_probe_stands_above_all_other_tasks() -> None:
     )
     probe = next(task for task in probed.tasks if task.element == "board.probe")
     others = [task.priority for task in probed.tasks if task is not probe]
-    assert (probe.period, probe.deadline, probe.budget) == (1_000_000, 1_000_000, 15_000)
+    assert (probe.period, probe.deadline, probe.budget) == (1_000_000, 1_000_000, 5_000)
     assert probe.priority > max(others)

@@ -15,7 +15,7 @@ EXAMPLES = house.EXAMPLES
 
 def _files(name: str) -> dict[str, str]:
     checked = steps.check(ROOT / "examples" / name / "model.yaml")
-    return generate(checked.system, steps.bounds(checked))
+    return generate(checked.system, steps.claims(checked))
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

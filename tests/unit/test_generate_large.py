@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from cProfile import Profile
 from pathlib import Path
 from pstats import Stats
 
+from gen.claims import Claims
 from gen.emit.naming import ada_case
 from gen.generate import generate
 from gen.load import load
-from gen.terms import Ns
 from ravenchart.large_models import large_model
 
 
@@ -21,7 +20,7 @@ def _calls(components: int, regions: int) -> int:
     with Profile() as profile:
         loaded = load(Path("model.yaml"), lambda path, limit: model)
         assert loaded.system is not None
-        generate(loaded.system, defaultdict(lambda: Ns(0)))
+        generate(loaded.system, Claims())
     calls: int = Stats(profile).total_calls  # type: ignore[attr-defined]
     return calls
 

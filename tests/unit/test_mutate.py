@@ -50,7 +50,7 @@ end P;
 def rich() -> Files:
     """The rich chart's program."""
     checked = steps.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
-    files = generate(checked.system, steps.bounds(checked))
+    files = generate(checked.system, steps.claims(checked))
     return {n: t for n, t in files.items() if n.endswith((".ads", ".adb"))}
 
 
@@ -79,7 +79,7 @@ def test_every_kind_but_codecs_has_mutants_in_the_rich_chart(rich: Files) -> Non
 
 def test_codecs_have_mutants_in_the_robot() -> None:
     checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
-    files = generate(checked.system, steps.bounds(checked))
+    files = generate(checked.system, steps.claims(checked))
     rules = {(m.kind, m.rule) for m in mutants_of(files) if m.kind == "codec"}
     assert rules == {("codec", "bit"), ("codec", "offset"), ("codec", "width")}
 

@@ -152,7 +152,7 @@ def test_two_sends_on_the_way_into_a_composite_are_refused() -> None:
     send = "[{send: valve, with: {mode: Off, level: 0}}]"
     inside = f"            initial: Slow\n            states: {{Slow: {{entry: {send}}}}}\n"
     outside = f"          Filling:\n            entry: {send}\n"
-    assert codes((STATES, outside + inside)) == ["RV-0413"]
+    assert codes((STATES, outside + inside)) == ["RV-0413", "RV-0611"]
 
 
 def test_sends_in_exit_and_entry_of_one_transition_are_refused() -> None:
@@ -165,7 +165,7 @@ def test_sends_in_exit_and_entry_of_one_transition_are_refused() -> None:
             "      wanted: {type: Mode, initial: Off}\n",
             "      unused: {type: Mode, initial: Off}\n",
         ),
-    ) == ["RV-0413"]
+    ) == ["RV-0413", "RV-0611"]
 
 
 def test_state_left_by_a_transition_of_its_parent_is_reachable_from() -> None:

@@ -5,39 +5,70 @@
 package Cartesian_Robot.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   --  Times in nanoseconds. For each task: T period or least separation, D
-   --  deadline, C budget with two context switches, B blocking, J release
-   --  jitter, R the claimed response time, W the demand that arises within
-   --  R.
+   --  Times in nanoseconds. T period or least separation, D deadline, J
+   --  longest time from the event to the release, C longest execution (with
+   --  two context switches) or transmission, B blocking, R the claimed
+   --  response from the event, W the time claimed from the start of a busy
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
+   --  The claimed responses: each is some other's lateness, or its own
+   --  bound.
+   Reception_R : constant := 485_000;
+   Trajectory_R : constant := 795_000;
+   Control_R : constant := 1_935_000;
+   Supervision_R : constant := 3_255_000;
+   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 935_000;
+   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 3_690_000;
+   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 2_370_000;
+   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 2_370_000;
+   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 2_370_000;
+   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 1_675_000;
+   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 1_905_000;
+   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 2_135_000;
+   Controller_Probe_R : constant := 35_000;
+   Robot_Bus_Robot_Command_R : constant := 500_000;
+   Robot_Bus_Robot_Status_R : constant := 5_390_000;
+   Robot_Bus_X_Set_Point_R : constant := 4_070_000;
+   Robot_Bus_Y_Set_Point_R : constant := 4_070_000;
+   Robot_Bus_Z_Set_Point_R : constant := 4_070_000;
+   Robot_Bus_X_Feedback_R : constant := 1_240_000;
+   Robot_Bus_Y_Feedback_R : constant := 1_470_000;
+   Robot_Bus_Z_Feedback_R : constant := 1_700_000;
+
+   --  [controller] what the platform takes, each at its longest
    Controller_Context_Switch : constant := 5_000;
    Controller_Critical_Section : constant := 5_000;
 
-   --  [reception]
+   --  [reception] priority 4, released by arrivals, no closer than T. B:
+   --  control may be inside joint_x.feedback.mailbox.
    Robot_Bus_Receive_Budget : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
+   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Robot_Bus_Receive_Budget + 2 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
-   Reception_R : constant := 485_000;
 
-   --  [trajectory]
+   --  [trajectory] priority 3, released every T. B: control may be inside
+   --  joint_x.feedback.mailbox.
    Joint_X_Trajectory_Step_Budget : constant := 100_000;
    Joint_Y_Trajectory_Step_Budget : constant := 100_000;
    Joint_Z_Trajectory_Step_Budget : constant := 100_000;
    Trajectory_T : constant := 5_000_000;
    Trajectory_D : constant := 5_000_000;
    Trajectory_J : constant := 0;
+   Trajectory_A : constant := Trajectory_J + (Trajectory_T - 1);
    Trajectory_C : constant :=
      Joint_X_Trajectory_Step_Budget
      + Joint_Y_Trajectory_Step_Budget
      + Joint_Z_Trajectory_Step_Budget
      + 2 * Controller_Context_Switch;
    Trajectory_B : constant := Controller_Critical_Section;
-   Trajectory_R : constant := 795_000;
 
-   --  [control]
+   --  [control] priority 2, released every T. B: supervision may be inside
+   --  joint_x.order.mailbox.
    Joint_X_Ports_Budget : constant := 100_000;
    Joint_X_Monitoring_Budget : constant := 100_000;
    Joint_X_Position_Control_Budget : constant := 150_000;
@@ -50,6 +81,7 @@ is
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
    Control_J : constant := 0;
+   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
      Joint_X_Ports_Budget
      + Joint_X_Monitoring_Budget
@@ -62,9 +94,9 @@ is
      + Joint_Z_Position_Control_Budget
      + 2 * Controller_Context_Switch;
    Control_B : constant := Controller_Critical_Section;
-   Control_R : constant := 1_935_000;
 
-   --  [supervision]
+   --  [supervision] priority 1, released every T. B: main may be inside
+   --  coordinator.Mission.queue.
    Coordinator_Ports_Budget : constant := 100_000;
    Coordinator_Mission_Budget : constant := 200_000;
    Joint_X_Motion_Budget : constant := 150_000;
@@ -77,6 +109,7 @@ is
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervision_J : constant := 0;
+   Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
      Coordinator_Ports_Budget
      + Coordinator_Mission_Budget
@@ -89,895 +122,2654 @@ is
      + Coordinator_Summarise_Budget
      + 2 * Controller_Context_Switch;
    Supervision_B : constant := Controller_Critical_Section;
-   Supervision_R : constant := 3_255_000;
 
-   --  [robot_bus.driver_rx.robot_command]
-   Robot_Bus_Driver_Rx_Robot_Command_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_rx.robot_command] priority 5, the driver's work,
+   --  released by robot_bus.robot_command, which is J late. B: supervision
+   --  may be inside robot_bus.transmit.
+   Robot_Bus_Driver_Rx_Robot_Command_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
-   Robot_Bus_Driver_Rx_Robot_Command_J : constant := 0;
+   Robot_Bus_Driver_Rx_Robot_Command_J : constant :=
+     Robot_Bus_Robot_Command_R;
+   Robot_Bus_Driver_Rx_Robot_Command_A : constant :=
+     Robot_Bus_Driver_Rx_Robot_Command_J
+     + (Robot_Bus_Driver_Rx_Robot_Command_T - 1);
    Robot_Bus_Driver_Rx_Robot_Command_C : constant :=
      Robot_Bus_Driver_Rx_Robot_Command_Budget
      + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Robot_Command_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 435_000;
 
-   --  [robot_bus.driver_tx.robot_status]
-   Robot_Bus_Driver_Tx_Robot_Status_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_tx.robot_status] priority 5, the driver's work,
+   --  released by supervision, which is J late. B: supervision may be
+   --  inside robot_bus.transmit.
+   Robot_Bus_Driver_Tx_Robot_Status_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
-   Robot_Bus_Driver_Tx_Robot_Status_J : constant := 0;
+   Robot_Bus_Driver_Tx_Robot_Status_J : constant := Supervision_R;
+   Robot_Bus_Driver_Tx_Robot_Status_A : constant :=
+     Robot_Bus_Driver_Tx_Robot_Status_J
+     + (Robot_Bus_Driver_Tx_Robot_Status_T - 1);
    Robot_Bus_Driver_Tx_Robot_Status_C : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 435_000;
 
-   --  [robot_bus.driver_tx.x_set_point]
-   Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_tx.x_set_point] priority 5, the driver's work,
+   --  released by control, which is J late. B: supervision may be inside
+   --  robot_bus.transmit.
+   Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Driver_Tx_X_Set_Point_J : constant := 0;
+   Robot_Bus_Driver_Tx_X_Set_Point_J : constant := Control_R;
+   Robot_Bus_Driver_Tx_X_Set_Point_A : constant :=
+     Robot_Bus_Driver_Tx_X_Set_Point_J
+     + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_X_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_X_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 435_000;
 
-   --  [robot_bus.driver_tx.y_set_point]
-   Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_tx.y_set_point] priority 5, the driver's work,
+   --  released by control, which is J late. B: supervision may be inside
+   --  robot_bus.transmit.
+   Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Driver_Tx_Y_Set_Point_J : constant := 0;
+   Robot_Bus_Driver_Tx_Y_Set_Point_J : constant := Control_R;
+   Robot_Bus_Driver_Tx_Y_Set_Point_A : constant :=
+     Robot_Bus_Driver_Tx_Y_Set_Point_J
+     + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_Y_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_Y_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 435_000;
 
-   --  [robot_bus.driver_tx.z_set_point]
-   Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_tx.z_set_point] priority 5, the driver's work,
+   --  released by control, which is J late. B: supervision may be inside
+   --  robot_bus.transmit.
+   Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Driver_Tx_Z_Set_Point_J : constant := 0;
+   Robot_Bus_Driver_Tx_Z_Set_Point_J : constant := Control_R;
+   Robot_Bus_Driver_Tx_Z_Set_Point_A : constant :=
+     Robot_Bus_Driver_Tx_Z_Set_Point_J
+     + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1);
    Robot_Bus_Driver_Tx_Z_Set_Point_C : constant :=
      Robot_Bus_Driver_Tx_Z_Set_Point_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 435_000;
 
-   --  [robot_bus.driver_rx.x_feedback]
-   Robot_Bus_Driver_Rx_X_Feedback_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_rx.x_feedback] priority 5, the driver's work,
+   --  released by robot_bus.x_feedback, which is J late. B: supervision may
+   --  be inside robot_bus.transmit.
+   Robot_Bus_Driver_Rx_X_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Driver_Rx_X_Feedback_J : constant := 0;
+   Robot_Bus_Driver_Rx_X_Feedback_J : constant := Robot_Bus_X_Feedback_R;
+   Robot_Bus_Driver_Rx_X_Feedback_A : constant :=
+     Robot_Bus_Driver_Rx_X_Feedback_J
+     + (Robot_Bus_Driver_Rx_X_Feedback_T - 1);
    Robot_Bus_Driver_Rx_X_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 435_000;
 
-   --  [robot_bus.driver_rx.y_feedback]
-   Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_rx.y_feedback] priority 5, the driver's work,
+   --  released by robot_bus.y_feedback, which is J late. B: supervision may
+   --  be inside robot_bus.transmit.
+   Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Driver_Rx_Y_Feedback_J : constant := 0;
+   Robot_Bus_Driver_Rx_Y_Feedback_J : constant := Robot_Bus_Y_Feedback_R;
+   Robot_Bus_Driver_Rx_Y_Feedback_A : constant :=
+     Robot_Bus_Driver_Rx_Y_Feedback_J
+     + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1);
    Robot_Bus_Driver_Rx_Y_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 435_000;
 
-   --  [robot_bus.driver_rx.z_feedback]
-   Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant :=
-     50_000 - 2 * Controller_Context_Switch;
+   --  [robot_bus.driver_rx.z_feedback] priority 5, the driver's work,
+   --  released by robot_bus.z_feedback, which is J late. B: supervision may
+   --  be inside robot_bus.transmit.
+   Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Driver_Rx_Z_Feedback_J : constant := 0;
+   Robot_Bus_Driver_Rx_Z_Feedback_J : constant := Robot_Bus_Z_Feedback_R;
+   Robot_Bus_Driver_Rx_Z_Feedback_A : constant :=
+     Robot_Bus_Driver_Rx_Z_Feedback_J
+     + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1);
    Robot_Bus_Driver_Rx_Z_Feedback_C : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_Budget + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
-   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 435_000;
 
-   --  [controller.probe]
-   Controller_Probe_Budget : constant :=
-     30_000 - 2 * Controller_Context_Switch;
+   --  [controller.probe] priority 6, released every T. B: main may be
+   --  inside controller.probe.board.
+   Controller_Probe_Budget : constant := 20_000;
    Controller_Probe_T : constant := 1_000_000;
    Controller_Probe_D : constant := 1_000_000;
    Controller_Probe_J : constant := 0;
+   Controller_Probe_A : constant :=
+     Controller_Probe_J + (Controller_Probe_T - 1);
    Controller_Probe_C : constant :=
      Controller_Probe_Budget + 2 * Controller_Context_Switch;
    Controller_Probe_B : constant := Controller_Critical_Section;
-   Controller_Probe_R : constant := 35_000;
 
-   --  [reception] what can delay it
-   Reception_W : constant :=
+   --  [robot_bus] bits in a second, and one bit in nanoseconds, rounded up.
+   --  Of a message, Stuffed: bits that stuffing can lengthen by a quarter;
+   --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
+   --  the next frame.
+   Robot_Bus_Bit_Rate : constant := 500_000;
+   Robot_Bus_Bit : constant :=
+     (1_000_000_000 + (Robot_Bus_Bit_Rate - 1)) / Robot_Bus_Bit_Rate;
+
+   --  [robot_bus.robot_command] 11-bit identifier 0x80, 8 bytes from
+   --  somebody outside
+   Robot_Bus_Robot_Command_T : constant := 100_000_000;
+   Robot_Bus_Robot_Command_D : constant := 100_000_000;
+   Robot_Bus_Robot_Command_Stuffed : constant := 34 + 8 * 8;
+   Robot_Bus_Robot_Command_Bits : constant :=
+     Robot_Bus_Robot_Command_Stuffed
+     + 13
+     + ((Robot_Bus_Robot_Command_Stuffed - 1) / 4);
+   Robot_Bus_Robot_Command_C : constant :=
+     ((Robot_Bus_Robot_Command_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_Robot_Command_J : constant := 0;
+   Robot_Bus_Robot_Command_A : constant :=
+     Robot_Bus_Robot_Command_J + (Robot_Bus_Robot_Command_T - 1);
+
+   --  [robot_bus.x_set_point] 11-bit identifier 0x110, 3 bytes from
+   --  joint_x.drive
+   Robot_Bus_X_Set_Point_T : constant := 10_000_000;
+   Robot_Bus_X_Set_Point_D : constant := 10_000_000;
+   Robot_Bus_X_Set_Point_Stuffed : constant := 34 + 8 * 3;
+   Robot_Bus_X_Set_Point_Bits : constant :=
+     Robot_Bus_X_Set_Point_Stuffed
+     + 13
+     + ((Robot_Bus_X_Set_Point_Stuffed - 1) / 4);
+   Robot_Bus_X_Set_Point_C : constant :=
+     ((Robot_Bus_X_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_X_Set_Point_J : constant := Robot_Bus_Driver_Tx_X_Set_Point_R;
+   Robot_Bus_X_Set_Point_A : constant :=
+     Robot_Bus_X_Set_Point_J + (Robot_Bus_X_Set_Point_T - 1);
+
+   --  [robot_bus.y_set_point] 11-bit identifier 0x111, 3 bytes from
+   --  joint_y.drive
+   Robot_Bus_Y_Set_Point_T : constant := 10_000_000;
+   Robot_Bus_Y_Set_Point_D : constant := 10_000_000;
+   Robot_Bus_Y_Set_Point_Stuffed : constant := 34 + 8 * 3;
+   Robot_Bus_Y_Set_Point_Bits : constant :=
+     Robot_Bus_Y_Set_Point_Stuffed
+     + 13
+     + ((Robot_Bus_Y_Set_Point_Stuffed - 1) / 4);
+   Robot_Bus_Y_Set_Point_C : constant :=
+     ((Robot_Bus_Y_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_Y_Set_Point_J : constant := Robot_Bus_Driver_Tx_Y_Set_Point_R;
+   Robot_Bus_Y_Set_Point_A : constant :=
+     Robot_Bus_Y_Set_Point_J + (Robot_Bus_Y_Set_Point_T - 1);
+
+   --  [robot_bus.z_set_point] 11-bit identifier 0x112, 3 bytes from
+   --  joint_z.drive
+   Robot_Bus_Z_Set_Point_T : constant := 10_000_000;
+   Robot_Bus_Z_Set_Point_D : constant := 10_000_000;
+   Robot_Bus_Z_Set_Point_Stuffed : constant := 34 + 8 * 3;
+   Robot_Bus_Z_Set_Point_Bits : constant :=
+     Robot_Bus_Z_Set_Point_Stuffed
+     + 13
+     + ((Robot_Bus_Z_Set_Point_Stuffed - 1) / 4);
+   Robot_Bus_Z_Set_Point_C : constant :=
+     ((Robot_Bus_Z_Set_Point_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_Z_Set_Point_J : constant := Robot_Bus_Driver_Tx_Z_Set_Point_R;
+   Robot_Bus_Z_Set_Point_A : constant :=
+     Robot_Bus_Z_Set_Point_J + (Robot_Bus_Z_Set_Point_T - 1);
+
+   --  [robot_bus.x_feedback] 11-bit identifier 0x120, 6 bytes from somebody
+   --  outside
+   Robot_Bus_X_Feedback_T : constant := 5_000_000;
+   Robot_Bus_X_Feedback_D : constant := 5_000_000;
+   Robot_Bus_X_Feedback_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_X_Feedback_Bits : constant :=
+     Robot_Bus_X_Feedback_Stuffed
+     + 13
+     + ((Robot_Bus_X_Feedback_Stuffed - 1) / 4);
+   Robot_Bus_X_Feedback_C : constant :=
+     ((Robot_Bus_X_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_X_Feedback_J : constant := 0;
+   Robot_Bus_X_Feedback_A : constant :=
+     Robot_Bus_X_Feedback_J + (Robot_Bus_X_Feedback_T - 1);
+
+   --  [robot_bus.y_feedback] 11-bit identifier 0x121, 6 bytes from somebody
+   --  outside
+   Robot_Bus_Y_Feedback_T : constant := 5_000_000;
+   Robot_Bus_Y_Feedback_D : constant := 5_000_000;
+   Robot_Bus_Y_Feedback_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_Y_Feedback_Bits : constant :=
+     Robot_Bus_Y_Feedback_Stuffed
+     + 13
+     + ((Robot_Bus_Y_Feedback_Stuffed - 1) / 4);
+   Robot_Bus_Y_Feedback_C : constant :=
+     ((Robot_Bus_Y_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_Y_Feedback_J : constant := 0;
+   Robot_Bus_Y_Feedback_A : constant :=
+     Robot_Bus_Y_Feedback_J + (Robot_Bus_Y_Feedback_T - 1);
+
+   --  [robot_bus.z_feedback] 11-bit identifier 0x122, 6 bytes from somebody
+   --  outside
+   Robot_Bus_Z_Feedback_T : constant := 5_000_000;
+   Robot_Bus_Z_Feedback_D : constant := 5_000_000;
+   Robot_Bus_Z_Feedback_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_Z_Feedback_Bits : constant :=
+     Robot_Bus_Z_Feedback_Stuffed
+     + 13
+     + ((Robot_Bus_Z_Feedback_Stuffed - 1) / 4);
+   Robot_Bus_Z_Feedback_C : constant :=
+     ((Robot_Bus_Z_Feedback_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_Z_Feedback_J : constant := 0;
+   Robot_Bus_Z_Feedback_A : constant :=
+     Robot_Bus_Z_Feedback_J + (Robot_Bus_Z_Feedback_T - 1);
+
+   --  [robot_bus.robot_status] 11-bit identifier 0x180, 6 bytes from
+   --  coordinator.status
+   Robot_Bus_Robot_Status_T : constant := 20_000_000;
+   Robot_Bus_Robot_Status_D : constant := 20_000_000;
+   Robot_Bus_Robot_Status_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_Robot_Status_Bits : constant :=
+     Robot_Bus_Robot_Status_Stuffed
+     + 13
+     + ((Robot_Bus_Robot_Status_Stuffed - 1) / 4);
+   Robot_Bus_Robot_Status_C : constant :=
+     ((Robot_Bus_Robot_Status_Bits * 10**9) + (Robot_Bus_Bit_Rate - 1))
+     / Robot_Bus_Bit_Rate;
+   Robot_Bus_Robot_Status_J : constant :=
+     Robot_Bus_Driver_Tx_Robot_Status_R;
+   Robot_Bus_Robot_Status_A : constant :=
+     Robot_Bus_Robot_Status_J + (Robot_Bus_Robot_Status_T - 1);
+
+   --  [reception] what can delay it: jobs of the same or higher priority
+   Reception_W : constant := Reception_R - Reception_J;
+   Reception_Needs : constant :=
      Reception_C
      + Reception_B
-     + (((Reception_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Reception_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Reception_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Reception_R + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Reception_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Reception_W > Reception_R,
+     (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Reception_R > Reception_T,
+     ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Reception_R + Reception_J) > Reception_D,
+     (Reception_R > Reception_D,
       "reception " & "can miss its deadline");
-   pragma Assert (Reception_W <= Reception_R);
-   pragma Assert ((Reception_R + Reception_J) <= Reception_D);
+   pragma Assert (Reception_Needs <= Reception_W);
+   pragma Assert (Reception_R <= Reception_D);
 
-   --  [trajectory] what can delay it
-   Trajectory_W : constant :=
+   --  [trajectory] what can delay it: jobs of the same or higher priority
+   Trajectory_W : constant := Trajectory_R - Trajectory_J;
+   Trajectory_Needs : constant :=
      Trajectory_C
      + Trajectory_B
-     + (((Trajectory_R + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Trajectory_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Trajectory_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Trajectory_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Trajectory_R + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Trajectory_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Trajectory_W > Trajectory_R,
+     (Trajectory_Needs > Trajectory_W,
       "trajectory " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Trajectory_R > Trajectory_T,
+     ((Trajectory_J + Trajectory_W) > Trajectory_T,
       "trajectory " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Trajectory_R + Trajectory_J) > Trajectory_D,
+     (Trajectory_R > Trajectory_D,
       "trajectory " & "can miss its deadline");
-   pragma Assert (Trajectory_W <= Trajectory_R);
-   pragma Assert ((Trajectory_R + Trajectory_J) <= Trajectory_D);
+   pragma Assert (Trajectory_Needs <= Trajectory_W);
+   pragma Assert (Trajectory_R <= Trajectory_D);
 
-   --  [control] what can delay it
-   Control_W : constant :=
+   --  [control] what can delay it: jobs of the same or higher priority
+   Control_W : constant := Control_R - Control_J;
+   Control_Needs : constant :=
      Control_C
      + Control_B
-     + (((Control_R + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Control_R + Trajectory_J + (Trajectory_T - 1)) / Trajectory_T)
-        * Trajectory_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Control_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Control_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Control_R + Controller_Probe_J + (Controller_Probe_T - 1))
-         / Controller_Probe_T)
+     + (((Control_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Control_W > Control_R,
+     (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Control_R > Control_T,
+     ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Control_R + Control_J) > Control_D,
+     (Control_R > Control_D,
       "control " & "can miss its deadline");
-   pragma Assert (Control_W <= Control_R);
-   pragma Assert ((Control_R + Control_J) <= Control_D);
+   pragma Assert (Control_Needs <= Control_W);
+   pragma Assert (Control_R <= Control_D);
 
-   --  [supervision] what can delay it
-   Supervision_W : constant :=
-     Supervision_C
-     + Supervision_B
-     + (((Supervision_R + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Supervision_R + Trajectory_J + (Trajectory_T - 1)) / Trajectory_T)
-        * Trajectory_C)
-     + (((Supervision_R + Control_J + (Control_T - 1)) / Control_T)
-        * Control_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+   --  [joint_x.ports] done, from the event that releases its processor
+   Joint_X_Ports_Done : constant := 905_000;
+   Joint_X_Ports_W : constant := Joint_X_Ports_Done - Control_J;
+   Joint_X_Ports_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Joint_X_Ports_Budget
+     + Control_B
+     + (((Joint_X_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_X_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Supervision_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Supervision_R + Controller_Probe_J + (Controller_Probe_T - 1))
+     + (((Joint_X_Ports_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_X_Ports_Needs > Joint_X_Ports_W,
+      "joint_x.ports " & "can take longer than its claimed response time");
+
+   --  [joint_x.position_control] done, from the event that releases its
+   --  processor
+   Joint_X_Position_Control_Done : constant := 1_235_000;
+   Joint_X_Position_Control_W : constant :=
+     Joint_X_Position_Control_Done - Control_J;
+   Joint_X_Position_Control_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget
+     + Joint_X_Position_Control_Budget
+     + Control_B
+     + (((Joint_X_Position_Control_W + Reception_A) / Reception_T)
+        * Reception_C)
+     + (((Joint_X_Position_Control_W + Trajectory_A) / Trajectory_T)
+        * Trajectory_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_X_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Supervision_W > Supervision_R,
+     (Joint_X_Position_Control_Needs > Joint_X_Position_Control_W,
+      "joint_x.position_control "
+      & "can take longer than its claimed response time");
+
+   --  [joint_y.ports] done, from the event that releases its processor
+   Joint_Y_Ports_Done : constant := 1_335_000;
+   Joint_Y_Ports_W : constant := Joint_Y_Ports_Done - Control_J;
+   Joint_Y_Ports_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget
+     + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget
+     + Control_B
+     + (((Joint_Y_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_Y_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Y_Ports_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_Y_Ports_Needs > Joint_Y_Ports_W,
+      "joint_y.ports " & "can take longer than its claimed response time");
+
+   --  [joint_y.position_control] done, from the event that releases its
+   --  processor
+   Joint_Y_Position_Control_Done : constant := 1_585_000;
+   Joint_Y_Position_Control_W : constant :=
+     Joint_Y_Position_Control_Done - Control_J;
+   Joint_Y_Position_Control_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget
+     + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget
+     + Joint_Y_Monitoring_Budget
+     + Joint_Y_Position_Control_Budget
+     + Control_B
+     + (((Joint_Y_Position_Control_W + Reception_A) / Reception_T)
+        * Reception_C)
+     + (((Joint_Y_Position_Control_W + Trajectory_A) / Trajectory_T)
+        * Trajectory_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Y_Position_Control_W + Controller_Probe_A)
+         / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_Y_Position_Control_Needs > Joint_Y_Position_Control_W,
+      "joint_y.position_control "
+      & "can take longer than its claimed response time");
+
+   --  [joint_z.ports] done, from the event that releases its processor
+   Joint_Z_Ports_Done : constant := 1_685_000;
+   Joint_Z_Ports_W : constant := Joint_Z_Ports_Done - Control_J;
+   Joint_Z_Ports_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget
+     + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget
+     + Joint_Y_Monitoring_Budget
+     + Joint_Y_Position_Control_Budget
+     + Joint_Z_Ports_Budget
+     + Control_B
+     + (((Joint_Z_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_Z_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Z_Ports_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_Z_Ports_Needs > Joint_Z_Ports_W,
+      "joint_z.ports " & "can take longer than its claimed response time");
+
+   --  [joint_z.position_control] done, from the event that releases its
+   --  processor
+   Joint_Z_Position_Control_Done : constant := 1_935_000;
+   Joint_Z_Position_Control_W : constant :=
+     Joint_Z_Position_Control_Done - Control_J;
+   Joint_Z_Position_Control_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Joint_X_Ports_Budget
+     + Joint_X_Monitoring_Budget
+     + Joint_X_Position_Control_Budget
+     + Joint_Y_Ports_Budget
+     + Joint_Y_Monitoring_Budget
+     + Joint_Y_Position_Control_Budget
+     + Joint_Z_Ports_Budget
+     + Joint_Z_Monitoring_Budget
+     + Joint_Z_Position_Control_Budget
+     + Control_B
+     + (((Joint_Z_Position_Control_W + Reception_A) / Reception_T)
+        * Reception_C)
+     + (((Joint_Z_Position_Control_W + Trajectory_A) / Trajectory_T)
+        * Trajectory_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Z_Position_Control_W + Controller_Probe_A)
+         / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_Z_Position_Control_Needs > Joint_Z_Position_Control_W,
+      "joint_z.position_control "
+      & "can take longer than its claimed response time");
+
+   --  [supervision] what can delay it: jobs of the same or higher priority
+   Supervision_W : constant := Supervision_R - Supervision_J;
+   Supervision_Needs : constant :=
+     Supervision_C
+     + Supervision_B
+     + (((Supervision_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Supervision_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Supervision_W + Control_A) / Control_T) * Control_C)
+     + (((Supervision_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Supervision_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Supervision_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Supervision_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Supervision_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Supervision_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Supervision_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Supervision_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Supervision_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Supervision_Needs > Supervision_W,
       "supervision " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Supervision_R > Supervision_T,
+     ((Supervision_J + Supervision_W) > Supervision_T,
       "supervision " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Supervision_R + Supervision_J) > Supervision_D,
+     (Supervision_R > Supervision_D,
       "supervision " & "can miss its deadline");
-   pragma Assert (Supervision_W <= Supervision_R);
-   pragma Assert ((Supervision_R + Supervision_J) <= Supervision_D);
+   pragma Assert (Supervision_Needs <= Supervision_W);
+   pragma Assert (Supervision_R <= Supervision_D);
 
-   --  [robot_bus.driver_rx.robot_command] what can delay it
-   Robot_Bus_Driver_Rx_Robot_Command_W : constant :=
-     Robot_Bus_Driver_Rx_Robot_Command_C
-     + Robot_Bus_Driver_Rx_Robot_Command_B
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+   --  [coordinator.ports] done, from the event that releases its processor
+   Coordinator_Ports_Done : constant := 2_125_000;
+   Coordinator_Ports_W : constant := Coordinator_Ports_Done - Supervision_J;
+   Coordinator_Ports_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Coordinator_Ports_Budget
+     + Supervision_B
+     + (((Coordinator_Ports_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Coordinator_Ports_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Coordinator_Ports_W + Control_A) / Control_T) * Control_C)
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Robot_Command_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Coordinator_Ports_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Coordinator_Ports_Needs > Coordinator_Ports_W,
+      "coordinator.ports "
+      & "can take longer than its claimed response time");
+
+   --  [coordinator.Mission] done, from the event that releases its
+   --  processor
+   Coordinator_Mission_Done : constant := 2_325_000;
+   Coordinator_Mission_W : constant :=
+     Coordinator_Mission_Done - Supervision_J;
+   Coordinator_Mission_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Coordinator_Ports_Budget
+     + Coordinator_Mission_Budget
+     + Supervision_B
+     + (((Coordinator_Mission_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Coordinator_Mission_W + Trajectory_A) / Trajectory_T)
+        * Trajectory_C)
+     + (((Coordinator_Mission_W + Control_A) / Control_T) * Control_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Coordinator_Mission_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Coordinator_Mission_Needs > Coordinator_Mission_W,
+      "coordinator.Mission "
+      & "can take longer than its claimed response time");
+
+   --  [joint_x.Motion] done, from the event that releases its processor
+   Joint_X_Motion_Done : constant := 2_475_000;
+   Joint_X_Motion_W : constant := Joint_X_Motion_Done - Supervision_J;
+   Joint_X_Motion_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Coordinator_Ports_Budget
+     + Coordinator_Mission_Budget
+     + Joint_X_Motion_Budget
+     + Supervision_B
+     + (((Joint_X_Motion_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_X_Motion_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_X_Motion_W + Control_A) / Control_T) * Control_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_X_Motion_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_X_Motion_Needs > Joint_X_Motion_W,
+      "joint_x.Motion " & "can take longer than its claimed response time");
+
+   --  [joint_x.supervise] done, from the event that releases its processor
+   Joint_X_Supervise_Done : constant := 2_875_000;
+   Joint_X_Supervise_W : constant := Joint_X_Supervise_Done - Supervision_J;
+   Joint_X_Supervise_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Coordinator_Ports_Budget
+     + Coordinator_Mission_Budget
+     + Joint_X_Motion_Budget
+     + Joint_Y_Motion_Budget
+     + Joint_Z_Motion_Budget
+     + Joint_X_Supervise_Budget
+     + Supervision_B
+     + (((Joint_X_Supervise_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Joint_X_Supervise_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
+     + (((Joint_X_Supervise_W + Control_A) / Control_T) * Control_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_X_Supervise_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Joint_X_Supervise_Needs > Joint_X_Supervise_W,
+      "joint_x.supervise "
+      & "can take longer than its claimed response time");
+
+   --  [coordinator.summarise] done, from the event that releases its
+   --  processor
+   Coordinator_Summarise_Done : constant := 3_255_000;
+   Coordinator_Summarise_W : constant :=
+     Coordinator_Summarise_Done - Supervision_J;
+   Coordinator_Summarise_Needs : constant :=
+     2 * Controller_Context_Switch
+     + Coordinator_Ports_Budget
+     + Coordinator_Mission_Budget
+     + Joint_X_Motion_Budget
+     + Joint_Y_Motion_Budget
+     + Joint_Z_Motion_Budget
+     + Joint_X_Supervise_Budget
+     + Joint_Y_Supervise_Budget
+     + Joint_Z_Supervise_Budget
+     + Coordinator_Summarise_Budget
+     + Supervision_B
+     + (((Coordinator_Summarise_W + Reception_A) / Reception_T)
+        * Reception_C)
+     + (((Coordinator_Summarise_W + Trajectory_A) / Trajectory_T)
+        * Trajectory_C)
+     + (((Coordinator_Summarise_W + Control_A) / Control_T) * Control_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Robot_Command_A)
+         / Robot_Bus_Driver_Rx_Robot_Command_T)
+        * Robot_Bus_Driver_Rx_Robot_Command_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Coordinator_Summarise_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (Coordinator_Summarise_Needs > Coordinator_Summarise_W,
+      "coordinator.summarise "
+      & "can take longer than its claimed response time");
+
+   --  [robot_bus.driver_rx.robot_command] what can delay it: jobs of the
+   --  same or higher priority
+   Robot_Bus_Driver_Rx_Robot_Command_W : constant :=
+     Robot_Bus_Driver_Rx_Robot_Command_R - Robot_Bus_Driver_Rx_Robot_Command_J;
+   Robot_Bus_Driver_Rx_Robot_Command_Needs : constant :=
+     Robot_Bus_Driver_Rx_Robot_Command_C
+     + Robot_Bus_Driver_Rx_Robot_Command_B
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
+         / Robot_Bus_Driver_Tx_Robot_Status_T)
+        * Robot_Bus_Driver_Tx_Robot_Status_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
+         / Robot_Bus_Driver_Tx_X_Set_Point_T)
+        * Robot_Bus_Driver_Tx_X_Set_Point_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
+         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
+        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
+         / Robot_Bus_Driver_Rx_X_Feedback_T)
+        * Robot_Bus_Driver_Rx_X_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
+         / Robot_Bus_Driver_Rx_Y_Feedback_T)
+        * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
+         / Robot_Bus_Driver_Rx_Z_Feedback_T)
+        * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Robot_Command_W
-      > Robot_Bus_Driver_Rx_Robot_Command_R,
+     (Robot_Bus_Driver_Rx_Robot_Command_Needs
+      > Robot_Bus_Driver_Rx_Robot_Command_W,
       "robot_bus.driver_rx.robot_command "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Robot_Command_R
+     ((Robot_Bus_Driver_Rx_Robot_Command_J
+       + Robot_Bus_Driver_Rx_Robot_Command_W)
       > Robot_Bus_Driver_Rx_Robot_Command_T,
       "robot_bus.driver_rx.robot_command "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Robot_Command_R
-       + Robot_Bus_Driver_Rx_Robot_Command_J)
+     (Robot_Bus_Driver_Rx_Robot_Command_R
       > Robot_Bus_Driver_Rx_Robot_Command_D,
       "robot_bus.driver_rx.robot_command " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Rx_Robot_Command_W
-      <= Robot_Bus_Driver_Rx_Robot_Command_R);
+     (Robot_Bus_Driver_Rx_Robot_Command_Needs
+      <= Robot_Bus_Driver_Rx_Robot_Command_W);
    pragma Assert
-     ((Robot_Bus_Driver_Rx_Robot_Command_R
-       + Robot_Bus_Driver_Rx_Robot_Command_J)
+     (Robot_Bus_Driver_Rx_Robot_Command_R
       <= Robot_Bus_Driver_Rx_Robot_Command_D);
 
-   --  [robot_bus.driver_tx.robot_status] what can delay it
+   --  [robot_bus.driver_tx.robot_status] what can delay it: jobs of the
+   --  same or higher priority
    Robot_Bus_Driver_Tx_Robot_Status_W : constant :=
+     Robot_Bus_Driver_Tx_Robot_Status_R - Robot_Bus_Driver_Tx_Robot_Status_J;
+   Robot_Bus_Driver_Tx_Robot_Status_Needs : constant :=
      Robot_Bus_Driver_Tx_Robot_Status_C
      + Robot_Bus_Driver_Tx_Robot_Status_B
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Robot_Status_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Robot_Status_W
-      > Robot_Bus_Driver_Tx_Robot_Status_R,
+     (Robot_Bus_Driver_Tx_Robot_Status_Needs
+      > Robot_Bus_Driver_Tx_Robot_Status_W,
       "robot_bus.driver_tx.robot_status "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Robot_Status_R
+     ((Robot_Bus_Driver_Tx_Robot_Status_J
+       + Robot_Bus_Driver_Tx_Robot_Status_W)
       > Robot_Bus_Driver_Tx_Robot_Status_T,
       "robot_bus.driver_tx.robot_status "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_Robot_Status_R
-       + Robot_Bus_Driver_Tx_Robot_Status_J)
+     (Robot_Bus_Driver_Tx_Robot_Status_R
       > Robot_Bus_Driver_Tx_Robot_Status_D,
       "robot_bus.driver_tx.robot_status " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Tx_Robot_Status_W
-      <= Robot_Bus_Driver_Tx_Robot_Status_R);
+     (Robot_Bus_Driver_Tx_Robot_Status_Needs
+      <= Robot_Bus_Driver_Tx_Robot_Status_W);
    pragma Assert
-     ((Robot_Bus_Driver_Tx_Robot_Status_R
-       + Robot_Bus_Driver_Tx_Robot_Status_J)
+     (Robot_Bus_Driver_Tx_Robot_Status_R
       <= Robot_Bus_Driver_Tx_Robot_Status_D);
 
-   --  [robot_bus.driver_tx.x_set_point] what can delay it
+   --  [robot_bus.driver_tx.x_set_point] what can delay it: jobs of the same
+   --  or higher priority
    Robot_Bus_Driver_Tx_X_Set_Point_W : constant :=
+     Robot_Bus_Driver_Tx_X_Set_Point_R - Robot_Bus_Driver_Tx_X_Set_Point_J;
+   Robot_Bus_Driver_Tx_X_Set_Point_Needs : constant :=
      Robot_Bus_Driver_Tx_X_Set_Point_C
      + Robot_Bus_Driver_Tx_X_Set_Point_B
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_X_Set_Point_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_X_Set_Point_W > Robot_Bus_Driver_Tx_X_Set_Point_R,
+     (Robot_Bus_Driver_Tx_X_Set_Point_Needs
+      > Robot_Bus_Driver_Tx_X_Set_Point_W,
       "robot_bus.driver_tx.x_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_X_Set_Point_R > Robot_Bus_Driver_Tx_X_Set_Point_T,
+     ((Robot_Bus_Driver_Tx_X_Set_Point_J + Robot_Bus_Driver_Tx_X_Set_Point_W)
+      > Robot_Bus_Driver_Tx_X_Set_Point_T,
       "robot_bus.driver_tx.x_set_point "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_X_Set_Point_R + Robot_Bus_Driver_Tx_X_Set_Point_J)
-      > Robot_Bus_Driver_Tx_X_Set_Point_D,
+     (Robot_Bus_Driver_Tx_X_Set_Point_R > Robot_Bus_Driver_Tx_X_Set_Point_D,
       "robot_bus.driver_tx.x_set_point " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Tx_X_Set_Point_W <= Robot_Bus_Driver_Tx_X_Set_Point_R);
+     (Robot_Bus_Driver_Tx_X_Set_Point_Needs
+      <= Robot_Bus_Driver_Tx_X_Set_Point_W);
    pragma Assert
-     ((Robot_Bus_Driver_Tx_X_Set_Point_R + Robot_Bus_Driver_Tx_X_Set_Point_J)
-      <= Robot_Bus_Driver_Tx_X_Set_Point_D);
+     (Robot_Bus_Driver_Tx_X_Set_Point_R <= Robot_Bus_Driver_Tx_X_Set_Point_D);
 
-   --  [robot_bus.driver_tx.y_set_point] what can delay it
+   --  [robot_bus.driver_tx.y_set_point] what can delay it: jobs of the same
+   --  or higher priority
    Robot_Bus_Driver_Tx_Y_Set_Point_W : constant :=
+     Robot_Bus_Driver_Tx_Y_Set_Point_R - Robot_Bus_Driver_Tx_Y_Set_Point_J;
+   Robot_Bus_Driver_Tx_Y_Set_Point_Needs : constant :=
      Robot_Bus_Driver_Tx_Y_Set_Point_C
      + Robot_Bus_Driver_Tx_Y_Set_Point_B
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Y_Set_Point_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Y_Set_Point_W > Robot_Bus_Driver_Tx_Y_Set_Point_R,
+     (Robot_Bus_Driver_Tx_Y_Set_Point_Needs
+      > Robot_Bus_Driver_Tx_Y_Set_Point_W,
       "robot_bus.driver_tx.y_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Y_Set_Point_R > Robot_Bus_Driver_Tx_Y_Set_Point_T,
+     ((Robot_Bus_Driver_Tx_Y_Set_Point_J + Robot_Bus_Driver_Tx_Y_Set_Point_W)
+      > Robot_Bus_Driver_Tx_Y_Set_Point_T,
       "robot_bus.driver_tx.y_set_point "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_Y_Set_Point_R + Robot_Bus_Driver_Tx_Y_Set_Point_J)
-      > Robot_Bus_Driver_Tx_Y_Set_Point_D,
+     (Robot_Bus_Driver_Tx_Y_Set_Point_R > Robot_Bus_Driver_Tx_Y_Set_Point_D,
       "robot_bus.driver_tx.y_set_point " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Tx_Y_Set_Point_W <= Robot_Bus_Driver_Tx_Y_Set_Point_R);
+     (Robot_Bus_Driver_Tx_Y_Set_Point_Needs
+      <= Robot_Bus_Driver_Tx_Y_Set_Point_W);
    pragma Assert
-     ((Robot_Bus_Driver_Tx_Y_Set_Point_R + Robot_Bus_Driver_Tx_Y_Set_Point_J)
-      <= Robot_Bus_Driver_Tx_Y_Set_Point_D);
+     (Robot_Bus_Driver_Tx_Y_Set_Point_R <= Robot_Bus_Driver_Tx_Y_Set_Point_D);
 
-   --  [robot_bus.driver_tx.z_set_point] what can delay it
+   --  [robot_bus.driver_tx.z_set_point] what can delay it: jobs of the same
+   --  or higher priority
    Robot_Bus_Driver_Tx_Z_Set_Point_W : constant :=
+     Robot_Bus_Driver_Tx_Z_Set_Point_R - Robot_Bus_Driver_Tx_Z_Set_Point_J;
+   Robot_Bus_Driver_Tx_Z_Set_Point_Needs : constant :=
      Robot_Bus_Driver_Tx_Z_Set_Point_C
      + Robot_Bus_Driver_Tx_Z_Set_Point_B
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Tx_Z_Set_Point_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Z_Set_Point_W > Robot_Bus_Driver_Tx_Z_Set_Point_R,
+     (Robot_Bus_Driver_Tx_Z_Set_Point_Needs
+      > Robot_Bus_Driver_Tx_Z_Set_Point_W,
       "robot_bus.driver_tx.z_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Tx_Z_Set_Point_R > Robot_Bus_Driver_Tx_Z_Set_Point_T,
+     ((Robot_Bus_Driver_Tx_Z_Set_Point_J + Robot_Bus_Driver_Tx_Z_Set_Point_W)
+      > Robot_Bus_Driver_Tx_Z_Set_Point_T,
       "robot_bus.driver_tx.z_set_point "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Tx_Z_Set_Point_R + Robot_Bus_Driver_Tx_Z_Set_Point_J)
-      > Robot_Bus_Driver_Tx_Z_Set_Point_D,
+     (Robot_Bus_Driver_Tx_Z_Set_Point_R > Robot_Bus_Driver_Tx_Z_Set_Point_D,
       "robot_bus.driver_tx.z_set_point " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Tx_Z_Set_Point_W <= Robot_Bus_Driver_Tx_Z_Set_Point_R);
+     (Robot_Bus_Driver_Tx_Z_Set_Point_Needs
+      <= Robot_Bus_Driver_Tx_Z_Set_Point_W);
    pragma Assert
-     ((Robot_Bus_Driver_Tx_Z_Set_Point_R + Robot_Bus_Driver_Tx_Z_Set_Point_J)
-      <= Robot_Bus_Driver_Tx_Z_Set_Point_D);
+     (Robot_Bus_Driver_Tx_Z_Set_Point_R <= Robot_Bus_Driver_Tx_Z_Set_Point_D);
 
-   --  [robot_bus.driver_rx.x_feedback] what can delay it
+   --  [robot_bus.driver_rx.x_feedback] what can delay it: jobs of the same
+   --  or higher priority
    Robot_Bus_Driver_Rx_X_Feedback_W : constant :=
+     Robot_Bus_Driver_Rx_X_Feedback_R - Robot_Bus_Driver_Rx_X_Feedback_J;
+   Robot_Bus_Driver_Rx_X_Feedback_Needs : constant :=
      Robot_Bus_Driver_Rx_X_Feedback_C
      + Robot_Bus_Driver_Rx_X_Feedback_B
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_X_Feedback_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_X_Feedback_W > Robot_Bus_Driver_Rx_X_Feedback_R,
+     (Robot_Bus_Driver_Rx_X_Feedback_Needs
+      > Robot_Bus_Driver_Rx_X_Feedback_W,
       "robot_bus.driver_rx.x_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_X_Feedback_R > Robot_Bus_Driver_Rx_X_Feedback_T,
+     ((Robot_Bus_Driver_Rx_X_Feedback_J + Robot_Bus_Driver_Rx_X_Feedback_W)
+      > Robot_Bus_Driver_Rx_X_Feedback_T,
       "robot_bus.driver_rx.x_feedback "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_X_Feedback_R + Robot_Bus_Driver_Rx_X_Feedback_J)
-      > Robot_Bus_Driver_Rx_X_Feedback_D,
+     (Robot_Bus_Driver_Rx_X_Feedback_R > Robot_Bus_Driver_Rx_X_Feedback_D,
       "robot_bus.driver_rx.x_feedback " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Rx_X_Feedback_W <= Robot_Bus_Driver_Rx_X_Feedback_R);
+     (Robot_Bus_Driver_Rx_X_Feedback_Needs
+      <= Robot_Bus_Driver_Rx_X_Feedback_W);
    pragma Assert
-     ((Robot_Bus_Driver_Rx_X_Feedback_R + Robot_Bus_Driver_Rx_X_Feedback_J)
-      <= Robot_Bus_Driver_Rx_X_Feedback_D);
+     (Robot_Bus_Driver_Rx_X_Feedback_R <= Robot_Bus_Driver_Rx_X_Feedback_D);
 
-   --  [robot_bus.driver_rx.y_feedback] what can delay it
+   --  [robot_bus.driver_rx.y_feedback] what can delay it: jobs of the same
+   --  or higher priority
    Robot_Bus_Driver_Rx_Y_Feedback_W : constant :=
+     Robot_Bus_Driver_Rx_Y_Feedback_R - Robot_Bus_Driver_Rx_Y_Feedback_J;
+   Robot_Bus_Driver_Rx_Y_Feedback_Needs : constant :=
      Robot_Bus_Driver_Rx_Y_Feedback_C
      + Robot_Bus_Driver_Rx_Y_Feedback_B
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Robot_Bus_Driver_Rx_Z_Feedback_J
-          + (Robot_Bus_Driver_Rx_Z_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W
+          + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Y_Feedback_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Y_Feedback_W > Robot_Bus_Driver_Rx_Y_Feedback_R,
+     (Robot_Bus_Driver_Rx_Y_Feedback_Needs
+      > Robot_Bus_Driver_Rx_Y_Feedback_W,
       "robot_bus.driver_rx.y_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Y_Feedback_R > Robot_Bus_Driver_Rx_Y_Feedback_T,
+     ((Robot_Bus_Driver_Rx_Y_Feedback_J + Robot_Bus_Driver_Rx_Y_Feedback_W)
+      > Robot_Bus_Driver_Rx_Y_Feedback_T,
       "robot_bus.driver_rx.y_feedback "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Y_Feedback_R + Robot_Bus_Driver_Rx_Y_Feedback_J)
-      > Robot_Bus_Driver_Rx_Y_Feedback_D,
+     (Robot_Bus_Driver_Rx_Y_Feedback_R > Robot_Bus_Driver_Rx_Y_Feedback_D,
       "robot_bus.driver_rx.y_feedback " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Rx_Y_Feedback_W <= Robot_Bus_Driver_Rx_Y_Feedback_R);
+     (Robot_Bus_Driver_Rx_Y_Feedback_Needs
+      <= Robot_Bus_Driver_Rx_Y_Feedback_W);
    pragma Assert
-     ((Robot_Bus_Driver_Rx_Y_Feedback_R + Robot_Bus_Driver_Rx_Y_Feedback_J)
-      <= Robot_Bus_Driver_Rx_Y_Feedback_D);
+     (Robot_Bus_Driver_Rx_Y_Feedback_R <= Robot_Bus_Driver_Rx_Y_Feedback_D);
 
-   --  [robot_bus.driver_rx.z_feedback] what can delay it
+   --  [robot_bus.driver_rx.z_feedback] what can delay it: jobs of the same
+   --  or higher priority
    Robot_Bus_Driver_Rx_Z_Feedback_W : constant :=
+     Robot_Bus_Driver_Rx_Z_Feedback_R - Robot_Bus_Driver_Rx_Z_Feedback_J;
+   Robot_Bus_Driver_Rx_Z_Feedback_Needs : constant :=
      Robot_Bus_Driver_Rx_Z_Feedback_C
      + Robot_Bus_Driver_Rx_Z_Feedback_B
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Rx_Robot_Command_J
-          + (Robot_Bus_Driver_Rx_Robot_Command_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Rx_Robot_Command_A)
          / Robot_Bus_Driver_Rx_Robot_Command_T)
         * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Tx_Robot_Status_J
-          + (Robot_Bus_Driver_Tx_Robot_Status_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Tx_Robot_Status_A)
          / Robot_Bus_Driver_Tx_Robot_Status_T)
         * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Tx_X_Set_Point_J
-          + (Robot_Bus_Driver_Tx_X_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Tx_X_Set_Point_A)
          / Robot_Bus_Driver_Tx_X_Set_Point_T)
         * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Tx_Y_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Y_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Tx_Y_Set_Point_A)
          / Robot_Bus_Driver_Tx_Y_Set_Point_T)
         * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Tx_Z_Set_Point_J
-          + (Robot_Bus_Driver_Tx_Z_Set_Point_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Tx_Z_Set_Point_A)
          / Robot_Bus_Driver_Tx_Z_Set_Point_T)
         * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Rx_X_Feedback_J
-          + (Robot_Bus_Driver_Rx_X_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Rx_X_Feedback_A)
          / Robot_Bus_Driver_Rx_X_Feedback_T)
         * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Robot_Bus_Driver_Rx_Y_Feedback_J
-          + (Robot_Bus_Driver_Rx_Y_Feedback_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W
+          + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Robot_Bus_Driver_Rx_Z_Feedback_R
-          + Controller_Probe_J
-          + (Controller_Probe_T - 1))
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Z_Feedback_W > Robot_Bus_Driver_Rx_Z_Feedback_R,
+     (Robot_Bus_Driver_Rx_Z_Feedback_Needs
+      > Robot_Bus_Driver_Rx_Z_Feedback_W,
       "robot_bus.driver_rx.z_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Robot_Bus_Driver_Rx_Z_Feedback_R > Robot_Bus_Driver_Rx_Z_Feedback_T,
+     ((Robot_Bus_Driver_Rx_Z_Feedback_J + Robot_Bus_Driver_Rx_Z_Feedback_W)
+      > Robot_Bus_Driver_Rx_Z_Feedback_T,
       "robot_bus.driver_rx.z_feedback "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Robot_Bus_Driver_Rx_Z_Feedback_R + Robot_Bus_Driver_Rx_Z_Feedback_J)
-      > Robot_Bus_Driver_Rx_Z_Feedback_D,
+     (Robot_Bus_Driver_Rx_Z_Feedback_R > Robot_Bus_Driver_Rx_Z_Feedback_D,
       "robot_bus.driver_rx.z_feedback " & "can miss its deadline");
    pragma Assert
-     (Robot_Bus_Driver_Rx_Z_Feedback_W <= Robot_Bus_Driver_Rx_Z_Feedback_R);
+     (Robot_Bus_Driver_Rx_Z_Feedback_Needs
+      <= Robot_Bus_Driver_Rx_Z_Feedback_W);
    pragma Assert
-     ((Robot_Bus_Driver_Rx_Z_Feedback_R + Robot_Bus_Driver_Rx_Z_Feedback_J)
-      <= Robot_Bus_Driver_Rx_Z_Feedback_D);
+     (Robot_Bus_Driver_Rx_Z_Feedback_R <= Robot_Bus_Driver_Rx_Z_Feedback_D);
 
-   --  [controller.probe] what can delay it
-   Controller_Probe_W : constant := Controller_Probe_C + Controller_Probe_B;
+   --  [controller.probe] what can delay it: jobs of the same or higher
+   --  priority
+   Controller_Probe_W : constant := Controller_Probe_R - Controller_Probe_J;
+   Controller_Probe_Needs : constant :=
+     Controller_Probe_C + Controller_Probe_B;
 
    pragma Compile_Time_Error
-     (Controller_Probe_W > Controller_Probe_R,
+     (Controller_Probe_Needs > Controller_Probe_W,
       "controller.probe " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Controller_Probe_R > Controller_Probe_T,
+     ((Controller_Probe_J + Controller_Probe_W) > Controller_Probe_T,
       "controller.probe " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Controller_Probe_R + Controller_Probe_J) > Controller_Probe_D,
+     (Controller_Probe_R > Controller_Probe_D,
       "controller.probe " & "can miss its deadline");
-   pragma Assert (Controller_Probe_W <= Controller_Probe_R);
+   pragma Assert (Controller_Probe_Needs <= Controller_Probe_W);
+   pragma Assert (Controller_Probe_R <= Controller_Probe_D);
+
+   --  [robot_bus.robot_command] what can delay it: frames that go before
+   --  it, and one of those that go behind it, the longest of which counts
+   --  once
+   Robot_Bus_Robot_Command_Busy : constant := 500_000;
+   Robot_Bus_Robot_Command_Busy_Needs : constant :=
+     Robot_Bus_X_Feedback_C
+     + (((Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_Busy_Needs > Robot_Bus_Robot_Command_Busy,
+      "robot_bus.robot_command "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_J)
+      > Robot_Bus_Robot_Command_T,
+      "robot_bus.robot_command " & "can come again before it is sent");
+
+   Robot_Bus_Robot_Command_W : constant := 230_000;
+   Robot_Bus_Robot_Command_Needs : constant := Robot_Bus_X_Feedback_C;
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_Needs > Robot_Bus_Robot_Command_W,
+      "robot_bus.robot_command "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Robot_Command_J
+       + Robot_Bus_Robot_Command_W
+       + Robot_Bus_Robot_Command_C)
+      > Robot_Bus_Robot_Command_R,
+      "robot_bus.robot_command "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_R > Robot_Bus_Robot_Command_D,
+      "robot_bus.robot_command " & "can miss its deadline");
+   pragma Assert (Robot_Bus_Robot_Command_R <= Robot_Bus_Robot_Command_D);
+
+   --  [robot_bus.x_set_point] what can delay it: frames that go before it
+   Robot_Bus_X_Set_Point_Busy : constant := 1_700_000;
+   Robot_Bus_X_Set_Point_Busy_Needs : constant :=
+     0
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_X_Set_Point_Busy + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Set_Point_Busy_Needs > Robot_Bus_X_Set_Point_Busy,
+      "robot_bus.x_set_point "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_J)
+      > Robot_Bus_X_Set_Point_T,
+      "robot_bus.x_set_point " & "can come again before it is sent");
+
+   Robot_Bus_X_Set_Point_W : constant := 1_530_000;
+   Robot_Bus_X_Set_Point_Needs : constant :=
+     0
+     + (((Robot_Bus_X_Set_Point_W
+          + Robot_Bus_Bit
+          + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_X_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Set_Point_Needs > Robot_Bus_X_Set_Point_W,
+      "robot_bus.x_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Set_Point_J
+       + Robot_Bus_X_Set_Point_W
+       + Robot_Bus_X_Set_Point_C)
+      > Robot_Bus_X_Set_Point_R,
+      "robot_bus.x_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Set_Point_R > Robot_Bus_X_Set_Point_D,
+      "robot_bus.x_set_point " & "can miss its deadline");
+   pragma Assert (Robot_Bus_X_Set_Point_R <= Robot_Bus_X_Set_Point_D);
+
+   --  [robot_bus.y_set_point] what can delay it: frames that go before it
+   Robot_Bus_Y_Set_Point_Busy : constant := 1_700_000;
+   Robot_Bus_Y_Set_Point_Busy_Needs : constant :=
+     0
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Set_Point_Busy_Needs > Robot_Bus_Y_Set_Point_Busy,
+      "robot_bus.y_set_point "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_J)
+      > Robot_Bus_Y_Set_Point_T,
+      "robot_bus.y_set_point " & "can come again before it is sent");
+
+   Robot_Bus_Y_Set_Point_W : constant := 1_530_000;
+   Robot_Bus_Y_Set_Point_Needs : constant :=
+     0
+     + (((Robot_Bus_Y_Set_Point_W
+          + Robot_Bus_Bit
+          + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_Y_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Set_Point_Needs > Robot_Bus_Y_Set_Point_W,
+      "robot_bus.y_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Set_Point_J
+       + Robot_Bus_Y_Set_Point_W
+       + Robot_Bus_Y_Set_Point_C)
+      > Robot_Bus_Y_Set_Point_R,
+      "robot_bus.y_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Set_Point_R > Robot_Bus_Y_Set_Point_D,
+      "robot_bus.y_set_point " & "can miss its deadline");
+   pragma Assert (Robot_Bus_Y_Set_Point_R <= Robot_Bus_Y_Set_Point_D);
+
+   --  [robot_bus.z_set_point] what can delay it: frames that go before it
+   Robot_Bus_Z_Set_Point_Busy : constant := 1_700_000;
+   Robot_Bus_Z_Set_Point_Busy_Needs : constant :=
+     0
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Set_Point_Busy_Needs > Robot_Bus_Z_Set_Point_Busy,
+      "robot_bus.z_set_point "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_J)
+      > Robot_Bus_Z_Set_Point_T,
+      "robot_bus.z_set_point " & "can come again before it is sent");
+
+   Robot_Bus_Z_Set_Point_W : constant := 1_530_000;
+   Robot_Bus_Z_Set_Point_Needs : constant :=
+     0
+     + (((Robot_Bus_Z_Set_Point_W
+          + Robot_Bus_Bit
+          + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_Z_Set_Point_W + Robot_Bus_Bit + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Set_Point_Needs > Robot_Bus_Z_Set_Point_W,
+      "robot_bus.z_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Set_Point_J
+       + Robot_Bus_Z_Set_Point_W
+       + Robot_Bus_Z_Set_Point_C)
+      > Robot_Bus_Z_Set_Point_R,
+      "robot_bus.z_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Set_Point_R > Robot_Bus_Z_Set_Point_D,
+      "robot_bus.z_set_point " & "can miss its deadline");
+   pragma Assert (Robot_Bus_Z_Set_Point_R <= Robot_Bus_Z_Set_Point_D);
+
+   --  [robot_bus.x_feedback] what can delay it: frames that go before it,
+   --  and one of those that go behind it, the longest of which counts once
+   Robot_Bus_X_Feedback_Busy : constant := 1_240_000;
+   Robot_Bus_X_Feedback_Busy_Needs : constant :=
+     Robot_Bus_Y_Feedback_C
+     + (((Robot_Bus_X_Feedback_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_X_Feedback_Busy
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
+          + (Robot_Bus_X_Set_Point_T - 1))
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_X_Feedback_Busy
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
+          + (Robot_Bus_Y_Set_Point_T - 1))
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_X_Feedback_Busy
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
+          + (Robot_Bus_Z_Set_Point_T - 1))
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Busy_Needs > Robot_Bus_X_Feedback_Busy,
+      "robot_bus.x_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_J)
+      > Robot_Bus_X_Feedback_T,
+      "robot_bus.x_feedback " & "can come again before it is sent");
+
+   Robot_Bus_X_Feedback_W : constant := 1_010_000;
+   Robot_Bus_X_Feedback_Needs : constant :=
+     Robot_Bus_Y_Feedback_C
+     + (((Robot_Bus_X_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_X_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
+          + (Robot_Bus_X_Set_Point_T - 1))
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_X_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
+          + (Robot_Bus_Y_Set_Point_T - 1))
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_X_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
+          + (Robot_Bus_Z_Set_Point_T - 1))
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Needs > Robot_Bus_X_Feedback_W,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Feedback_J
+       + Robot_Bus_X_Feedback_W
+       + Robot_Bus_X_Feedback_C)
+      > Robot_Bus_X_Feedback_R,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_R > Robot_Bus_X_Feedback_D,
+      "robot_bus.x_feedback " & "can miss its deadline");
+   pragma Assert (Robot_Bus_X_Feedback_R <= Robot_Bus_X_Feedback_D);
+
+   --  [robot_bus.y_feedback] what can delay it: frames that go before it,
+   --  and one of those that go behind it, the longest of which counts once
+   Robot_Bus_Y_Feedback_Busy : constant := 1_470_000;
+   Robot_Bus_Y_Feedback_Busy_Needs : constant :=
+     Robot_Bus_Z_Feedback_C
+     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Y_Feedback_Busy
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
+          + (Robot_Bus_X_Set_Point_T - 1))
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Y_Feedback_Busy
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
+          + (Robot_Bus_Y_Set_Point_T - 1))
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Y_Feedback_Busy
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
+          + (Robot_Bus_Z_Set_Point_T - 1))
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Busy_Needs > Robot_Bus_Y_Feedback_Busy,
+      "robot_bus.y_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_J)
+      > Robot_Bus_Y_Feedback_T,
+      "robot_bus.y_feedback " & "can come again before it is sent");
+
+   Robot_Bus_Y_Feedback_W : constant := 1_240_000;
+   Robot_Bus_Y_Feedback_Needs : constant :=
+     Robot_Bus_Z_Feedback_C
+     + (((Robot_Bus_Y_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Y_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
+          + (Robot_Bus_X_Set_Point_T - 1))
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Y_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
+          + (Robot_Bus_Y_Set_Point_T - 1))
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Y_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
+          + (Robot_Bus_Z_Set_Point_T - 1))
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Y_Feedback_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Needs > Robot_Bus_Y_Feedback_W,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Feedback_J
+       + Robot_Bus_Y_Feedback_W
+       + Robot_Bus_Y_Feedback_C)
+      > Robot_Bus_Y_Feedback_R,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_R > Robot_Bus_Y_Feedback_D,
+      "robot_bus.y_feedback " & "can miss its deadline");
+   pragma Assert (Robot_Bus_Y_Feedback_R <= Robot_Bus_Y_Feedback_D);
+
+   --  [robot_bus.z_feedback] what can delay it: frames that go before it,
+   --  and one of those that go behind it, the longest of which counts once
+   Robot_Bus_Z_Feedback_Busy : constant := 1_700_000;
+   Robot_Bus_Z_Feedback_Busy_Needs : constant :=
+     Robot_Bus_Robot_Status_C
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Z_Feedback_Busy
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
+          + (Robot_Bus_X_Set_Point_T - 1))
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Z_Feedback_Busy
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
+          + (Robot_Bus_Y_Set_Point_T - 1))
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Z_Feedback_Busy
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
+          + (Robot_Bus_Z_Set_Point_T - 1))
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Busy_Needs > Robot_Bus_Z_Feedback_Busy,
+      "robot_bus.z_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_J)
+      > Robot_Bus_Z_Feedback_T,
+      "robot_bus.z_feedback " & "can come again before it is sent");
+
+   Robot_Bus_Z_Feedback_W : constant := 1_470_000;
+   Robot_Bus_Z_Feedback_Needs : constant :=
+     Robot_Bus_Robot_Status_C
+     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Z_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_X_Set_Point_R - Robot_Bus_X_Set_Point_C)
+          + (Robot_Bus_X_Set_Point_T - 1))
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Z_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_Y_Set_Point_R - Robot_Bus_Y_Set_Point_C)
+          + (Robot_Bus_Y_Set_Point_T - 1))
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Z_Feedback_W
+          + Robot_Bus_Bit
+          + (Robot_Bus_Z_Set_Point_R - Robot_Bus_Z_Set_Point_C)
+          + (Robot_Bus_Z_Set_Point_T - 1))
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Z_Feedback_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Needs > Robot_Bus_Z_Feedback_W,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Feedback_J
+       + Robot_Bus_Z_Feedback_W
+       + Robot_Bus_Z_Feedback_C)
+      > Robot_Bus_Z_Feedback_R,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_R > Robot_Bus_Z_Feedback_D,
+      "robot_bus.z_feedback " & "can miss its deadline");
+   pragma Assert (Robot_Bus_Z_Feedback_R <= Robot_Bus_Z_Feedback_D);
+
+   --  [robot_bus.robot_status] what can delay it: frames that go before it
+   Robot_Bus_Robot_Status_Busy : constant := 1_700_000;
+   Robot_Bus_Robot_Status_Busy_Needs : constant :=
+     0
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C)
+     + (((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_A)
+         / Robot_Bus_Robot_Status_T)
+        * Robot_Bus_Robot_Status_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Status_Busy_Needs > Robot_Bus_Robot_Status_Busy,
+      "robot_bus.robot_status "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_J)
+      > Robot_Bus_Robot_Status_T,
+      "robot_bus.robot_status " & "can come again before it is sent");
+
+   Robot_Bus_Robot_Status_W : constant := 1_470_000;
+   Robot_Bus_Robot_Status_Needs : constant :=
+     0
+     + (((Robot_Bus_Robot_Status_W
+          + Robot_Bus_Bit
+          + Robot_Bus_Robot_Command_A)
+         / Robot_Bus_Robot_Command_T)
+        * Robot_Bus_Robot_Command_C)
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_X_Set_Point_A)
+         / Robot_Bus_X_Set_Point_T)
+        * Robot_Bus_X_Set_Point_C)
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Y_Set_Point_A)
+         / Robot_Bus_Y_Set_Point_T)
+        * Robot_Bus_Y_Set_Point_C)
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Z_Set_Point_A)
+         / Robot_Bus_Z_Set_Point_T)
+        * Robot_Bus_Z_Set_Point_C)
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_X_Feedback_A)
+         / Robot_Bus_X_Feedback_T)
+        * Robot_Bus_X_Feedback_C)
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Y_Feedback_A)
+         / Robot_Bus_Y_Feedback_T)
+        * Robot_Bus_Y_Feedback_C)
+     + (((Robot_Bus_Robot_Status_W + Robot_Bus_Bit + Robot_Bus_Z_Feedback_A)
+         / Robot_Bus_Z_Feedback_T)
+        * Robot_Bus_Z_Feedback_C);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Status_Needs > Robot_Bus_Robot_Status_W,
+      "robot_bus.robot_status "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Robot_Status_J
+       + Robot_Bus_Robot_Status_W
+       + Robot_Bus_Robot_Status_C)
+      > Robot_Bus_Robot_Status_R,
+      "robot_bus.robot_status "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Status_R > Robot_Bus_Robot_Status_D,
+      "robot_bus.robot_status " & "can miss its deadline");
+   pragma Assert (Robot_Bus_Robot_Status_R <= Robot_Bus_Robot_Status_D);
+
+   --  [robot_bus.robot_command] its turn in the queue of reception, and
+   --  when it is handed over
+   Robot_Bus_Robot_Command_Turn_J : constant :=
+     Robot_Bus_Driver_Rx_Robot_Command_R;
+   Robot_Bus_Robot_Command_Turn_Busy : constant := 7_000_000;
+   Robot_Bus_Robot_Command_Turn_Busy_Needs : constant :=
+     (((Robot_Bus_Robot_Command_Turn_Busy
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_Robot_Command_Turn_Busy
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Robot_Command_Turn_Busy
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Robot_Command_Turn_Busy
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_Turn_Busy_Needs
+      > Robot_Bus_Robot_Command_Turn_Busy,
+      "robot_bus.robot_command "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Robot_Command_Turn_Busy + Robot_Bus_Robot_Command_Turn_J)
+      > Robot_Bus_Robot_Command_T,
+      "robot_bus.robot_command " & "can come again before it is sent");
+
+   Robot_Bus_Robot_Command_Turn_W : constant := 6_000_000;
+   Robot_Bus_Robot_Command_Turn_Needs : constant :=
+     (((Robot_Bus_Robot_Command_Turn_W
+        + 1
+        + Robot_Bus_Driver_Rx_X_Feedback_R
+        + (Robot_Bus_X_Feedback_T - 1))
+       / Robot_Bus_X_Feedback_T)
+      * Reception_T)
+     + (((Robot_Bus_Robot_Command_Turn_W
+          + 1
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Robot_Command_Turn_W
+          + 1
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_Turn_Needs > Robot_Bus_Robot_Command_Turn_W,
+      "robot_bus.robot_command "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Robot_Command_Turn : constant := 6_935_000;
+
+   pragma Compile_Time_Error
+     ((Robot_Bus_Robot_Command_Turn_J + Robot_Bus_Robot_Command_Turn_W)
+      > Robot_Bus_Robot_Command_Turn,
+      "robot_bus.robot_command "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Robot_Command_Handed : constant :=
+     Robot_Bus_Robot_Command_Turn + (2 * Reception_R);
+
+   --  [robot_bus.x_feedback] its turn in the queue of reception, and when
+   --  it is handed over
+   Robot_Bus_X_Feedback_Turn_J : constant :=
+     Robot_Bus_Driver_Rx_X_Feedback_R;
+   Robot_Bus_X_Feedback_Turn_Busy : constant := 7_000_000;
+   Robot_Bus_X_Feedback_Turn_Busy_Needs : constant :=
+     (((Robot_Bus_X_Feedback_Turn_Busy
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn_Busy_Needs > Robot_Bus_X_Feedback_Turn_Busy,
+      "robot_bus.x_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Feedback_Turn_Busy + Robot_Bus_X_Feedback_Turn_J)
+      > (2 * Robot_Bus_X_Feedback_T),
+      "robot_bus.x_feedback " & "can come again before it is sent");
+
+   Robot_Bus_X_Feedback_Turn_W_1 : constant := 5_000_000;
+   Robot_Bus_X_Feedback_Turn_Needs_1 : constant :=
+     (((Robot_Bus_X_Feedback_Turn_W_1
+        + 1
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_W_1
+          + 1
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_W_1
+          + 1
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn_Needs_1 > Robot_Bus_X_Feedback_Turn_W_1,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_X_Feedback_Turn_W_2 : constant := 6_000_000;
+   Robot_Bus_X_Feedback_Turn_Needs_2 : constant :=
+     Reception_T
+     + (((Robot_Bus_X_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Robot_Command_R
+          + (Robot_Bus_Robot_Command_T - 1))
+         / Robot_Bus_Robot_Command_T)
+        * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_X_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn_Needs_2 > Robot_Bus_X_Feedback_Turn_W_2,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_X_Feedback_Turn : constant := 6_675_000;
+
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_1)
+      > Robot_Bus_X_Feedback_Turn,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_X_Feedback_Turn_J
+       + Robot_Bus_X_Feedback_Turn_W_2
+       + ((-1) * Robot_Bus_X_Feedback_T))
+      > Robot_Bus_X_Feedback_Turn,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_X_Feedback_Handed : constant :=
+     Robot_Bus_X_Feedback_Turn + (2 * Reception_R);
+
+   --  [robot_bus.y_feedback] its turn in the queue of reception, and when
+   --  it is handed over
+   Robot_Bus_Y_Feedback_Turn_J : constant :=
+     Robot_Bus_Driver_Rx_Y_Feedback_R;
+   Robot_Bus_Y_Feedback_Turn_Busy : constant := 7_000_000;
+   Robot_Bus_Y_Feedback_Turn_Busy_Needs : constant :=
+     (((Robot_Bus_Y_Feedback_Turn_Busy
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn_Busy_Needs > Robot_Bus_Y_Feedback_Turn_Busy,
+      "robot_bus.y_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Feedback_Turn_Busy + Robot_Bus_Y_Feedback_Turn_J)
+      > (2 * Robot_Bus_Y_Feedback_T),
+      "robot_bus.y_feedback " & "can come again before it is sent");
+
+   Robot_Bus_Y_Feedback_Turn_W_1 : constant := 5_000_000;
+   Robot_Bus_Y_Feedback_Turn_Needs_1 : constant :=
+     (((Robot_Bus_Y_Feedback_Turn_W_1
+        + 1
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_W_1
+          + 1
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_W_1
+          + 1
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn_Needs_1 > Robot_Bus_Y_Feedback_Turn_W_1,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Y_Feedback_Turn_W_2 : constant := 6_000_000;
+   Robot_Bus_Y_Feedback_Turn_Needs_2 : constant :=
+     Reception_T
+     + (((Robot_Bus_Y_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Robot_Command_R
+          + (Robot_Bus_Robot_Command_T - 1))
+         / Robot_Bus_Robot_Command_T)
+        * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Y_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn_Needs_2 > Robot_Bus_Y_Feedback_Turn_W_2,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Y_Feedback_Turn : constant := 6_905_000;
+
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_1)
+      > Robot_Bus_Y_Feedback_Turn,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Y_Feedback_Turn_J
+       + Robot_Bus_Y_Feedback_Turn_W_2
+       + ((-1) * Robot_Bus_Y_Feedback_T))
+      > Robot_Bus_Y_Feedback_Turn,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Y_Feedback_Handed : constant :=
+     Robot_Bus_Y_Feedback_Turn + (2 * Reception_R);
+
+   --  [robot_bus.z_feedback] its turn in the queue of reception, and when
+   --  it is handed over
+   Robot_Bus_Z_Feedback_Turn_J : constant :=
+     Robot_Bus_Driver_Rx_Z_Feedback_R;
+   Robot_Bus_Z_Feedback_Turn_Busy : constant := 7_000_000;
+   Robot_Bus_Z_Feedback_Turn_Busy_Needs : constant :=
+     (((Robot_Bus_Z_Feedback_Turn_Busy
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_Busy
+          + Robot_Bus_Driver_Rx_Z_Feedback_R
+          + (Robot_Bus_Z_Feedback_T - 1))
+         / Robot_Bus_Z_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn_Busy_Needs > Robot_Bus_Z_Feedback_Turn_Busy,
+      "robot_bus.z_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Feedback_Turn_Busy + Robot_Bus_Z_Feedback_Turn_J)
+      > (2 * Robot_Bus_Z_Feedback_T),
+      "robot_bus.z_feedback " & "can come again before it is sent");
+
+   Robot_Bus_Z_Feedback_Turn_W_1 : constant := 3_000_000;
+   Robot_Bus_Z_Feedback_Turn_Needs_1 : constant :=
+     (((Robot_Bus_Z_Feedback_Turn_W_1
+        + 1
+        + Robot_Bus_Driver_Rx_Robot_Command_R
+        + (Robot_Bus_Robot_Command_T - 1))
+       / Robot_Bus_Robot_Command_T)
+      * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_W_1
+          + 1
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_W_1
+          + 1
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn_Needs_1 > Robot_Bus_Z_Feedback_Turn_W_1,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Z_Feedback_Turn_W_2 : constant := 6_000_000;
+   Robot_Bus_Z_Feedback_Turn_Needs_2 : constant :=
+     Reception_T
+     + (((Robot_Bus_Z_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Robot_Command_R
+          + (Robot_Bus_Robot_Command_T - 1))
+         / Robot_Bus_Robot_Command_T)
+        * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_X_Feedback_R
+          + (Robot_Bus_X_Feedback_T - 1))
+         / Robot_Bus_X_Feedback_T)
+        * Reception_T)
+     + (((Robot_Bus_Z_Feedback_Turn_W_2
+          + 1
+          + Robot_Bus_Driver_Rx_Y_Feedback_R
+          + (Robot_Bus_Y_Feedback_T - 1))
+         / Robot_Bus_Y_Feedback_T)
+        * Reception_T);
+
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn_Needs_2 > Robot_Bus_Z_Feedback_Turn_W_2,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Z_Feedback_Turn : constant := 5_135_000;
+
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_1)
+      > Robot_Bus_Z_Feedback_Turn,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Z_Feedback_Turn_J
+       + Robot_Bus_Z_Feedback_Turn_W_2
+       + ((-1) * Robot_Bus_Z_Feedback_T))
+      > Robot_Bus_Z_Feedback_Turn,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+
+   Robot_Bus_Z_Feedback_Handed : constant :=
+     Robot_Bus_Z_Feedback_Turn + (2 * Reception_R);
+
+   --  [x_loop] from end to end. joint_x.ports samples.
+   Chain_X_Loop_Reaction : constant := 21_715_000;
+   Chain_X_Loop_Reaction_Limit : constant := 25_000_000;
+   Chain_X_Loop_Reaction_Needs : constant :=
+     Robot_Bus_X_Feedback_Handed + Control_T + Robot_Bus_X_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_X_Loop_Reaction_Needs > Chain_X_Loop_Reaction,
+      "chain x_loop " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_X_Loop_Reaction > Chain_X_Loop_Reaction_Limit,
+      "chain x_loop " & "can exceed the limit of its reaction");
    pragma Assert
-     ((Controller_Probe_R + Controller_Probe_J) <= Controller_Probe_D);
+     (Chain_X_Loop_Reaction_Needs <= Chain_X_Loop_Reaction_Limit);
+
+   Chain_X_Loop_Age : constant := 16_715_000;
+   Chain_X_Loop_Age_Limit : constant := 20_000_000;
+   Chain_X_Loop_Age_Needs : constant :=
+     Robot_Bus_X_Feedback_Handed
+     + Robot_Bus_X_Feedback_T
+     + Robot_Bus_X_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_X_Loop_Age_Needs > Chain_X_Loop_Age,
+      "chain x_loop " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_X_Loop_Age > Chain_X_Loop_Age_Limit,
+      "chain x_loop " & "can exceed the limit of its age");
+   pragma Assert (Chain_X_Loop_Age_Needs <= Chain_X_Loop_Age_Limit);
+
+   --  [y_loop] from end to end. joint_y.ports samples.
+   Chain_Y_Loop_Reaction : constant := 21_945_000;
+   Chain_Y_Loop_Reaction_Limit : constant := 25_000_000;
+   Chain_Y_Loop_Reaction_Needs : constant :=
+     Robot_Bus_Y_Feedback_Handed + Control_T + Robot_Bus_Y_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_Y_Loop_Reaction_Needs > Chain_Y_Loop_Reaction,
+      "chain y_loop " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_Y_Loop_Reaction > Chain_Y_Loop_Reaction_Limit,
+      "chain y_loop " & "can exceed the limit of its reaction");
+   pragma Assert
+     (Chain_Y_Loop_Reaction_Needs <= Chain_Y_Loop_Reaction_Limit);
+
+   Chain_Y_Loop_Age : constant := 16_945_000;
+   Chain_Y_Loop_Age_Limit : constant := 20_000_000;
+   Chain_Y_Loop_Age_Needs : constant :=
+     Robot_Bus_Y_Feedback_Handed
+     + Robot_Bus_Y_Feedback_T
+     + Robot_Bus_Y_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_Y_Loop_Age_Needs > Chain_Y_Loop_Age,
+      "chain y_loop " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Y_Loop_Age > Chain_Y_Loop_Age_Limit,
+      "chain y_loop " & "can exceed the limit of its age");
+   pragma Assert (Chain_Y_Loop_Age_Needs <= Chain_Y_Loop_Age_Limit);
+
+   --  [z_loop] from end to end. joint_z.ports samples.
+   Chain_Z_Loop_Reaction : constant := 20_175_000;
+   Chain_Z_Loop_Reaction_Limit : constant := 25_000_000;
+   Chain_Z_Loop_Reaction_Needs : constant :=
+     Robot_Bus_Z_Feedback_Handed + Control_T + Robot_Bus_Z_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_Z_Loop_Reaction_Needs > Chain_Z_Loop_Reaction,
+      "chain z_loop " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_Z_Loop_Reaction > Chain_Z_Loop_Reaction_Limit,
+      "chain z_loop " & "can exceed the limit of its reaction");
+   pragma Assert
+     (Chain_Z_Loop_Reaction_Needs <= Chain_Z_Loop_Reaction_Limit);
+
+   Chain_Z_Loop_Age : constant := 15_175_000;
+   Chain_Z_Loop_Age_Limit : constant := 20_000_000;
+   Chain_Z_Loop_Age_Needs : constant :=
+     Robot_Bus_Z_Feedback_Handed
+     + Robot_Bus_Z_Feedback_T
+     + Robot_Bus_Z_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_Z_Loop_Age_Needs > Chain_Z_Loop_Age,
+      "chain z_loop " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Z_Loop_Age > Chain_Z_Loop_Age_Limit,
+      "chain z_loop " & "can exceed the limit of its age");
+   pragma Assert (Chain_Z_Loop_Age_Needs <= Chain_Z_Loop_Age_Limit);
+
+   --  [order] from end to end. coordinator.ports takes one of a queue:
+   --  Wait_4. joint_x.ports takes one of a queue: Wait_6. joint_x.Motion
+   --  samples. joint_x.position_control samples.
+   Chain_Order_Wait_4_Burst : constant :=
+     (Robot_Bus_Robot_Command_Handed / Robot_Bus_Robot_Command_T) + 1;
+   Chain_Order_Wait_4 : constant := 20_000_000;
+
+   pragma Compile_Time_Error
+     (Supervision_T > Robot_Bus_Robot_Command_T,
+      "chain order " & "has a queue that fills");
+   pragma Compile_Time_Error
+     ((Chain_Order_Wait_4_Burst * Supervision_T) > Chain_Order_Wait_4,
+      "chain order " & "can wait longer in a queue than claimed");
+   pragma Compile_Time_Error
+     ((((Chain_Order_Wait_4_Burst + 1) * Supervision_T)
+       + Robot_Bus_Robot_Command_Handed
+       + ((-1) * Chain_Order_Wait_4_Burst * Robot_Bus_Robot_Command_T))
+      > Chain_Order_Wait_4,
+      "chain order " & "can wait longer in a queue than claimed");
+
+   Chain_Order_Wait_6_Burst : constant :=
+     (Coordinator_Mission_Done / Supervision_T) + 1;
+   Chain_Order_Wait_6 : constant := 10_000_000;
+
+   pragma Compile_Time_Error
+     (Control_T > Supervision_T,
+      "chain order " & "has a queue that fills");
+   pragma Compile_Time_Error
+     ((Chain_Order_Wait_6_Burst * Control_T) > Chain_Order_Wait_6,
+      "chain order " & "can wait longer in a queue than claimed");
+   pragma Compile_Time_Error
+     ((((Chain_Order_Wait_6_Burst + 1) * Control_T)
+       + Coordinator_Mission_Done
+       + ((-1) * Chain_Order_Wait_6_Burst * Supervision_T))
+      > Chain_Order_Wait_6,
+      "chain order " & "can wait longer in a queue than claimed");
+
+   Chain_Order_Reaction : constant := 77_680_000;
+   Chain_Order_Reaction_Limit : constant := 100_000_000;
+   Chain_Order_Reaction_Needs : constant :=
+     Robot_Bus_Robot_Command_Handed
+     + Chain_Order_Wait_4
+     + Coordinator_Mission_Done
+     + Chain_Order_Wait_6
+     + Joint_X_Ports_Done
+     + Supervision_T
+     + Joint_X_Motion_Done
+     + Control_T
+     + Robot_Bus_X_Set_Point_R;
+
+   pragma Compile_Time_Error
+     (Chain_Order_Reaction_Needs > Chain_Order_Reaction,
+      "chain order " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_Order_Reaction > Chain_Order_Reaction_Limit,
+      "chain order " & "can exceed the limit of its reaction");
+   pragma Assert (Chain_Order_Reaction_Needs <= Chain_Order_Reaction_Limit);
+
+   --  [status] from end to end. joint_x.ports samples. joint_x.Motion
+   --  samples. coordinator.ports samples.
+   Chain_Status_Reaction : constant := 66_815_000;
+   Chain_Status_Reaction_Limit : constant := 80_000_000;
+   Chain_Status_Reaction_Needs : constant :=
+     Robot_Bus_X_Feedback_Handed
+     + Control_T
+     + Joint_X_Ports_Done
+     + Supervision_T
+     + Joint_X_Supervise_Done
+     + Supervision_T
+     + Robot_Bus_Robot_Status_R;
+
+   pragma Compile_Time_Error
+     (Chain_Status_Reaction_Needs > Chain_Status_Reaction,
+      "chain status " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_Status_Reaction > Chain_Status_Reaction_Limit,
+      "chain status " & "can exceed the limit of its reaction");
+   pragma Assert
+     (Chain_Status_Reaction_Needs <= Chain_Status_Reaction_Limit);
+
+   Chain_Status_Age : constant := 51_815_000;
+   Chain_Status_Age_Limit : constant := 60_000_000;
+   Chain_Status_Age_Needs : constant :=
+     Robot_Bus_X_Feedback_Handed
+     + Robot_Bus_X_Feedback_T
+     + Joint_X_Ports_Done
+     + Control_T
+     + Joint_X_Supervise_Done
+     + Supervision_T
+     + Robot_Bus_Robot_Status_R;
+
+   pragma Compile_Time_Error
+     (Chain_Status_Age_Needs > Chain_Status_Age,
+      "chain status " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Status_Age > Chain_Status_Age_Limit,
+      "chain status " & "can exceed the limit of its age");
+   pragma Assert (Chain_Status_Age_Needs <= Chain_Status_Age_Limit);
 end Cartesian_Robot.Timing_Certificate;

@@ -10,387 +10,638 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   --  Times in nanoseconds. For each task: T period or least separation, D
-   --  deadline, C budget with two context switches, B blocking, J release
-   --  jitter, R the claimed response time, W the demand that arises within
-   --  R.
+   --  Times in nanoseconds. T period or least separation, D deadline, J
+   --  longest time from the event to the release, C longest execution (with
+   --  two context switches) or transmission, B blocking, R the claimed
+   --  response from the event, W the time claimed from the start of a busy
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
+   --  The claimed responses: each is some other's lateness, or its own
+   --  bound.
+   Reception_R : constant := 245_000;
+   Control_R : constant := 665_000;
+   Street_Driver_Rx_Order_R : constant := 1_245_000;
+   Street_Driver_Rx_Button_R : constant := 1_765_000;
+   Street_Driver_Tx_Car_Lamp_R : constant := 870_000;
+   Street_Driver_Tx_Walk_Lamp_R : constant := 870_000;
+   Street_Driver_Tx_Sign_R : constant := 870_000;
+   Street_Order_R : constant := 1_040_000;
+   Street_Button_R : constant := 1_560_000;
+   Street_Car_Lamp_R : constant := 3_470_000;
+   Street_Walk_Lamp_R : constant := 3_470_000;
+   Street_Sign_R : constant := 3_470_000;
+
+   --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception]
+   --  [reception] priority 2, released by arrivals, no closer than T. B:
+   --  control may be inside school.button.mailbox.
    Street_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
+   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
      Street_Receive_Budget + 2 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
-   Reception_R : constant := 245_000;
 
-   --  [control]
+   --  [control] priority 1, released every T. B: main may be inside health.
    School_Ports_Budget : constant := 100_000;
    School_Lights_Budget : constant := 200_000;
    School_Show_Budget : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
    Control_J : constant := 0;
+   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
      School_Ports_Budget
      + School_Lights_Budget
      + School_Show_Budget
      + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
-   Control_R : constant := 665_000;
 
-   --  [street.driver_rx.order]
-   Street_Driver_Rx_Order_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [street.driver_rx.order] priority 3, the driver's work, released by
+   --  street.order, which is J late. B: control may be inside
+   --  street.transmit.
+   Street_Driver_Rx_Order_Budget : constant := 20_000;
    Street_Driver_Rx_Order_T : constant := 1_000_000_000;
    Street_Driver_Rx_Order_D : constant := 1_000_000_000;
-   Street_Driver_Rx_Order_J : constant := 0;
+   Street_Driver_Rx_Order_J : constant := Street_Order_R;
+   Street_Driver_Rx_Order_A : constant :=
+     Street_Driver_Rx_Order_J + (Street_Driver_Rx_Order_T - 1);
    Street_Driver_Rx_Order_C : constant :=
      Street_Driver_Rx_Order_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Order_B : constant := Board_Critical_Section;
-   Street_Driver_Rx_Order_R : constant := 205_000;
 
-   --  [street.driver_rx.button]
-   Street_Driver_Rx_Button_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [street.driver_rx.button] priority 3, the driver's work, released by
+   --  street.button, which is J late. B: control may be inside
+   --  street.transmit.
+   Street_Driver_Rx_Button_Budget : constant := 20_000;
    Street_Driver_Rx_Button_T : constant := 50_000_000;
    Street_Driver_Rx_Button_D : constant := 50_000_000;
-   Street_Driver_Rx_Button_J : constant := 0;
+   Street_Driver_Rx_Button_J : constant := Street_Button_R;
+   Street_Driver_Rx_Button_A : constant :=
+     Street_Driver_Rx_Button_J + (Street_Driver_Rx_Button_T - 1);
    Street_Driver_Rx_Button_C : constant :=
      Street_Driver_Rx_Button_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Button_B : constant := Board_Critical_Section;
-   Street_Driver_Rx_Button_R : constant := 205_000;
 
-   --  [street.driver_tx.car_lamp]
-   Street_Driver_Tx_Car_Lamp_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [street.driver_tx.car_lamp] priority 3, the driver's work, released
+   --  by control, which is J late. B: control may be inside
+   --  street.transmit.
+   Street_Driver_Tx_Car_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Car_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_D : constant := 100_000_000;
-   Street_Driver_Tx_Car_Lamp_J : constant := 0;
+   Street_Driver_Tx_Car_Lamp_J : constant := Control_R;
+   Street_Driver_Tx_Car_Lamp_A : constant :=
+     Street_Driver_Tx_Car_Lamp_J + (Street_Driver_Tx_Car_Lamp_T - 1);
    Street_Driver_Tx_Car_Lamp_C : constant :=
      Street_Driver_Tx_Car_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Car_Lamp_B : constant := Board_Critical_Section;
-   Street_Driver_Tx_Car_Lamp_R : constant := 205_000;
 
-   --  [street.driver_tx.walk_lamp]
-   Street_Driver_Tx_Walk_Lamp_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [street.driver_tx.walk_lamp] priority 3, the driver's work, released
+   --  by control, which is J late. B: control may be inside
+   --  street.transmit.
+   Street_Driver_Tx_Walk_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Walk_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_D : constant := 100_000_000;
-   Street_Driver_Tx_Walk_Lamp_J : constant := 0;
+   Street_Driver_Tx_Walk_Lamp_J : constant := Control_R;
+   Street_Driver_Tx_Walk_Lamp_A : constant :=
+     Street_Driver_Tx_Walk_Lamp_J + (Street_Driver_Tx_Walk_Lamp_T - 1);
    Street_Driver_Tx_Walk_Lamp_C : constant :=
      Street_Driver_Tx_Walk_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Walk_Lamp_B : constant := Board_Critical_Section;
-   Street_Driver_Tx_Walk_Lamp_R : constant := 205_000;
 
-   --  [street.driver_tx.sign]
-   Street_Driver_Tx_Sign_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [street.driver_tx.sign] priority 3, the driver's work, released by
+   --  control, which is J late. B: control may be inside street.transmit.
+   Street_Driver_Tx_Sign_Budget : constant := 20_000;
    Street_Driver_Tx_Sign_T : constant := 100_000_000;
    Street_Driver_Tx_Sign_D : constant := 100_000_000;
-   Street_Driver_Tx_Sign_J : constant := 0;
+   Street_Driver_Tx_Sign_J : constant := Control_R;
+   Street_Driver_Tx_Sign_A : constant :=
+     Street_Driver_Tx_Sign_J + (Street_Driver_Tx_Sign_T - 1);
    Street_Driver_Tx_Sign_C : constant :=
      Street_Driver_Tx_Sign_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Sign_B : constant := Board_Critical_Section;
-   Street_Driver_Tx_Sign_R : constant := 205_000;
 
-   --  [reception] what can delay it
-   Reception_W : constant :=
+   --  [street] bits in a second, and one bit in nanoseconds, rounded up. Of
+   --  a message, Stuffed: bits that stuffing can lengthen by a quarter;
+   --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
+   --  the next frame.
+   Street_Bit_Rate : constant := 125_000;
+   Street_Bit : constant :=
+     (1_000_000_000 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+
+   --  [street.order] 11-bit identifier 0x100, 1 bytes from somebody outside
+   Street_Order_T : constant := 1_000_000_000;
+   Street_Order_D : constant := 1_000_000_000;
+   Street_Order_Stuffed : constant := 34 + 8 * 1;
+   Street_Order_Bits : constant :=
+     Street_Order_Stuffed + 13 + ((Street_Order_Stuffed - 1) / 4);
+   Street_Order_C : constant :=
+     ((Street_Order_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+   Street_Order_J : constant := 0;
+   Street_Order_A : constant := Street_Order_J + (Street_Order_T - 1);
+
+   --  [street.button] 11-bit identifier 0x110, 1 bytes from somebody
+   --  outside
+   Street_Button_T : constant := 50_000_000;
+   Street_Button_D : constant := 50_000_000;
+   Street_Button_Stuffed : constant := 34 + 8 * 1;
+   Street_Button_Bits : constant :=
+     Street_Button_Stuffed + 13 + ((Street_Button_Stuffed - 1) / 4);
+   Street_Button_C : constant :=
+     ((Street_Button_Bits * 10**9) + (Street_Bit_Rate - 1))
+     / Street_Bit_Rate;
+   Street_Button_J : constant := 0;
+   Street_Button_A : constant := Street_Button_J + (Street_Button_T - 1);
+
+   --  [street.car_lamp] 11-bit identifier 0x120, 1 bytes from
+   --  school.car_lamp
+   Street_Car_Lamp_T : constant := 100_000_000;
+   Street_Car_Lamp_D : constant := 100_000_000;
+   Street_Car_Lamp_Stuffed : constant := 34 + 8 * 1;
+   Street_Car_Lamp_Bits : constant :=
+     Street_Car_Lamp_Stuffed + 13 + ((Street_Car_Lamp_Stuffed - 1) / 4);
+   Street_Car_Lamp_C : constant :=
+     ((Street_Car_Lamp_Bits * 10**9) + (Street_Bit_Rate - 1))
+     / Street_Bit_Rate;
+   Street_Car_Lamp_J : constant := Street_Driver_Tx_Car_Lamp_R;
+   Street_Car_Lamp_A : constant :=
+     Street_Car_Lamp_J + (Street_Car_Lamp_T - 1);
+
+   --  [street.walk_lamp] 11-bit identifier 0x121, 1 bytes from
+   --  school.walk_lamp
+   Street_Walk_Lamp_T : constant := 100_000_000;
+   Street_Walk_Lamp_D : constant := 100_000_000;
+   Street_Walk_Lamp_Stuffed : constant := 34 + 8 * 1;
+   Street_Walk_Lamp_Bits : constant :=
+     Street_Walk_Lamp_Stuffed + 13 + ((Street_Walk_Lamp_Stuffed - 1) / 4);
+   Street_Walk_Lamp_C : constant :=
+     ((Street_Walk_Lamp_Bits * 10**9) + (Street_Bit_Rate - 1))
+     / Street_Bit_Rate;
+   Street_Walk_Lamp_J : constant := Street_Driver_Tx_Walk_Lamp_R;
+   Street_Walk_Lamp_A : constant :=
+     Street_Walk_Lamp_J + (Street_Walk_Lamp_T - 1);
+
+   --  [street.sign] 11-bit identifier 0x122, 1 bytes from school.sign
+   Street_Sign_T : constant := 100_000_000;
+   Street_Sign_D : constant := 100_000_000;
+   Street_Sign_Stuffed : constant := 34 + 8 * 1;
+   Street_Sign_Bits : constant :=
+     Street_Sign_Stuffed + 13 + ((Street_Sign_Stuffed - 1) / 4);
+   Street_Sign_C : constant :=
+     ((Street_Sign_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
+   Street_Sign_J : constant := Street_Driver_Tx_Sign_R;
+   Street_Sign_A : constant := Street_Sign_J + (Street_Sign_T - 1);
+
+   --  [reception] what can delay it: jobs of the same or higher priority
+   Reception_W : constant := Reception_R - Reception_J;
+   Reception_Needs : constant :=
      Reception_C
      + Reception_B
-     + (((Reception_R
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
-         / Street_Driver_Rx_Order_T)
+     + (((Reception_W + Street_Driver_Rx_Order_A) / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Reception_R
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Reception_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Reception_R
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Reception_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Reception_R
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Reception_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Reception_R
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
-         / Street_Driver_Tx_Sign_T)
+     + (((Reception_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
-     (Reception_W > Reception_R,
+     (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Reception_R > Reception_T,
+     ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Reception_R + Reception_J) > Reception_D,
+     (Reception_R > Reception_D,
       "reception " & "can miss its deadline");
-   pragma Assert (Reception_W <= Reception_R);
-   pragma Assert ((Reception_R + Reception_J) <= Reception_D);
+   pragma Assert (Reception_Needs <= Reception_W);
+   pragma Assert (Reception_R <= Reception_D);
 
-   --  [control] what can delay it
-   Control_W : constant :=
+   --  [control] what can delay it: jobs of the same or higher priority
+   Control_W : constant := Control_R - Control_J;
+   Control_Needs : constant :=
      Control_C
      + Control_B
-     + (((Control_R + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Control_R
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
-         / Street_Driver_Rx_Order_T)
+     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Control_W + Street_Driver_Rx_Order_A) / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Control_R
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
-         / Street_Driver_Rx_Button_T)
+     + (((Control_W + Street_Driver_Rx_Button_A) / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Control_R
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Control_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Control_R
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Control_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Control_R
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
-         / Street_Driver_Tx_Sign_T)
+     + (((Control_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
-     (Control_W > Control_R,
+     (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Control_R > Control_T,
+     ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Control_R + Control_J) > Control_D,
+     (Control_R > Control_D,
       "control " & "can miss its deadline");
-   pragma Assert (Control_W <= Control_R);
-   pragma Assert ((Control_R + Control_J) <= Control_D);
+   pragma Assert (Control_Needs <= Control_W);
+   pragma Assert (Control_R <= Control_D);
 
-   --  [street.driver_rx.order] what can delay it
+   --  [street.driver_rx.order] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Rx_Order_W : constant :=
+     Street_Driver_Rx_Order_R - Street_Driver_Rx_Order_J;
+   Street_Driver_Rx_Order_Needs : constant :=
      Street_Driver_Rx_Order_C
      + Street_Driver_Rx_Order_B
-     + (((Street_Driver_Rx_Order_R
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Rx_Order_R
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Rx_Order_R
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Rx_Order_R
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Rx_Order_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_W > Street_Driver_Rx_Order_R,
+     (Street_Driver_Rx_Order_Needs > Street_Driver_Rx_Order_W,
       "street.driver_rx.order "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Street_Driver_Rx_Order_R > Street_Driver_Rx_Order_T,
+     ((Street_Driver_Rx_Order_J + Street_Driver_Rx_Order_W)
+      > Street_Driver_Rx_Order_T,
       "street.driver_rx.order "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Street_Driver_Rx_Order_R + Street_Driver_Rx_Order_J)
-      > Street_Driver_Rx_Order_D,
+     (Street_Driver_Rx_Order_R > Street_Driver_Rx_Order_D,
       "street.driver_rx.order " & "can miss its deadline");
-   pragma Assert (Street_Driver_Rx_Order_W <= Street_Driver_Rx_Order_R);
-   pragma Assert
-     ((Street_Driver_Rx_Order_R + Street_Driver_Rx_Order_J)
-      <= Street_Driver_Rx_Order_D);
+   pragma Assert (Street_Driver_Rx_Order_Needs <= Street_Driver_Rx_Order_W);
+   pragma Assert (Street_Driver_Rx_Order_R <= Street_Driver_Rx_Order_D);
 
-   --  [street.driver_rx.button] what can delay it
+   --  [street.driver_rx.button] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Rx_Button_W : constant :=
+     Street_Driver_Rx_Button_R - Street_Driver_Rx_Button_J;
+   Street_Driver_Rx_Button_Needs : constant :=
      Street_Driver_Rx_Button_C
      + Street_Driver_Rx_Button_B
-     + (((Street_Driver_Rx_Button_R
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Rx_Button_R
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Rx_Button_R
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Rx_Button_R
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Rx_Button_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
-     (Street_Driver_Rx_Button_W > Street_Driver_Rx_Button_R,
+     (Street_Driver_Rx_Button_Needs > Street_Driver_Rx_Button_W,
       "street.driver_rx.button "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Street_Driver_Rx_Button_R > Street_Driver_Rx_Button_T,
+     ((Street_Driver_Rx_Button_J + Street_Driver_Rx_Button_W)
+      > Street_Driver_Rx_Button_T,
       "street.driver_rx.button "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Street_Driver_Rx_Button_R + Street_Driver_Rx_Button_J)
-      > Street_Driver_Rx_Button_D,
+     (Street_Driver_Rx_Button_R > Street_Driver_Rx_Button_D,
       "street.driver_rx.button " & "can miss its deadline");
-   pragma Assert (Street_Driver_Rx_Button_W <= Street_Driver_Rx_Button_R);
    pragma Assert
-     ((Street_Driver_Rx_Button_R + Street_Driver_Rx_Button_J)
-      <= Street_Driver_Rx_Button_D);
+     (Street_Driver_Rx_Button_Needs <= Street_Driver_Rx_Button_W);
+   pragma Assert (Street_Driver_Rx_Button_R <= Street_Driver_Rx_Button_D);
 
-   --  [street.driver_tx.car_lamp] what can delay it
+   --  [street.driver_tx.car_lamp] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Tx_Car_Lamp_W : constant :=
+     Street_Driver_Tx_Car_Lamp_R - Street_Driver_Tx_Car_Lamp_J;
+   Street_Driver_Tx_Car_Lamp_Needs : constant :=
      Street_Driver_Tx_Car_Lamp_C
      + Street_Driver_Tx_Car_Lamp_B
-     + (((Street_Driver_Tx_Car_Lamp_R
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Car_Lamp_R
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Car_Lamp_R
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C)
-     + (((Street_Driver_Tx_Car_Lamp_R
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Tx_Car_Lamp_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Car_Lamp_W > Street_Driver_Tx_Car_Lamp_R,
+     (Street_Driver_Tx_Car_Lamp_Needs > Street_Driver_Tx_Car_Lamp_W,
       "street.driver_tx.car_lamp "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Car_Lamp_R > Street_Driver_Tx_Car_Lamp_T,
+     ((Street_Driver_Tx_Car_Lamp_J + Street_Driver_Tx_Car_Lamp_W)
+      > Street_Driver_Tx_Car_Lamp_T,
       "street.driver_tx.car_lamp "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Street_Driver_Tx_Car_Lamp_R + Street_Driver_Tx_Car_Lamp_J)
-      > Street_Driver_Tx_Car_Lamp_D,
+     (Street_Driver_Tx_Car_Lamp_R > Street_Driver_Tx_Car_Lamp_D,
       "street.driver_tx.car_lamp " & "can miss its deadline");
    pragma Assert
-     (Street_Driver_Tx_Car_Lamp_W <= Street_Driver_Tx_Car_Lamp_R);
+     (Street_Driver_Tx_Car_Lamp_Needs <= Street_Driver_Tx_Car_Lamp_W);
    pragma Assert
-     ((Street_Driver_Tx_Car_Lamp_R + Street_Driver_Tx_Car_Lamp_J)
-      <= Street_Driver_Tx_Car_Lamp_D);
+     (Street_Driver_Tx_Car_Lamp_R <= Street_Driver_Tx_Car_Lamp_D);
 
-   --  [street.driver_tx.walk_lamp] what can delay it
+   --  [street.driver_tx.walk_lamp] what can delay it: jobs of the same or
+   --  higher priority
    Street_Driver_Tx_Walk_Lamp_W : constant :=
+     Street_Driver_Tx_Walk_Lamp_R - Street_Driver_Tx_Walk_Lamp_J;
+   Street_Driver_Tx_Walk_Lamp_Needs : constant :=
      Street_Driver_Tx_Walk_Lamp_C
      + Street_Driver_Tx_Walk_Lamp_B
-     + (((Street_Driver_Tx_Walk_Lamp_R
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Walk_Lamp_R
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Walk_Lamp_R
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Tx_Walk_Lamp_R
-          + Street_Driver_Tx_Sign_J
-          + (Street_Driver_Tx_Sign_T - 1))
+     + (((Street_Driver_Tx_Walk_Lamp_W + Street_Driver_Tx_Sign_A)
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Walk_Lamp_W > Street_Driver_Tx_Walk_Lamp_R,
+     (Street_Driver_Tx_Walk_Lamp_Needs > Street_Driver_Tx_Walk_Lamp_W,
       "street.driver_tx.walk_lamp "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Walk_Lamp_R > Street_Driver_Tx_Walk_Lamp_T,
+     ((Street_Driver_Tx_Walk_Lamp_J + Street_Driver_Tx_Walk_Lamp_W)
+      > Street_Driver_Tx_Walk_Lamp_T,
       "street.driver_tx.walk_lamp "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Street_Driver_Tx_Walk_Lamp_R + Street_Driver_Tx_Walk_Lamp_J)
-      > Street_Driver_Tx_Walk_Lamp_D,
+     (Street_Driver_Tx_Walk_Lamp_R > Street_Driver_Tx_Walk_Lamp_D,
       "street.driver_tx.walk_lamp " & "can miss its deadline");
    pragma Assert
-     (Street_Driver_Tx_Walk_Lamp_W <= Street_Driver_Tx_Walk_Lamp_R);
+     (Street_Driver_Tx_Walk_Lamp_Needs <= Street_Driver_Tx_Walk_Lamp_W);
    pragma Assert
-     ((Street_Driver_Tx_Walk_Lamp_R + Street_Driver_Tx_Walk_Lamp_J)
-      <= Street_Driver_Tx_Walk_Lamp_D);
+     (Street_Driver_Tx_Walk_Lamp_R <= Street_Driver_Tx_Walk_Lamp_D);
 
-   --  [street.driver_tx.sign] what can delay it
+   --  [street.driver_tx.sign] what can delay it: jobs of the same or higher
+   --  priority
    Street_Driver_Tx_Sign_W : constant :=
+     Street_Driver_Tx_Sign_R - Street_Driver_Tx_Sign_J;
+   Street_Driver_Tx_Sign_Needs : constant :=
      Street_Driver_Tx_Sign_C
      + Street_Driver_Tx_Sign_B
-     + (((Street_Driver_Tx_Sign_R
-          + Street_Driver_Rx_Order_J
-          + (Street_Driver_Rx_Order_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Rx_Order_A)
          / Street_Driver_Rx_Order_T)
         * Street_Driver_Rx_Order_C)
-     + (((Street_Driver_Tx_Sign_R
-          + Street_Driver_Rx_Button_J
-          + (Street_Driver_Rx_Button_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Rx_Button_A)
          / Street_Driver_Rx_Button_T)
         * Street_Driver_Rx_Button_C)
-     + (((Street_Driver_Tx_Sign_R
-          + Street_Driver_Tx_Car_Lamp_J
-          + (Street_Driver_Tx_Car_Lamp_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Tx_Car_Lamp_A)
          / Street_Driver_Tx_Car_Lamp_T)
         * Street_Driver_Tx_Car_Lamp_C)
-     + (((Street_Driver_Tx_Sign_R
-          + Street_Driver_Tx_Walk_Lamp_J
-          + (Street_Driver_Tx_Walk_Lamp_T - 1))
+     + (((Street_Driver_Tx_Sign_W + Street_Driver_Tx_Walk_Lamp_A)
          / Street_Driver_Tx_Walk_Lamp_T)
         * Street_Driver_Tx_Walk_Lamp_C);
 
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Sign_W > Street_Driver_Tx_Sign_R,
+     (Street_Driver_Tx_Sign_Needs > Street_Driver_Tx_Sign_W,
       "street.driver_tx.sign "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Street_Driver_Tx_Sign_R > Street_Driver_Tx_Sign_T,
+     ((Street_Driver_Tx_Sign_J + Street_Driver_Tx_Sign_W)
+      > Street_Driver_Tx_Sign_T,
       "street.driver_tx.sign " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Street_Driver_Tx_Sign_R + Street_Driver_Tx_Sign_J)
-      > Street_Driver_Tx_Sign_D,
+     (Street_Driver_Tx_Sign_R > Street_Driver_Tx_Sign_D,
       "street.driver_tx.sign " & "can miss its deadline");
-   pragma Assert (Street_Driver_Tx_Sign_W <= Street_Driver_Tx_Sign_R);
-   pragma Assert
-     ((Street_Driver_Tx_Sign_R + Street_Driver_Tx_Sign_J)
-      <= Street_Driver_Tx_Sign_D);
+   pragma Assert (Street_Driver_Tx_Sign_Needs <= Street_Driver_Tx_Sign_W);
+   pragma Assert (Street_Driver_Tx_Sign_R <= Street_Driver_Tx_Sign_D);
+
+   --  [street.order] what can delay it: frames that go before it, and one
+   --  of those that go behind it, the longest of which counts once
+   Street_Order_Busy : constant := 1_040_000;
+   Street_Order_Busy_Needs : constant :=
+     Street_Button_C
+     + (((Street_Order_Busy + Street_Order_A) / Street_Order_T)
+        * Street_Order_C);
+
+   pragma Compile_Time_Error
+     (Street_Order_Busy_Needs > Street_Order_Busy,
+      "street.order " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Street_Order_Busy + Street_Order_J) > Street_Order_T,
+      "street.order " & "can come again before it is sent");
+
+   Street_Order_W : constant := 520_000;
+   Street_Order_Needs : constant := Street_Button_C;
+
+   pragma Compile_Time_Error
+     (Street_Order_Needs > Street_Order_W,
+      "street.order " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Street_Order_J + Street_Order_W + Street_Order_C) > Street_Order_R,
+      "street.order " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Order_R > Street_Order_D,
+      "street.order " & "can miss its deadline");
+   pragma Assert (Street_Order_R <= Street_Order_D);
+
+   --  [street.button] what can delay it: frames that go before it, and one
+   --  of those that go behind it, the longest of which counts once
+   Street_Button_Busy : constant := 1_560_000;
+   Street_Button_Busy_Needs : constant :=
+     Street_Car_Lamp_C
+     + (((Street_Button_Busy + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Button_Busy + Street_Button_A) / Street_Button_T)
+        * Street_Button_C);
+
+   pragma Compile_Time_Error
+     (Street_Button_Busy_Needs > Street_Button_Busy,
+      "street.button " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Street_Button_Busy + Street_Button_J) > Street_Button_T,
+      "street.button " & "can come again before it is sent");
+
+   Street_Button_W : constant := 1_040_000;
+   Street_Button_Needs : constant :=
+     Street_Car_Lamp_C
+     + (((Street_Button_W + Street_Bit + Street_Order_A) / Street_Order_T)
+        * Street_Order_C);
+
+   pragma Compile_Time_Error
+     (Street_Button_Needs > Street_Button_W,
+      "street.button " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Street_Button_J + Street_Button_W + Street_Button_C)
+      > Street_Button_R,
+      "street.button " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Button_R > Street_Button_D,
+      "street.button " & "can miss its deadline");
+   pragma Assert (Street_Button_R <= Street_Button_D);
+
+   --  [street.car_lamp] what can delay it: frames that go before it
+   Street_Car_Lamp_Busy : constant := 2_600_000;
+   Street_Car_Lamp_Busy_Needs : constant :=
+     0
+     + (((Street_Car_Lamp_Busy + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Car_Lamp_Busy + Street_Button_A) / Street_Button_T)
+        * Street_Button_C)
+     + (((Street_Car_Lamp_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
+        * Street_Car_Lamp_C)
+     + (((Street_Car_Lamp_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
+        * Street_Walk_Lamp_C)
+     + (((Street_Car_Lamp_Busy + Street_Sign_A) / Street_Sign_T)
+        * Street_Sign_C);
+
+   pragma Compile_Time_Error
+     (Street_Car_Lamp_Busy_Needs > Street_Car_Lamp_Busy,
+      "street.car_lamp " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Street_Car_Lamp_Busy + Street_Car_Lamp_J) > Street_Car_Lamp_T,
+      "street.car_lamp " & "can come again before it is sent");
+
+   Street_Car_Lamp_W : constant := 2_080_000;
+   Street_Car_Lamp_Needs : constant :=
+     0
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Button_A)
+         / Street_Button_T)
+        * Street_Button_C)
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Walk_Lamp_A)
+         / Street_Walk_Lamp_T)
+        * Street_Walk_Lamp_C)
+     + (((Street_Car_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
+        * Street_Sign_C);
+
+   pragma Compile_Time_Error
+     (Street_Car_Lamp_Needs > Street_Car_Lamp_W,
+      "street.car_lamp " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Street_Car_Lamp_J + Street_Car_Lamp_W + Street_Car_Lamp_C)
+      > Street_Car_Lamp_R,
+      "street.car_lamp " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Car_Lamp_R > Street_Car_Lamp_D,
+      "street.car_lamp " & "can miss its deadline");
+   pragma Assert (Street_Car_Lamp_R <= Street_Car_Lamp_D);
+
+   --  [street.walk_lamp] what can delay it: frames that go before it
+   Street_Walk_Lamp_Busy : constant := 2_600_000;
+   Street_Walk_Lamp_Busy_Needs : constant :=
+     0
+     + (((Street_Walk_Lamp_Busy + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Walk_Lamp_Busy + Street_Button_A) / Street_Button_T)
+        * Street_Button_C)
+     + (((Street_Walk_Lamp_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
+        * Street_Car_Lamp_C)
+     + (((Street_Walk_Lamp_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
+        * Street_Walk_Lamp_C)
+     + (((Street_Walk_Lamp_Busy + Street_Sign_A) / Street_Sign_T)
+        * Street_Sign_C);
+
+   pragma Compile_Time_Error
+     (Street_Walk_Lamp_Busy_Needs > Street_Walk_Lamp_Busy,
+      "street.walk_lamp "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Street_Walk_Lamp_Busy + Street_Walk_Lamp_J) > Street_Walk_Lamp_T,
+      "street.walk_lamp " & "can come again before it is sent");
+
+   Street_Walk_Lamp_W : constant := 2_080_000;
+   Street_Walk_Lamp_Needs : constant :=
+     0
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Button_A)
+         / Street_Button_T)
+        * Street_Button_C)
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Car_Lamp_A)
+         / Street_Car_Lamp_T)
+        * Street_Car_Lamp_C)
+     + (((Street_Walk_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
+        * Street_Sign_C);
+
+   pragma Compile_Time_Error
+     (Street_Walk_Lamp_Needs > Street_Walk_Lamp_W,
+      "street.walk_lamp " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Street_Walk_Lamp_J + Street_Walk_Lamp_W + Street_Walk_Lamp_C)
+      > Street_Walk_Lamp_R,
+      "street.walk_lamp " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Walk_Lamp_R > Street_Walk_Lamp_D,
+      "street.walk_lamp " & "can miss its deadline");
+   pragma Assert (Street_Walk_Lamp_R <= Street_Walk_Lamp_D);
+
+   --  [street.sign] what can delay it: frames that go before it
+   Street_Sign_Busy : constant := 2_600_000;
+   Street_Sign_Busy_Needs : constant :=
+     0
+     + (((Street_Sign_Busy + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Sign_Busy + Street_Button_A) / Street_Button_T)
+        * Street_Button_C)
+     + (((Street_Sign_Busy + Street_Car_Lamp_A) / Street_Car_Lamp_T)
+        * Street_Car_Lamp_C)
+     + (((Street_Sign_Busy + Street_Walk_Lamp_A) / Street_Walk_Lamp_T)
+        * Street_Walk_Lamp_C)
+     + (((Street_Sign_Busy + Street_Sign_A) / Street_Sign_T) * Street_Sign_C);
+
+   pragma Compile_Time_Error
+     (Street_Sign_Busy_Needs > Street_Sign_Busy,
+      "street.sign " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Street_Sign_Busy + Street_Sign_J) > Street_Sign_T,
+      "street.sign " & "can come again before it is sent");
+
+   Street_Sign_W : constant := 2_080_000;
+   Street_Sign_Needs : constant :=
+     0
+     + (((Street_Sign_W + Street_Bit + Street_Order_A) / Street_Order_T)
+        * Street_Order_C)
+     + (((Street_Sign_W + Street_Bit + Street_Button_A) / Street_Button_T)
+        * Street_Button_C)
+     + (((Street_Sign_W + Street_Bit + Street_Car_Lamp_A)
+         / Street_Car_Lamp_T)
+        * Street_Car_Lamp_C)
+     + (((Street_Sign_W + Street_Bit + Street_Walk_Lamp_A)
+         / Street_Walk_Lamp_T)
+        * Street_Walk_Lamp_C);
+
+   pragma Compile_Time_Error
+     (Street_Sign_Needs > Street_Sign_W,
+      "street.sign " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Street_Sign_J + Street_Sign_W + Street_Sign_C) > Street_Sign_R,
+      "street.sign " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Sign_R > Street_Sign_D,
+      "street.sign " & "can miss its deadline");
+   pragma Assert (Street_Sign_R <= Street_Sign_D);
 end Crossing_System.Timing_Certificate;

@@ -10,23 +10,43 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   --  Times in nanoseconds. For each task: T period or least separation, D
-   --  deadline, C budget with two context switches, B blocking, J release
-   --  jitter, R the claimed response time, W the demand that arises within
-   --  R.
+   --  Times in nanoseconds. T period or least separation, D deadline, J
+   --  longest time from the event to the release, C longest execution (with
+   --  two context switches) or transmission, B blocking, R the claimed
+   --  response from the event, W the time claimed from the start of a busy
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
+   --  The claimed responses: each is some other's lateness, or its own
+   --  bound.
+   Reception_R : constant := 205_000;
+   Control_R : constant := 875_000;
+   Ward_Driver_Rx_Line_R : constant := 1_365_000;
+   Ward_Driver_Tx_Motor_R : constant := 1_040_000;
+   Ward_Driver_Rx_Panel_R : constant := 2_645_000;
+   Ward_Driver_Tx_Display_R : constant := 1_040_000;
+   Ward_Line_R : constant := 1_200_000;
+   Ward_Motor_R : constant := 3_520_000;
+   Ward_Panel_R : constant := 2_480_000;
+   Ward_Display_R : constant := 3_520_000;
+
+   --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception]
+   --  [reception] priority 2, released by arrivals, no closer than T. B:
+   --  control may be inside bed.line.mailbox.
    Ward_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
+   Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant := Ward_Receive_Budget + 2 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
-   Reception_R : constant := 205_000;
 
-   --  [control]
+   --  [control] priority 1, released every T. B: main may be inside health.
+   --  C: what every release executes; C_2: rows of every 2th release, C_4:
+   --  rows of every 4th release.
    Bed_Ports_Budget : constant := 100_000;
    Bed_Keys_Budget : constant := 50_000;
    Bed_Infusion_Budget : constant := 300_000;
@@ -37,272 +57,441 @@ is
    Control_T : constant := 50_000_000;
    Control_D : constant := 50_000_000;
    Control_J : constant := 0;
+   Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
      Bed_Ports_Budget
      + Bed_Keys_Budget
      + Bed_Infusion_Budget
-     + Bed_Turn_Budget
-     + Bed_Fill_Budget
      + Bed_Drive_Budget
-     + Bed_Show_Budget
      + 2 * Board_Context_Switch;
+   Control_C_2 : constant := Bed_Turn_Budget + Bed_Fill_Budget;
+   Control_C_4 : constant := Bed_Show_Budget;
    Control_B : constant := Board_Critical_Section;
-   Control_R : constant := 875_000;
 
-   --  [ward.driver_rx.line]
-   Ward_Driver_Rx_Line_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [ward.driver_rx.line] priority 3, the driver's work, released by
+   --  ward.line, which is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Rx_Line_Budget : constant := 20_000;
    Ward_Driver_Rx_Line_T : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_D : constant := 1_000_000_000;
-   Ward_Driver_Rx_Line_J : constant := 0;
+   Ward_Driver_Rx_Line_J : constant := Ward_Line_R;
+   Ward_Driver_Rx_Line_A : constant :=
+     Ward_Driver_Rx_Line_J + (Ward_Driver_Rx_Line_T - 1);
    Ward_Driver_Rx_Line_C : constant :=
      Ward_Driver_Rx_Line_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Line_B : constant := Board_Critical_Section;
-   Ward_Driver_Rx_Line_R : constant := 165_000;
 
-   --  [ward.driver_tx.motor]
-   Ward_Driver_Tx_Motor_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [ward.driver_tx.motor] priority 3, the driver's work, released by
+   --  control, which is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Tx_Motor_Budget : constant := 20_000;
    Ward_Driver_Tx_Motor_T : constant := 50_000_000;
    Ward_Driver_Tx_Motor_D : constant := 50_000_000;
-   Ward_Driver_Tx_Motor_J : constant := 0;
+   Ward_Driver_Tx_Motor_J : constant := Control_R;
+   Ward_Driver_Tx_Motor_A : constant :=
+     Ward_Driver_Tx_Motor_J + (Ward_Driver_Tx_Motor_T - 1);
    Ward_Driver_Tx_Motor_C : constant :=
      Ward_Driver_Tx_Motor_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Motor_B : constant := Board_Critical_Section;
-   Ward_Driver_Tx_Motor_R : constant := 165_000;
 
-   --  [ward.driver_rx.panel]
-   Ward_Driver_Rx_Panel_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [ward.driver_rx.panel] priority 3, the driver's work, released by
+   --  ward.panel, which is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Rx_Panel_Budget : constant := 20_000;
    Ward_Driver_Rx_Panel_T : constant := 50_000_000;
    Ward_Driver_Rx_Panel_D : constant := 50_000_000;
-   Ward_Driver_Rx_Panel_J : constant := 0;
+   Ward_Driver_Rx_Panel_J : constant := Ward_Panel_R;
+   Ward_Driver_Rx_Panel_A : constant :=
+     Ward_Driver_Rx_Panel_J + (Ward_Driver_Rx_Panel_T - 1);
    Ward_Driver_Rx_Panel_C : constant :=
      Ward_Driver_Rx_Panel_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Panel_B : constant := Board_Critical_Section;
-   Ward_Driver_Rx_Panel_R : constant := 165_000;
 
-   --  [ward.driver_tx.display]
-   Ward_Driver_Tx_Display_Budget : constant :=
-     40_000 - 2 * Board_Context_Switch;
+   --  [ward.driver_tx.display] priority 3, the driver's work, released by
+   --  control, which is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Tx_Display_Budget : constant := 20_000;
    Ward_Driver_Tx_Display_T : constant := 200_000_000;
    Ward_Driver_Tx_Display_D : constant := 200_000_000;
-   Ward_Driver_Tx_Display_J : constant := 0;
+   Ward_Driver_Tx_Display_J : constant := Control_R;
+   Ward_Driver_Tx_Display_A : constant :=
+     Ward_Driver_Tx_Display_J + (Ward_Driver_Tx_Display_T - 1);
    Ward_Driver_Tx_Display_C : constant :=
      Ward_Driver_Tx_Display_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Display_B : constant := Board_Critical_Section;
-   Ward_Driver_Tx_Display_R : constant := 165_000;
 
-   --  [reception] what can delay it
-   Reception_W : constant :=
+   --  [ward] bits in a second, and one bit in nanoseconds, rounded up. Of a
+   --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
+   --  the longest frame, with 10 bits that are not stuffed and 3 to the
+   --  next frame.
+   Ward_Bit_Rate : constant := 125_000;
+   Ward_Bit : constant :=
+     (1_000_000_000 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+
+   --  [ward.line] 11-bit identifier 0x100, 1 bytes from somebody outside
+   Ward_Line_T : constant := 1_000_000_000;
+   Ward_Line_D : constant := 1_000_000_000;
+   Ward_Line_Stuffed : constant := 34 + 8 * 1;
+   Ward_Line_Bits : constant :=
+     Ward_Line_Stuffed + 13 + ((Ward_Line_Stuffed - 1) / 4);
+   Ward_Line_C : constant :=
+     ((Ward_Line_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Line_J : constant := 0;
+   Ward_Line_A : constant := Ward_Line_J + (Ward_Line_T - 1);
+
+   --  [ward.motor] 11-bit identifier 0x101, 2 bytes from bed.motor
+   Ward_Motor_T : constant := 50_000_000;
+   Ward_Motor_D : constant := 50_000_000;
+   Ward_Motor_Stuffed : constant := 34 + 8 * 2;
+   Ward_Motor_Bits : constant :=
+     Ward_Motor_Stuffed + 13 + ((Ward_Motor_Stuffed - 1) / 4);
+   Ward_Motor_C : constant :=
+     ((Ward_Motor_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Motor_J : constant := Ward_Driver_Tx_Motor_R;
+   Ward_Motor_A : constant := Ward_Motor_J + (Ward_Motor_T - 1);
+
+   --  [ward.panel] 11-bit identifier 0x110, 3 bytes from somebody outside
+   Ward_Panel_T : constant := 50_000_000;
+   Ward_Panel_D : constant := 50_000_000;
+   Ward_Panel_Stuffed : constant := 34 + 8 * 3;
+   Ward_Panel_Bits : constant :=
+     Ward_Panel_Stuffed + 13 + ((Ward_Panel_Stuffed - 1) / 4);
+   Ward_Panel_C : constant :=
+     ((Ward_Panel_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Panel_J : constant := 0;
+   Ward_Panel_A : constant := Ward_Panel_J + (Ward_Panel_T - 1);
+
+   --  [ward.display] 11-bit identifier 0x111, 3 bytes from bed.display
+   Ward_Display_T : constant := 200_000_000;
+   Ward_Display_D : constant := 200_000_000;
+   Ward_Display_Stuffed : constant := 34 + 8 * 3;
+   Ward_Display_Bits : constant :=
+     Ward_Display_Stuffed + 13 + ((Ward_Display_Stuffed - 1) / 4);
+   Ward_Display_C : constant :=
+     ((Ward_Display_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
+   Ward_Display_J : constant := Ward_Driver_Tx_Display_R;
+   Ward_Display_A : constant := Ward_Display_J + (Ward_Display_T - 1);
+
+   --  [reception] what can delay it: jobs of the same or higher priority
+   Reception_W : constant := Reception_R - Reception_J;
+   Reception_Needs : constant :=
      Reception_C
      + Reception_B
-     + (((Reception_R + Ward_Driver_Rx_Line_J + (Ward_Driver_Rx_Line_T - 1))
-         / Ward_Driver_Rx_Line_T)
+     + (((Reception_W + Ward_Driver_Rx_Line_A) / Ward_Driver_Rx_Line_T)
         * Ward_Driver_Rx_Line_C)
-     + (((Reception_R
-          + Ward_Driver_Tx_Motor_J
-          + (Ward_Driver_Tx_Motor_T - 1))
-         / Ward_Driver_Tx_Motor_T)
+     + (((Reception_W + Ward_Driver_Tx_Motor_A) / Ward_Driver_Tx_Motor_T)
         * Ward_Driver_Tx_Motor_C)
-     + (((Reception_R
-          + Ward_Driver_Rx_Panel_J
-          + (Ward_Driver_Rx_Panel_T - 1))
-         / Ward_Driver_Rx_Panel_T)
+     + (((Reception_W + Ward_Driver_Rx_Panel_A) / Ward_Driver_Rx_Panel_T)
         * Ward_Driver_Rx_Panel_C)
-     + (((Reception_R
-          + Ward_Driver_Tx_Display_J
-          + (Ward_Driver_Tx_Display_T - 1))
-         / Ward_Driver_Tx_Display_T)
+     + (((Reception_W + Ward_Driver_Tx_Display_A) / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
-     (Reception_W > Reception_R,
+     (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Reception_R > Reception_T,
+     ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Reception_R + Reception_J) > Reception_D,
+     (Reception_R > Reception_D,
       "reception " & "can miss its deadline");
-   pragma Assert (Reception_W <= Reception_R);
-   pragma Assert ((Reception_R + Reception_J) <= Reception_D);
+   pragma Assert (Reception_Needs <= Reception_W);
+   pragma Assert (Reception_R <= Reception_D);
 
-   --  [control] what can delay it
-   Control_W : constant :=
+   --  [control] what can delay it: jobs of the same or higher priority
+   Control_W : constant := Control_R - Control_J;
+   Control_Needs : constant :=
      Control_C
+     + Control_C_2
+     + Control_C_4
      + Control_B
-     + (((Control_R + Reception_J + (Reception_T - 1)) / Reception_T)
-        * Reception_C)
-     + (((Control_R + Ward_Driver_Rx_Line_J + (Ward_Driver_Rx_Line_T - 1))
-         / Ward_Driver_Rx_Line_T)
+     + (((Control_W + Reception_A) / Reception_T) * Reception_C)
+     + (((Control_W + Ward_Driver_Rx_Line_A) / Ward_Driver_Rx_Line_T)
         * Ward_Driver_Rx_Line_C)
-     + (((Control_R + Ward_Driver_Tx_Motor_J + (Ward_Driver_Tx_Motor_T - 1))
-         / Ward_Driver_Tx_Motor_T)
+     + (((Control_W + Ward_Driver_Tx_Motor_A) / Ward_Driver_Tx_Motor_T)
         * Ward_Driver_Tx_Motor_C)
-     + (((Control_R + Ward_Driver_Rx_Panel_J + (Ward_Driver_Rx_Panel_T - 1))
-         / Ward_Driver_Rx_Panel_T)
+     + (((Control_W + Ward_Driver_Rx_Panel_A) / Ward_Driver_Rx_Panel_T)
         * Ward_Driver_Rx_Panel_C)
-     + (((Control_R
-          + Ward_Driver_Tx_Display_J
-          + (Ward_Driver_Tx_Display_T - 1))
-         / Ward_Driver_Tx_Display_T)
+     + (((Control_W + Ward_Driver_Tx_Display_A) / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
-     (Control_W > Control_R,
+     (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Control_R > Control_T,
+     ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Control_R + Control_J) > Control_D,
+     (Control_R > Control_D,
       "control " & "can miss its deadline");
-   pragma Assert (Control_W <= Control_R);
-   pragma Assert ((Control_R + Control_J) <= Control_D);
+   pragma Assert (Control_Needs <= Control_W);
+   pragma Assert (Control_R <= Control_D);
 
-   --  [ward.driver_rx.line] what can delay it
+   --  [ward.driver_rx.line] what can delay it: jobs of the same or higher
+   --  priority
    Ward_Driver_Rx_Line_W : constant :=
+     Ward_Driver_Rx_Line_R - Ward_Driver_Rx_Line_J;
+   Ward_Driver_Rx_Line_Needs : constant :=
      Ward_Driver_Rx_Line_C
      + Ward_Driver_Rx_Line_B
-     + (((Ward_Driver_Rx_Line_R
-          + Ward_Driver_Tx_Motor_J
-          + (Ward_Driver_Tx_Motor_T - 1))
+     + (((Ward_Driver_Rx_Line_W + Ward_Driver_Tx_Motor_A)
          / Ward_Driver_Tx_Motor_T)
         * Ward_Driver_Tx_Motor_C)
-     + (((Ward_Driver_Rx_Line_R
-          + Ward_Driver_Rx_Panel_J
-          + (Ward_Driver_Rx_Panel_T - 1))
+     + (((Ward_Driver_Rx_Line_W + Ward_Driver_Rx_Panel_A)
          / Ward_Driver_Rx_Panel_T)
         * Ward_Driver_Rx_Panel_C)
-     + (((Ward_Driver_Rx_Line_R
-          + Ward_Driver_Tx_Display_J
-          + (Ward_Driver_Tx_Display_T - 1))
+     + (((Ward_Driver_Rx_Line_W + Ward_Driver_Tx_Display_A)
          / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_W > Ward_Driver_Rx_Line_R,
+     (Ward_Driver_Rx_Line_Needs > Ward_Driver_Rx_Line_W,
       "ward.driver_rx.line "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Ward_Driver_Rx_Line_R > Ward_Driver_Rx_Line_T,
+     ((Ward_Driver_Rx_Line_J + Ward_Driver_Rx_Line_W)
+      > Ward_Driver_Rx_Line_T,
       "ward.driver_rx.line " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Ward_Driver_Rx_Line_R + Ward_Driver_Rx_Line_J)
-      > Ward_Driver_Rx_Line_D,
+     (Ward_Driver_Rx_Line_R > Ward_Driver_Rx_Line_D,
       "ward.driver_rx.line " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Rx_Line_W <= Ward_Driver_Rx_Line_R);
-   pragma Assert
-     ((Ward_Driver_Rx_Line_R + Ward_Driver_Rx_Line_J)
-      <= Ward_Driver_Rx_Line_D);
+   pragma Assert (Ward_Driver_Rx_Line_Needs <= Ward_Driver_Rx_Line_W);
+   pragma Assert (Ward_Driver_Rx_Line_R <= Ward_Driver_Rx_Line_D);
 
-   --  [ward.driver_tx.motor] what can delay it
+   --  [ward.driver_tx.motor] what can delay it: jobs of the same or higher
+   --  priority
    Ward_Driver_Tx_Motor_W : constant :=
+     Ward_Driver_Tx_Motor_R - Ward_Driver_Tx_Motor_J;
+   Ward_Driver_Tx_Motor_Needs : constant :=
      Ward_Driver_Tx_Motor_C
      + Ward_Driver_Tx_Motor_B
-     + (((Ward_Driver_Tx_Motor_R
-          + Ward_Driver_Rx_Line_J
-          + (Ward_Driver_Rx_Line_T - 1))
+     + (((Ward_Driver_Tx_Motor_W + Ward_Driver_Rx_Line_A)
          / Ward_Driver_Rx_Line_T)
         * Ward_Driver_Rx_Line_C)
-     + (((Ward_Driver_Tx_Motor_R
-          + Ward_Driver_Rx_Panel_J
-          + (Ward_Driver_Rx_Panel_T - 1))
+     + (((Ward_Driver_Tx_Motor_W + Ward_Driver_Rx_Panel_A)
          / Ward_Driver_Rx_Panel_T)
         * Ward_Driver_Rx_Panel_C)
-     + (((Ward_Driver_Tx_Motor_R
-          + Ward_Driver_Tx_Display_J
-          + (Ward_Driver_Tx_Display_T - 1))
+     + (((Ward_Driver_Tx_Motor_W + Ward_Driver_Tx_Display_A)
          / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
-     (Ward_Driver_Tx_Motor_W > Ward_Driver_Tx_Motor_R,
+     (Ward_Driver_Tx_Motor_Needs > Ward_Driver_Tx_Motor_W,
       "ward.driver_tx.motor "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Ward_Driver_Tx_Motor_R > Ward_Driver_Tx_Motor_T,
+     ((Ward_Driver_Tx_Motor_J + Ward_Driver_Tx_Motor_W)
+      > Ward_Driver_Tx_Motor_T,
       "ward.driver_tx.motor " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Ward_Driver_Tx_Motor_R + Ward_Driver_Tx_Motor_J)
-      > Ward_Driver_Tx_Motor_D,
+     (Ward_Driver_Tx_Motor_R > Ward_Driver_Tx_Motor_D,
       "ward.driver_tx.motor " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Tx_Motor_W <= Ward_Driver_Tx_Motor_R);
-   pragma Assert
-     ((Ward_Driver_Tx_Motor_R + Ward_Driver_Tx_Motor_J)
-      <= Ward_Driver_Tx_Motor_D);
+   pragma Assert (Ward_Driver_Tx_Motor_Needs <= Ward_Driver_Tx_Motor_W);
+   pragma Assert (Ward_Driver_Tx_Motor_R <= Ward_Driver_Tx_Motor_D);
 
-   --  [ward.driver_rx.panel] what can delay it
+   --  [ward.driver_rx.panel] what can delay it: jobs of the same or higher
+   --  priority
    Ward_Driver_Rx_Panel_W : constant :=
+     Ward_Driver_Rx_Panel_R - Ward_Driver_Rx_Panel_J;
+   Ward_Driver_Rx_Panel_Needs : constant :=
      Ward_Driver_Rx_Panel_C
      + Ward_Driver_Rx_Panel_B
-     + (((Ward_Driver_Rx_Panel_R
-          + Ward_Driver_Rx_Line_J
-          + (Ward_Driver_Rx_Line_T - 1))
+     + (((Ward_Driver_Rx_Panel_W + Ward_Driver_Rx_Line_A)
          / Ward_Driver_Rx_Line_T)
         * Ward_Driver_Rx_Line_C)
-     + (((Ward_Driver_Rx_Panel_R
-          + Ward_Driver_Tx_Motor_J
-          + (Ward_Driver_Tx_Motor_T - 1))
+     + (((Ward_Driver_Rx_Panel_W + Ward_Driver_Tx_Motor_A)
          / Ward_Driver_Tx_Motor_T)
         * Ward_Driver_Tx_Motor_C)
-     + (((Ward_Driver_Rx_Panel_R
-          + Ward_Driver_Tx_Display_J
-          + (Ward_Driver_Tx_Display_T - 1))
+     + (((Ward_Driver_Rx_Panel_W + Ward_Driver_Tx_Display_A)
          / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
-     (Ward_Driver_Rx_Panel_W > Ward_Driver_Rx_Panel_R,
+     (Ward_Driver_Rx_Panel_Needs > Ward_Driver_Rx_Panel_W,
       "ward.driver_rx.panel "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Ward_Driver_Rx_Panel_R > Ward_Driver_Rx_Panel_T,
+     ((Ward_Driver_Rx_Panel_J + Ward_Driver_Rx_Panel_W)
+      > Ward_Driver_Rx_Panel_T,
       "ward.driver_rx.panel " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Ward_Driver_Rx_Panel_R + Ward_Driver_Rx_Panel_J)
-      > Ward_Driver_Rx_Panel_D,
+     (Ward_Driver_Rx_Panel_R > Ward_Driver_Rx_Panel_D,
       "ward.driver_rx.panel " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Rx_Panel_W <= Ward_Driver_Rx_Panel_R);
-   pragma Assert
-     ((Ward_Driver_Rx_Panel_R + Ward_Driver_Rx_Panel_J)
-      <= Ward_Driver_Rx_Panel_D);
+   pragma Assert (Ward_Driver_Rx_Panel_Needs <= Ward_Driver_Rx_Panel_W);
+   pragma Assert (Ward_Driver_Rx_Panel_R <= Ward_Driver_Rx_Panel_D);
 
-   --  [ward.driver_tx.display] what can delay it
+   --  [ward.driver_tx.display] what can delay it: jobs of the same or
+   --  higher priority
    Ward_Driver_Tx_Display_W : constant :=
+     Ward_Driver_Tx_Display_R - Ward_Driver_Tx_Display_J;
+   Ward_Driver_Tx_Display_Needs : constant :=
      Ward_Driver_Tx_Display_C
      + Ward_Driver_Tx_Display_B
-     + (((Ward_Driver_Tx_Display_R
-          + Ward_Driver_Rx_Line_J
-          + (Ward_Driver_Rx_Line_T - 1))
+     + (((Ward_Driver_Tx_Display_W + Ward_Driver_Rx_Line_A)
          / Ward_Driver_Rx_Line_T)
         * Ward_Driver_Rx_Line_C)
-     + (((Ward_Driver_Tx_Display_R
-          + Ward_Driver_Tx_Motor_J
-          + (Ward_Driver_Tx_Motor_T - 1))
+     + (((Ward_Driver_Tx_Display_W + Ward_Driver_Tx_Motor_A)
          / Ward_Driver_Tx_Motor_T)
         * Ward_Driver_Tx_Motor_C)
-     + (((Ward_Driver_Tx_Display_R
-          + Ward_Driver_Rx_Panel_J
-          + (Ward_Driver_Rx_Panel_T - 1))
+     + (((Ward_Driver_Tx_Display_W + Ward_Driver_Rx_Panel_A)
          / Ward_Driver_Rx_Panel_T)
         * Ward_Driver_Rx_Panel_C);
 
    pragma Compile_Time_Error
-     (Ward_Driver_Tx_Display_W > Ward_Driver_Tx_Display_R,
+     (Ward_Driver_Tx_Display_Needs > Ward_Driver_Tx_Display_W,
       "ward.driver_tx.display "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Ward_Driver_Tx_Display_R > Ward_Driver_Tx_Display_T,
+     ((Ward_Driver_Tx_Display_J + Ward_Driver_Tx_Display_W)
+      > Ward_Driver_Tx_Display_T,
       "ward.driver_tx.display "
       & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Ward_Driver_Tx_Display_R + Ward_Driver_Tx_Display_J)
-      > Ward_Driver_Tx_Display_D,
+     (Ward_Driver_Tx_Display_R > Ward_Driver_Tx_Display_D,
       "ward.driver_tx.display " & "can miss its deadline");
-   pragma Assert (Ward_Driver_Tx_Display_W <= Ward_Driver_Tx_Display_R);
-   pragma Assert
-     ((Ward_Driver_Tx_Display_R + Ward_Driver_Tx_Display_J)
-      <= Ward_Driver_Tx_Display_D);
+   pragma Assert (Ward_Driver_Tx_Display_Needs <= Ward_Driver_Tx_Display_W);
+   pragma Assert (Ward_Driver_Tx_Display_R <= Ward_Driver_Tx_Display_D);
+
+   --  [ward.line] what can delay it: frames that go before it, and one of
+   --  those that go behind it, the longest of which counts once
+   Ward_Line_Busy : constant := 1_200_000;
+   Ward_Line_Busy_Needs : constant :=
+     Ward_Panel_C
+     + (((Ward_Line_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C);
+
+   pragma Compile_Time_Error
+     (Ward_Line_Busy_Needs > Ward_Line_Busy,
+      "ward.line " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Ward_Line_Busy + Ward_Line_J) > Ward_Line_T,
+      "ward.line " & "can come again before it is sent");
+
+   Ward_Line_W : constant := 680_000;
+   Ward_Line_Needs : constant := Ward_Panel_C;
+
+   pragma Compile_Time_Error
+     (Ward_Line_Needs > Ward_Line_W,
+      "ward.line " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Ward_Line_J + Ward_Line_W + Ward_Line_C) > Ward_Line_R,
+      "ward.line " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Line_R > Ward_Line_D,
+      "ward.line " & "can miss its deadline");
+   pragma Assert (Ward_Line_R <= Ward_Line_D);
+
+   --  [ward.motor] what can delay it: frames that go before it
+   Ward_Motor_Busy : constant := 2_480_000;
+   Ward_Motor_Busy_Needs : constant :=
+     0
+     + (((Ward_Motor_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C)
+     + (((Ward_Motor_Busy + Ward_Motor_A) / Ward_Motor_T) * Ward_Motor_C)
+     + (((Ward_Motor_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C)
+     + (((Ward_Motor_Busy + Ward_Display_A) / Ward_Display_T)
+        * Ward_Display_C);
+
+   pragma Compile_Time_Error
+     (Ward_Motor_Busy_Needs > Ward_Motor_Busy,
+      "ward.motor " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Ward_Motor_Busy + Ward_Motor_J) > Ward_Motor_T,
+      "ward.motor " & "can come again before it is sent");
+
+   Ward_Motor_W : constant := 1_880_000;
+   Ward_Motor_Needs : constant :=
+     0
+     + (((Ward_Motor_W + Ward_Bit + Ward_Line_A) / Ward_Line_T)
+        * Ward_Line_C)
+     + (((Ward_Motor_W + Ward_Bit + Ward_Panel_A) / Ward_Panel_T)
+        * Ward_Panel_C)
+     + (((Ward_Motor_W + Ward_Bit + Ward_Display_A) / Ward_Display_T)
+        * Ward_Display_C);
+
+   pragma Compile_Time_Error
+     (Ward_Motor_Needs > Ward_Motor_W,
+      "ward.motor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Ward_Motor_J + Ward_Motor_W + Ward_Motor_C) > Ward_Motor_R,
+      "ward.motor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Motor_R > Ward_Motor_D,
+      "ward.motor " & "can miss its deadline");
+   pragma Assert (Ward_Motor_R <= Ward_Motor_D);
+
+   --  [ward.panel] what can delay it: frames that go before it, and one of
+   --  those that go behind it, the longest of which counts once
+   Ward_Panel_Busy : constant := 2_480_000;
+   Ward_Panel_Busy_Needs : constant :=
+     Ward_Display_C
+     + (((Ward_Panel_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C)
+     + (((Ward_Panel_Busy
+          + (Ward_Motor_R - Ward_Motor_C)
+          + (Ward_Motor_T - 1))
+         / Ward_Motor_T)
+        * Ward_Motor_C)
+     + (((Ward_Panel_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C);
+
+   pragma Compile_Time_Error
+     (Ward_Panel_Busy_Needs > Ward_Panel_Busy,
+      "ward.panel " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Ward_Panel_Busy + Ward_Panel_J) > Ward_Panel_T,
+      "ward.panel " & "can come again before it is sent");
+
+   Ward_Panel_W : constant := 1_800_000;
+   Ward_Panel_Needs : constant :=
+     Ward_Display_C
+     + (((Ward_Panel_W + Ward_Bit + Ward_Line_A) / Ward_Line_T)
+        * Ward_Line_C)
+     + (((Ward_Panel_W
+          + Ward_Bit
+          + (Ward_Motor_R - Ward_Motor_C)
+          + (Ward_Motor_T - 1))
+         / Ward_Motor_T)
+        * Ward_Motor_C);
+
+   pragma Compile_Time_Error
+     (Ward_Panel_Needs > Ward_Panel_W,
+      "ward.panel " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Ward_Panel_J + Ward_Panel_W + Ward_Panel_C) > Ward_Panel_R,
+      "ward.panel " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Panel_R > Ward_Panel_D,
+      "ward.panel " & "can miss its deadline");
+   pragma Assert (Ward_Panel_R <= Ward_Panel_D);
+
+   --  [ward.display] what can delay it: frames that go before it
+   Ward_Display_Busy : constant := 2_480_000;
+   Ward_Display_Busy_Needs : constant :=
+     0
+     + (((Ward_Display_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C)
+     + (((Ward_Display_Busy + Ward_Motor_A) / Ward_Motor_T) * Ward_Motor_C)
+     + (((Ward_Display_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C)
+     + (((Ward_Display_Busy + Ward_Display_A) / Ward_Display_T)
+        * Ward_Display_C);
+
+   pragma Compile_Time_Error
+     (Ward_Display_Busy_Needs > Ward_Display_Busy,
+      "ward.display " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
+     ((Ward_Display_Busy + Ward_Display_J) > Ward_Display_T,
+      "ward.display " & "can come again before it is sent");
+
+   Ward_Display_W : constant := 1_800_000;
+   Ward_Display_Needs : constant :=
+     0
+     + (((Ward_Display_W + Ward_Bit + Ward_Line_A) / Ward_Line_T)
+        * Ward_Line_C)
+     + (((Ward_Display_W + Ward_Bit + Ward_Motor_A) / Ward_Motor_T)
+        * Ward_Motor_C)
+     + (((Ward_Display_W + Ward_Bit + Ward_Panel_A) / Ward_Panel_T)
+        * Ward_Panel_C);
+
+   pragma Compile_Time_Error
+     (Ward_Display_Needs > Ward_Display_W,
+      "ward.display " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Ward_Display_J + Ward_Display_W + Ward_Display_C) > Ward_Display_R,
+      "ward.display " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Display_R > Ward_Display_D,
+      "ward.display " & "can miss its deadline");
+   pragma Assert (Ward_Display_R <= Ward_Display_D);
 end Infusion_System.Timing_Certificate;

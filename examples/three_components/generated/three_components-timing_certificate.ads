@@ -5,44 +5,55 @@
 package Three_Components.Timing_Certificate
 with SPARK_Mode, Pure
 is
-   --  Times in nanoseconds. For each task: T period or least separation, D
-   --  deadline, C budget with two context switches, B blocking, J release
-   --  jitter, R the claimed response time, W the demand that arises within
-   --  R.
+   --  Times in nanoseconds. T period or least separation, D deadline, J
+   --  longest time from the event to the release, C longest execution (with
+   --  two context switches) or transmission, B blocking, R the claimed
+   --  response from the event, W the time claimed from the start of a busy
+   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
+   --  within W. Needs is the demand that arises within W: where it is more,
+   --  W is too short.
+   --  The claimed responses: each is some other's lateness, or its own
+   --  bound.
+   Processor_1_R : constant := 625_000;
+   Processor_2_R : constant := 1_245_000;
+   Processor_3_R : constant := 2_265_000;
+
+   --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [processor_1]
+   --  [processor_1] priority 3, released every T. B: processor_3 may be
+   --  inside one.token_in.mailbox. C: what every release executes; C_2:
+   --  rows of every 2th release.
    One_Ports_Budget : constant := 200_000;
    One_Starting_Budget : constant := 200_000;
    One_Watching_Budget : constant := 200_000;
    Processor_1_T : constant := 10_000_000;
    Processor_1_D : constant := 10_000_000;
    Processor_1_J : constant := 0;
-   Processor_1_C : constant :=
-     One_Ports_Budget
-     + One_Starting_Budget
-     + One_Watching_Budget
-     + 2 * Board_Context_Switch;
+   Processor_1_A : constant := Processor_1_J + (Processor_1_T - 1);
+   Processor_1_C : constant := One_Ports_Budget + 2 * Board_Context_Switch;
+   Processor_1_C_2 : constant := One_Starting_Budget + One_Watching_Budget;
    Processor_1_B : constant := Board_Critical_Section;
-   Processor_1_R : constant := 625_000;
 
-   --  [processor_2]
+   --  [processor_2] priority 2, released every T. B: processor_3 may be
+   --  inside one.token_in.mailbox. C: what every release executes; C_2:
+   --  rows of every 2th release.
    Two_Ports_Budget : constant := 200_000;
    Two_Handling_Budget : constant := 200_000;
    Three_Watching_Budget : constant := 200_000;
    Processor_2_T : constant := 10_000_000;
    Processor_2_D : constant := 10_000_000;
    Processor_2_J : constant := 0;
+   Processor_2_A : constant := Processor_2_J + (Processor_2_T - 1);
    Processor_2_C : constant :=
-     Two_Ports_Budget
-     + Two_Handling_Budget
-     + Three_Watching_Budget
-     + 2 * Board_Context_Switch;
+     Two_Ports_Budget + Two_Handling_Budget + 2 * Board_Context_Switch;
+   Processor_2_C_2 : constant := Three_Watching_Budget;
    Processor_2_B : constant := Board_Critical_Section;
-   Processor_2_R : constant := 1_245_000;
 
-   --  [processor_3]
+   --  [processor_3] priority 1, released every T. B: main may be inside
+   --  health. C: what every release executes; C_2: rows of every 2th
+   --  release.
    Three_Ports_Budget : constant := 200_000;
    Three_Handling_Budget : constant := 200_000;
    Two_Watching_Budget : constant := 200_000;
@@ -51,71 +62,74 @@ is
    Processor_3_T : constant := 10_000_000;
    Processor_3_D : constant := 10_000_000;
    Processor_3_J : constant := 0;
+   Processor_3_A : constant := Processor_3_J + (Processor_3_T - 1);
    Processor_3_C : constant :=
-     Three_Ports_Budget
-     + Three_Handling_Budget
-     + Two_Watching_Budget
-     + Two_Work_Budget
-     + Three_Work_Budget
-     + 2 * Board_Context_Switch;
+     Three_Ports_Budget + Three_Handling_Budget + 2 * Board_Context_Switch;
+   Processor_3_C_2 : constant :=
+     Two_Watching_Budget + Two_Work_Budget + Three_Work_Budget;
    Processor_3_B : constant := Board_Critical_Section;
-   Processor_3_R : constant := 2_265_000;
 
-   --  [processor_1] what can delay it
-   Processor_1_W : constant := Processor_1_C + Processor_1_B;
+   --  [processor_1] what can delay it: jobs of the same or higher priority
+   Processor_1_W : constant := Processor_1_R - Processor_1_J;
+   Processor_1_Needs : constant :=
+     Processor_1_C + Processor_1_C_2 + Processor_1_B;
 
    pragma Compile_Time_Error
-     (Processor_1_W > Processor_1_R,
+     (Processor_1_Needs > Processor_1_W,
       "processor_1 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Processor_1_R > Processor_1_T,
+     ((Processor_1_J + Processor_1_W) > Processor_1_T,
       "processor_1 " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Processor_1_R + Processor_1_J) > Processor_1_D,
+     (Processor_1_R > Processor_1_D,
       "processor_1 " & "can miss its deadline");
-   pragma Assert (Processor_1_W <= Processor_1_R);
-   pragma Assert ((Processor_1_R + Processor_1_J) <= Processor_1_D);
+   pragma Assert (Processor_1_Needs <= Processor_1_W);
+   pragma Assert (Processor_1_R <= Processor_1_D);
 
-   --  [processor_2] what can delay it
-   Processor_2_W : constant :=
+   --  [processor_2] what can delay it: jobs of the same or higher priority
+   Processor_2_W : constant := Processor_2_R - Processor_2_J;
+   Processor_2_Needs : constant :=
      Processor_2_C
+     + Processor_2_C_2
      + Processor_2_B
-     + (((Processor_2_R + Processor_1_J + (Processor_1_T - 1))
-         / Processor_1_T)
-        * Processor_1_C);
+     + (((Processor_2_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
+     + (((((Processor_2_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
+        * Processor_1_C_2);
 
    pragma Compile_Time_Error
-     (Processor_2_W > Processor_2_R,
+     (Processor_2_Needs > Processor_2_W,
       "processor_2 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Processor_2_R > Processor_2_T,
+     ((Processor_2_J + Processor_2_W) > Processor_2_T,
       "processor_2 " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Processor_2_R + Processor_2_J) > Processor_2_D,
+     (Processor_2_R > Processor_2_D,
       "processor_2 " & "can miss its deadline");
-   pragma Assert (Processor_2_W <= Processor_2_R);
-   pragma Assert ((Processor_2_R + Processor_2_J) <= Processor_2_D);
+   pragma Assert (Processor_2_Needs <= Processor_2_W);
+   pragma Assert (Processor_2_R <= Processor_2_D);
 
-   --  [processor_3] what can delay it
-   Processor_3_W : constant :=
+   --  [processor_3] what can delay it: jobs of the same or higher priority
+   Processor_3_W : constant := Processor_3_R - Processor_3_J;
+   Processor_3_Needs : constant :=
      Processor_3_C
+     + Processor_3_C_2
      + Processor_3_B
-     + (((Processor_3_R + Processor_1_J + (Processor_1_T - 1))
-         / Processor_1_T)
-        * Processor_1_C)
-     + (((Processor_3_R + Processor_2_J + (Processor_2_T - 1))
-         / Processor_2_T)
-        * Processor_2_C);
+     + (((Processor_3_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
+     + (((((Processor_3_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
+        * Processor_1_C_2)
+     + (((Processor_3_W + Processor_2_A) / Processor_2_T) * Processor_2_C)
+     + (((((Processor_3_W + Processor_2_A) / Processor_2_T) + (2 - 1)) / 2)
+        * Processor_2_C_2);
 
    pragma Compile_Time_Error
-     (Processor_3_W > Processor_3_R,
+     (Processor_3_Needs > Processor_3_W,
       "processor_3 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
-     (Processor_3_R > Processor_3_T,
+     ((Processor_3_J + Processor_3_W) > Processor_3_T,
       "processor_3 " & "can be released again before it completes");
    pragma Compile_Time_Error
-     ((Processor_3_R + Processor_3_J) > Processor_3_D,
+     (Processor_3_R > Processor_3_D,
       "processor_3 " & "can miss its deadline");
-   pragma Assert (Processor_3_W <= Processor_3_R);
-   pragma Assert ((Processor_3_R + Processor_3_J) <= Processor_3_D);
+   pragma Assert (Processor_3_Needs <= Processor_3_W);
+   pragma Assert (Processor_3_R <= Processor_3_D);
 end Three_Components.Timing_Certificate;

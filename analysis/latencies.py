@@ -1,0 +1,191 @@
+"""Latencies from end to end through the rows of a system.
+
+A way of values through messages, ports, rows and data is taken hop by hop. A row
+that runs later in the same job than the row before it follows at once; any other row
+samples what it reads at its own times, or takes one value in a job from a queued
+port. A received frame waits in the queue of its bus for the reception, which takes
+one at a time and keeps its least separation.
+
+`core.chains` does the sums. It gets the rows as items of their own, each with its
+period and its response inside the job.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from gen.model import Message, PortKind, Processor, System
+from gen.terms import named
+
+from .core import can
+from .core.bus import Bus, Frame
+from .core.chains import Chain, Hop, Latency, Step, latency
+from .core.holistic import Holistic, Network
+from .core.platform import Platform
+from .core.responses import Level, Response
+from .core.tasks import Task
+
+__all__ = ["Delivery", "Hop", "Latencies", "Latency", "deliveries"]
+
+
+@dataclass(frozen=True, slots=True)
+class Delivery:
+    """How long a received message takes from its event until the reception has handed it over.
+
+    ``bound`` is None where frames come faster than they are taken; ``wait`` is the part
+    spent in the queue.
+    """
+
+    message: Message
+    bound: int | None
+    wait: int | None
+
+
+def deliveries(system: System, found: Holistic) -> dict[str, Delivery]:
+    """Every message that some reception hands over, by its element.
+
+    The separation counts from when the reception first ran, which can be as late as
+    its response.
+    """
+    made: dict[str, Delivery] = {}
+    for processor in system.processors:
+        frames = reception_frames(processor, system, found)
+        turns = {r.frame.name: r.bound for r in can.analyse(frames, Bus(bit_time=1))}
+        own = found.responses[processor.name].bound
+        for message in _received(processor, system):
+            bound, late = turns.get(message.element), found.from_event(message.driver("rx"))
+            if bound is None or own is None or late is None:
+                made[message.element] = Delivery(message, None, None)
+            else:
+                turn = bound - processor.period
+                made[message.element] = Delivery(message, turn + 2 * own, turn + own - late)
+    return made
+
+
+def _received(processor: Processor, system: System) -> list[Message]:
+    """The messages that a processor receives."""
+    return [m for m in system.messages if m.bus == processor.released_by and m.targets]
+
+
+def reception_frames(processor: Processor, system: System, found: Holistic) -> list[Frame]:
+    """What waits for a reception, as frames of one sender: each takes the separation.
+
+    First come, first served, like a first-in first-out queue of a bus. None where the
+    time of an arrival has no bound.
+    """
+    frames = []
+    for number, message in enumerate(_received(processor, system)):
+        late = found.from_event(message.driver("rx"))
+        if late is None:
+            return []
+        times = (message.period, message.limit, processor.period, late)
+        frames.append(Frame(message.element, number, *times, queue=processor.name))
+    return frames
+
+
+@dataclass(frozen=True, slots=True)
+class Latencies:
+    """Rows, drivers, frames and deliveries as items of chains, with their responses."""
+
+    system: System
+    network: Network
+    found: Holistic
+    rows: Mapping[str, tuple[Processor, int]]
+    """Each row's processor, and its place in the table."""
+
+    @classmethod
+    def of(
+        cls, system: System, network: Network, found: Holistic, delivered: Mapping[str, Delivery]
+    ) -> Latencies:
+        """From the responses of a system's network."""
+        items: list[tuple[Task, int | None]] = []
+        for task in network.tasks:
+            response = found.responses[task.name]
+            bounds = {r.row.name: r.bound for r in getattr(response, "rows", ())}
+            for row in task.rows:
+                item = _item(row.name, task.period * row.every, row.cost)
+                items.append((item, bounds.get(row.name)))
+        released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
+        for element, one in delivered.items():
+            items.append((_item(handed(element), one.message.period, 1), one.bound))
+            released[handed(element)] = one.message.driver("rx")
+        tasks = [task for task in network.tasks if not task.rows]
+        tasks += [item for item, _ in items]
+        view = replace(network, tasks=tuple(tasks), released_by=released)
+        responses = dict(found.responses)
+        for item, bound in items:
+            responses[item.name] = Response(item, Level((item,), 1, Platform()), None, bound)
+        places = {
+            slot.element: (processor, place)
+            for processor in system.processors
+            for place, slot in enumerate(processor.slots)
+        }
+        best = dict.fromkeys(responses, 0)
+        return cls(system, view, replace(found, responses=responses, best=best), places)
+
+    def along(self, name: str, way: Sequence[str], reaction: int = 0, age: int = 0) -> Latency:
+        """The latency of a way, which lists messages, ports, rows and data."""
+        steps: list[Step] = []
+        released = dict(self.network.released_by)
+        for place in way:
+            if place.startswith("message "):
+                found = named(self.system.messages, place.removeprefix("message "))
+                steps += _of_message(found, steps, released)
+            elif place in self.rows:
+                steps.append(self._row(place, PortKind.SAMPLED, steps, released))
+            else:
+                kind = self._input(place)
+                if kind is not None:
+                    handler = f"{place.partition('.')[0]}.ports"
+                    steps.append(self._row(handler, kind, steps, released))
+        network = replace(self.network, released_by=released)
+        return latency(Chain(name, tuple(steps), reaction, age), network, self.found)
+
+    def _input(self, place: str) -> PortKind | None:
+        """How an input port keeps values; None for what is none."""
+        instance, _, name = place.partition(".")
+        for port in self.system.instance(instance).component.inputs():
+            if port.name == name:
+                return port.kind
+        return None
+
+    def _row(
+        self, row: str, kind: PortKind, steps: Sequence[Step], released: dict[str, str]
+    ) -> Step:
+        """A row: later in the same job as the step before, or at its own times."""
+        before = steps[-1].name if steps else ""
+        if before in self.rows and row in self.rows:
+            (processor, first), (other, then) = self.rows[before], self.rows[row]
+            divisors = {processor.slots[first].divisor, other.slots[then].divisor}
+            phases = {processor.slots[first].phase, other.slots[then].phase}
+            if processor is other and first < then and len(divisors) == len(phases) == 1:
+                released[row] = before
+                return Step(row, Hop.RELEASED)
+        return Step(row, Hop.QUEUED if kind is PortKind.QUEUED and steps else Hop.SAMPLED)
+
+
+def handed(element: str) -> str:
+    """The handing over of a received message, as an item."""
+    return f"{element}.reception"
+
+
+def _sending(system: System) -> set[str]:
+    return {m.driver("tx") for m in system.messages}
+
+
+def _of_message(message: Message, steps: Sequence[Step], released: dict[str, str]) -> list[Step]:
+    """The driver's work and the frame, then the reception where it is received here."""
+    names = [message.element]
+    if message.source is not None:
+        names.insert(0, message.driver("tx"))
+        if steps:
+            released[names[0]] = steps[-1].name
+    if message.targets:
+        names += [message.driver("rx"), handed(message.element)]
+    return [Step(name, Hop.RELEASED) for name in names]
+
+
+def _item(name: str, period: int, cost: int) -> Task:
+    """A row or a handing over, as far as chains look at it."""
+    return Task(name, 0, period, period, cost)

@@ -1,0 +1,299 @@
+"""The messages of a bus in the timing certificate, and the reception's queue.
+
+A frame waits for the longest one that goes behind it and has begun, for what goes
+before it, and for errors; a bit later than it could begin, arbitration is over. All
+instances of the busy period count. Frames that a node sends share a first-in
+first-out queue: each goes with the last of them, and to others it is as late as it
+may have waited.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..claims import Claim, Claims
+from ..model import Bus, Message, System
+from .ada import Chain, Comment, Decl, Expr, Ref, number
+from .certificate_terms import (
+    SLOW,
+    arrivals,
+    assured,
+    before,
+    ceiling,
+    name_of,
+    named,
+    plus,
+    refuse,
+    stated,
+    times,
+    within,
+)
+from .naming import ada_case
+
+ERROR_BITS = 31
+"""Bits lost to one error besides the frame that is sent again: Tindell and Burns 1994."""
+
+
+def arbitration(message: Message) -> tuple[int, bool, int]:
+    """Of two frames the one with the lesser key wins."""
+    leading = message.identifier >> 18 if message.extended else message.identifier
+    return leading, message.extended, message.identifier
+
+
+def _of(system: System, bus: Bus) -> list[Message]:
+    """The messages of a bus, most urgent first."""
+    return sorted((m for m in system.messages if m.bus == bus.name), key=arbitration)
+
+
+def bus_terms(system: System, bus: Bus) -> list[Decl]:
+    """What is known of a bus and its messages."""
+    own = ada_case(bus.name)
+    words = (
+        f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. Of a message, "
+        "Stuffed: bits that stuffing can lengthen by a quarter; Bits: the longest frame, with 10 "
+        "bits that are not stuffed and 3 to the next frame."
+    )
+    items: list[Decl] = [
+        Comment(words),
+        stated(f"{own}_Bit_Rate", bus.bit_rate),
+        named(f"{own}_Bit", ceiling(number(10**9), Ref(f"{own}_Bit_Rate"))),
+    ]
+    if bus.errors is not None:
+        hit = f"[{bus.name}] errors: so many at once, one more every T, bits lost to each"
+        items += [
+            Comment(hit),
+            stated(f"{own}_Error_Burst", bus.errors.burst),
+            stated(f"{own}_Error_T", bus.errors.period),
+            stated(f"{own}_Error_Bits", ERROR_BITS),
+        ]
+    for message in _of(system, bus):
+        items += _terms(message, own)
+    return items
+
+
+def _terms(message: Message, bus: str) -> list[Decl]:
+    """What is known of a message."""
+    own = name_of(message.element)
+    exposed = 54 if message.extended else 34
+    width = 29 if message.extended else 11
+    sender = "somebody outside" if message.source is None else str(message.source)
+    words = (
+        f"[{message.element}] {width}-bit identifier {message.identifier:#x}, {message.length} "
+        f"bytes from {sender}"
+    )
+    stuffed = Ref(f"{own}_Stuffed")
+    longest = plus(stuffed, number(13), Chain("/", (Chain("-", (stuffed, number(1))), number(4))))
+    items: list[Decl] = [
+        Comment(words),
+        stated(f"{own}_T", message.period),
+        stated(f"{own}_D", message.limit),
+        named(f"{own}_Stuffed", Ref(f"{exposed} + 8 * {message.length}")),
+        named(f"{own}_Bits", longest),
+        named(f"{own}_C", ceiling(times(Ref(f"{own}_Bits"), Ref("10**9")), Ref(f"{bus}_Bit_Rate"))),
+    ]
+    if message.source is None:
+        items.append(stated(f"{own}_J", 0))
+    else:
+        items.append(named(f"{own}_J", Ref(f"{name_of(message.driver('tx'))}_R")))
+    return [*items, arrivals(own)]
+
+
+# --- Claims --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """What goes before a message, itself included, and what can go behind."""
+
+    message: Message
+    before: list[Message]
+    behind: list[Message]
+
+    @property
+    def blocking(self) -> Expr:
+        """The longest frame that may have begun."""
+        longest = max(self.behind, key=_bits, default=None)
+        return number(0) if longest is None else Ref(f"{name_of(longest.element)}_C")
+
+    @property
+    def longest(self) -> str:
+        """The longest frame that an error may spoil."""
+        return name_of(max(self.before, key=_bits).element)
+
+    def lost(self, bus: Bus, window: Expr) -> list[Expr]:
+        """The time lost to errors within a window."""
+        if bus.errors is None:
+            return []
+        line = ada_case(bus.name)
+        count = plus(Ref(f"{line}_Error_Burst - 1"), ceiling(window, Ref(f"{line}_Error_T")))
+        bits = times(Ref(f"{line}_Error_Bits"), Ref(f"{line}_Bit"))
+        return [times(count, plus(bits, Ref(f"{self.longest}_C")))]
+
+    def instances(self, other: Message, window: Expr, claims: Claims) -> Expr:
+        """How often another message goes before this one within a window.
+
+        A frame of a queue is late by what it may have waited, as a rule R - C, for all
+        but those in the same queue.
+        """
+        own = name_of(other.element)
+        if other.source is None or self.message.source is not None:
+            return within(own, window)
+        if other.element in claims.waits:
+            return within(own, plus(window, Ref(f"{own}_Wait")))
+        return ceiling(
+            plus(window, Chain("-", (Ref(f"{own}_R"), Ref(f"{own}_C")))), Ref(f"{own}_T")
+        )
+
+
+def _bits(message: Message) -> int:
+    """The length of the longest frame, in bits, but for what all frames have."""
+    return 10 * message.length + (25 if message.extended else 0)
+
+
+def bus_claims(system: System, bus: Bus, claims: Claims) -> list[Decl]:
+    """The instances of each message, and what they show of its response."""
+    order = _of(system, bus)
+    queued = [n for n, message in enumerate(order, 1) if message.source is not None]
+    items = _waits(bus, order, claims)
+    for number_, message in enumerate(order, 1):
+        reach = max(queued) if message.source is not None else number_
+        level = _Level(message, order[:reach], order[reach:])
+        items += _of_message(bus, level, claims)
+    for message in order:
+        if message.element in claims.turns:
+            items += _turns(system, message, claims.turns[message.element])
+    return items
+
+
+def _waits(bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
+    """What waits no longer than the bus is ever busy, whatever the order."""
+    if bus.name not in claims.busiest:
+        return []
+    line = ada_case(bus.name)
+    busiest = Ref(f"{line}_Busiest")
+    works = [
+        times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
+    ]
+    lost = _Level(order[0], order, []).lost(bus, busiest)
+    items = [
+        Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
+        stated(f"{line}_Busiest", claims.busiest[bus.name]),
+        named(f"{line}_Busiest_Needs", plus(*works, *lost)),
+        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, "can be busy longer than claimed"),
+    ]
+    for message in order:
+        if message.element in claims.waits:
+            own, problem = name_of(message.element), "can wait longer than claimed"
+            longest = Chain("-", (busiest, Ref(f"{own}_C")))
+            items.append(stated(f"{own}_Wait", claims.waits[message.element]))
+            items.append(refuse(longest, Ref(f"{own}_Wait"), message.element, problem))
+    return items
+
+
+def _of_message(bus: Bus, level: _Level, claims: Claims) -> list[Decl]:
+    """The claim about one message."""
+    message, claim = level.message, claims.of(level.message.element)
+    own, line = name_of(message.element), ada_case(bus.name)
+
+    def rivals(window: Expr, others: list[Message]) -> list[Expr]:
+        return [
+            times(level.instances(m, window, claims), Ref(f"{name_of(m.element)}_C"))
+            for m in others
+        ]
+
+    def waiting(instance: int, window: Expr) -> Expr:
+        others = [m for m in level.before if m is not message]
+        earlier = [times(number(instance), Ref(f"{own}_C"))] if instance else []
+        until = plus(window, Ref(f"{line}_Bit"))
+        hit = level.lost(bus, plus(window, Ref(f"{own}_C")))
+        return plus(level.blocking, *earlier, *rivals(until, others), *hit)
+
+    def busy(window: Expr) -> Expr:
+        return plus(level.blocking, *rivals(window, level.before), *level.lost(bus, window))
+
+    words = f"[{message.element}] what can delay it: frames that go before it"
+    if level.behind:
+        words += ", and one of those that go behind it, the longest of which counts once"
+    items: list[Decl] = [Comment(words)]
+    items += _instances(own, message.element, claim, waiting, busy)
+    for instance in range(len(claim.windows)):
+        tail = _tail(claim, instance)
+        response = plus(Ref(f"{own}_J"), Ref(f"{own}_W{tail}"), Ref(f"{own}_C"))
+        response = plus(response, *before(own, instance))
+        items.append(refuse(response, Ref(f"{own}_R"), message.element, SLOW))
+    items.append(refuse(Ref(f"{own}_R"), Ref(f"{own}_D"), message.element, "can miss its deadline"))
+    items.append(assured(Ref(f"{own}_R"), Ref(f"{own}_D")))
+    return items
+
+
+def _tail(claim: Claim, instance: int) -> str:
+    return "" if len(claim.windows) == 1 else f"_{instance + 1}"
+
+
+def _instances(
+    own: str,
+    label: str,
+    claim: Claim,
+    waiting: Callable[[int, Expr], Expr],
+    busy: Callable[[Expr], Expr],
+    prefix: str = "",
+) -> list[Decl]:
+    """The windows of all instances, and the busy period in which there are no more."""
+    items: list[Decl] = [stated(f"{own}_{prefix}Busy", claim.busy)]
+    window: Expr = Ref(f"{own}_{prefix}Busy")
+    items.append(named(f"{own}_{prefix}Busy_Needs", busy(window)))
+    problem = "can keep others waiting for longer than claimed"
+    items.append(refuse(Ref(f"{own}_{prefix}Busy_Needs"), window, label, problem))
+    late = Ref(f"{own}_J") if not prefix else Ref(f"{own}_{prefix}J")
+    most = times(number(len(claim.windows)), Ref(f"{own}_T"))
+    problem = "can come again before it is sent"
+    items.append(refuse(plus(window, late), most, label, problem))
+    for instance, length in enumerate(claim.windows):
+        tail = _tail(claim, instance)
+        at: Expr = Ref(f"{own}_{prefix}W{tail}")
+        needs = f"{own}_{prefix}Needs{tail}"
+        items.append(stated(f"{own}_{prefix}W{tail}", length))
+        items.append(named(needs, waiting(instance, at)))
+        items.append(refuse(Ref(needs), at, label, SLOW))
+    return items
+
+
+def _turns(system: System, message: Message, claim: Claim) -> list[Decl]:
+    """When the reception, which keeps its least separation, has handed a message over."""
+    processor = next(p for p in system.processors if p.released_by == message.bus)
+    separation, response = (Ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
+    received = [m for m in system.messages if m.bus == message.bus and m.targets]
+    own = name_of(message.element)
+
+    def served(window: Expr, among: list[Message]) -> list[Expr]:
+        return [
+            times(
+                ceiling(
+                    plus(window, Ref(f"{name_of(m.driver('rx'))}_R")),
+                    Ref(f"{name_of(m.element)}_T"),
+                ),
+                separation,
+            )
+            for m in among
+        ]
+
+    def waiting(instance: int, window: Expr) -> Expr:
+        earlier = [times(number(instance), separation)] if instance else []
+        others = [m for m in received if m is not message]
+        return plus(*earlier, *served(plus(window, number(1)), others))
+
+    label = message.element
+    words = f"[{label}] its turn in the queue of {processor.name}, and when it is handed over"
+    items: list[Decl] = [
+        Comment(words),
+        named(f"{own}_Turn_J", Ref(f"{name_of(message.driver('rx'))}_R")),
+        *_instances(own, label, claim, waiting, lambda w: plus(*served(w, received)), "Turn_"),
+        stated(f"{own}_Turn", claim.response),
+    ]
+    for instance in range(len(claim.windows)):
+        late = plus(Ref(f"{own}_Turn_J"), Ref(f"{own}_Turn_W{_tail(claim, instance)}"))
+        late = plus(late, *before(own, instance))
+        items.append(refuse(late, Ref(f"{own}_Turn"), label, SLOW))
+    items.append(named(f"{own}_Handed", plus(Ref(f"{own}_Turn"), times(number(2), response))))
+    return items
