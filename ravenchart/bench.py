@@ -14,17 +14,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import behaviour.rules
-from analysis.response_times import response_times
 from gen.generate import generate
 from gen.load import load
-from gen.model import Task
-from gen.terms import Ns, Origin
 
-from . import bench_charts, steps, toolchain
+from . import bench_charts, bench_timing, steps, toolchain
 from .large_models import large_model
 from .toolchain import ROOT
 
-PLACE = Origin("bench", 1, 1)
 ROUNDS = 5
 MOST_SECONDS = 10.0
 """What the program of 1,000 regions may take."""
@@ -83,38 +79,13 @@ def large_models() -> None:
         )
 
 
-def task_set(count: int) -> tuple[Task, ...]:
-    """``count`` tasks with periods of 10, 20, 50, 100 and 200 ms, 70 % load in all."""
-    tasks = []
-    for index in range(count):
-        period = Ns(1_000_000 * (10, 20, 50, 100, 200)[index * 5 // count])
-        budget = Ns(period * 7 // (10 * count))
-        name = f"task_{index}"
-        tasks.append(Task(name, PLACE, "node", period, Ns(0), period, budget, count - index))
-    return tuple(tasks)
-
-
-def analysis() -> None:
-    """Response times of growing task sets."""
-    print("response-time analysis at 70 % load:")
-    before = 0.0
-    for count in (10, 30, 100):
-        tasks = task_set(count)
-        start = time.perf_counter()
-        response_times(tasks, ())
-        spent = 1e3 * (time.perf_counter() - start)
-        grown = f", {spent / before:.1f} times the one before" if before else ""
-        print(f"  {count} tasks: {spent:.1f} ms{grown}")
-        before = spent
-
-
 def main() -> None:
     """All figures."""
     runtime_operations()
     bench_charts.main()
     generator()
     large_models()
-    analysis()
+    bench_timing.main()
 
 
 if __name__ == "__main__":
