@@ -14,7 +14,7 @@ from pathlib import Path
 from analysis import report
 from analysis.table import show as show_table
 
-from . import draw, proving, simulate, steps
+from . import draw, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -67,8 +67,14 @@ def _parser() -> argparse.ArgumentParser:
         help="checks: every contract is executed; release: -O2, proof stands for checks",
     )  # fmt: skip
     prove.add_argument("--record", type=Path, help="write the proof record to this file")
-    analyse = command("analyse", _analyse, "response times against deadlines")
+    analyse = command(
+        "analyse", _analyse, "response times against deadlines, of a model or of CSV or JSON"
+    )
     analyse.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
+    analyse.add_argument("--json", action="store_true", help="of a CSV or JSON file: all as JSON")
+    analyse.add_argument(
+        "--export", choices=plain.EXPORTS, help="of a CSV or JSON file: print it for that tool"
+    )
     run = command("run", _run, "build and run the controller on this machine")
     run.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
     run.add_argument(
@@ -155,6 +161,9 @@ def _prove(options: argparse.Namespace) -> int:
 
 
 def _analyse(options: argparse.Namespace) -> int:
+    if options.model.suffix.lower() in plain.ENDINGS:
+        met = plain.run(options.model, as_json=options.json, export=options.export)
+        return OK if met else WRONG
     checked = _checked(options, deadlines=False)
     show_table(checked.analysis)
     if options.html is not None:
