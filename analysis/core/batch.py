@@ -33,8 +33,11 @@ else:
 LIMIT = 1 << 48
 """Times from here on are left to integers."""
 
-BLOCK = 64
-"""Tasks that are taken together: more do not fit a processor's cache."""
+CELLS = 1 << 14
+"""Tasks times sources that are taken together: more do not fit a processor's cache."""
+
+NARROWEST = 50
+"""Fewer tasks are not taken together, however many sources there are."""
 
 WORTH_IT = 24
 """With fewer tasks than this, arrays are no faster."""
@@ -75,9 +78,10 @@ def busy_periods(
     bounds = _fluid(used, total)
     found = np.zeros(count)
     before: Doubles = np.zeros(len(numbers))
+    block = max(NARROWEST, CELLS // len(numbers))
     low = 0
     while low < end:
-        high = 1 + int(level[min(low + BLOCK, end) - 1])
+        high = 1 + int(level[min(low + block, end) - 1])
         seen = 1 + int(source[:high].max())
         rows = np.zeros((high - low, seen))
         rows[np.arange(high - low), source[low:high]] = own[low:high]

@@ -83,7 +83,7 @@ def test_large_sets_agree(drawn: tuple[list[Task], list[Section], Platform]) -> 
 
 
 def test_more_tasks_than_a_block_holds_and_levels_across_its_edge() -> None:
-    count = 3 * batch.BLOCK
+    count = 3 * batch.NARROWEST + 60
     tasks = [Task(f"t{n}", -(n // 7), 10_000 + 61 * n, 10**6, 40) for n in range(count)]
     compare(tasks, [Section("o", "t150", 39), Section("o", "t3", 1)])
 
