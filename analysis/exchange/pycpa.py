@@ -1,6 +1,6 @@
 """Scripts for pyCPA: the same system, built and analysed by its Python interface.
 
-pyCPA counts a response from the release, without the task's own jitter. It has no
+pyCPA counts a response from the release: its figures are smaller, by up to the own jitter. It has no
 sections, so the script brings a scheduler that adds the blocking found here.
 """
 
