@@ -1,7 +1,7 @@
 """Scripts for pyCPA: the same system, built and analysed by its Python interface.
 
-pyCPA counts a response from the release: its figures are smaller, by up to the own jitter. It has no
-sections, so the script brings a scheduler that adds the blocking found here.
+pyCPA counts a response from the release: its figures are smaller, by up to the own jitter.
+It has no sections, so the script brings a scheduler that adds the blocking found here.
 """
 
 from __future__ import annotations
