@@ -14,7 +14,7 @@ from pathlib import Path
 from analysis import report
 from analysis.table import show as show_table
 
-from . import draw, proving, simulate, steps
+from . import draw, observed, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -67,8 +67,18 @@ def _parser() -> argparse.ArgumentParser:
         help="checks: every contract is executed; release: -O2, proof stands for checks",
     )  # fmt: skip
     prove.add_argument("--record", type=Path, help="write the proof record to this file")
-    analyse = command("analyse", _analyse, "response times against deadlines")
+    analyse = command(
+        "analyse", _analyse, "response times against deadlines, of a model or of CSV or JSON"
+    )
     analyse.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
+    analyse.add_argument(
+        "--observed", type=Path, metavar="FILE",
+        help="hold the execution times in the trace of a run against the budgets",
+    )  # fmt: skip
+    analyse.add_argument("--json", action="store_true", help="of a CSV or JSON file: all as JSON")
+    analyse.add_argument(
+        "--export", choices=plain.EXPORTS, help="of a CSV or JSON file: print it for that tool"
+    )
     run = command("run", _run, "build and run the controller on this machine")
     run.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
     run.add_argument(
@@ -155,12 +165,22 @@ def _prove(options: argparse.Namespace) -> int:
 
 
 def _analyse(options: argparse.Namespace) -> int:
+    if options.model.suffix.lower() in plain.ENDINGS:
+        if options.html is not None or options.observed is not None:
+            raise Refused(f"{options.model}: error: --html and --observed are for models")
+        met = plain.run(options.model, as_json=options.json, export=options.export)
+        return OK if met else WRONG
+    if options.json or options.export is not None:
+        raise Refused(f"{options.model}: error: --json and --export are for CSV and JSON files")
     checked = _checked(options, deadlines=False)
     show_table(checked.analysis)
     if options.html is not None:
         options.html.write_text(report.render(checked.analysis), encoding="utf-8")
         print(f"report: {options.html}")
-    return OK if checked.analysis.schedulable else WRONG
+    good = checked.analysis.schedulable
+    if options.observed is not None:
+        good = observed.within_budgets(checked, options.observed) and good
+    return OK if good else WRONG
 
 
 def _run(options: argparse.Namespace) -> int:

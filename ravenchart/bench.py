@@ -14,12 +14,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import behaviour.rules
-from analysis.core.fixed_priority import analyse
-from analysis.core.tasks import Task
 from gen.generate import generate
 from gen.load import load
 
-from . import bench_charts, steps, toolchain
+from . import bench_charts, bench_timing, steps, toolchain
 from .large_models import large_model
 from .toolchain import ROOT
 
@@ -81,37 +79,13 @@ def large_models() -> None:
         )
 
 
-def task_set(count: int) -> tuple[Task, ...]:
-    """``count`` tasks with periods of 10, 20, 50, 100 and 200 ms, 70 % load in all."""
-    tasks = []
-    for index in range(count):
-        period = 1_000_000 * (10, 20, 50, 100, 200)[index * 5 // count]
-        cost = period * 7 // (10 * count)
-        tasks.append(Task(f"task_{index}", count - index, period, period, cost))
-    return tuple(tasks)
-
-
-def analysis() -> None:
-    """Response times of growing task sets."""
-    print("response-time analysis at 70 % load:")
-    before = 0.0
-    for count in (10, 30, 100):
-        tasks = task_set(count)
-        start = time.perf_counter()
-        analyse(tasks)
-        spent = 1e3 * (time.perf_counter() - start)
-        grown = f", {spent / before:.1f} times the one before" if before else ""
-        print(f"  {count} tasks: {spent:.1f} ms{grown}")
-        before = spent
-
-
 def main() -> None:
     """All figures."""
     runtime_operations()
     bench_charts.main()
     generator()
     large_models()
-    analysis()
+    bench_timing.main()
 
 
 if __name__ == "__main__":

@@ -160,7 +160,7 @@ def _responses(
     found: dict[str, Response | FrameResponse] = {}
     tasks = tuple(replace(t, jitter=t.jitter + (late[t.name] or 0)) for t in network.tasks)
     lost = {
-        core: max(t.priority for t in tasks if t.core == core and late[t.name] is None)
+        core: max(t.priority for t in tasks if t.core == core and _delays(t, core, network, late))
         for core in {t.core for t in tasks if late[t.name] is None}
     }
     for response in fixed_priority.analyse(
@@ -178,6 +178,12 @@ def _responses(
                 sent = replace(sent, bound=None, reason=Reason.RIVAL)
             found[sent.frame.name] = sent
     return found
+
+
+def _delays(task: Task, core: str, network: Network, late: Mapping[str, int | None]) -> bool:
+    """Whether tasks of its priority lose their bounds; all do where lost releases cost time."""
+    platform = network.platforms.get(core)
+    return late[task.name] is None or (platform is not None and platform.release > 0)
 
 
 def _reach(frame: Frame, frames: Sequence[Frame]) -> int:

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 
 import pytest
 
+from gen.claims import Claims
 from gen.generate import generate
 from gen.model import System
-from gen.terms import Ns
 from ravenchart import toolchain
 from ravenchart.mutate.__main__ import Subject, mutants, tried
 from ravenchart.mutate.observing import Simulated
@@ -60,7 +60,7 @@ def test_a_program_that_is_not_clean_is_no_subject(
 ) -> None:
     chosen = [m for m in mutants(subject, 1, 1, ("target",)) if m.part == "code"]
 
-    def broken(system: System, bounds: Mapping[str, Ns]) -> Mapping[str, str]:
+    def broken(system: System, bounds: Claims) -> Mapping[str, str]:
         files = generate(system, bounds)
         return {**files, chosen[0].file: chosen[0].applied(files[chosen[0].file])}
 

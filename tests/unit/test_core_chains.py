@@ -12,6 +12,7 @@ from analysis.core import holistic
 from analysis.core.bus import Bus, Frame
 from analysis.core.chains import Chain, Hop, Latency, Step, latency
 from analysis.core.holistic import Network
+from analysis.core.platform import Platform
 from analysis.core.responses import Reason
 from analysis.core.tasks import Task
 
@@ -198,3 +199,19 @@ def test_what_is_released_without_bound_takes_those_below_with_it() -> None:
 def test_what_has_no_meaning_is_refused_by_name(made: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         made()
+
+
+def test_releases_of_a_task_without_bound_take_the_bounds_of_all_above_it() -> None:
+    """Releases run above all tasks: also those of a less urgent task whose jitter is lost."""
+    network = Network(
+        (
+            Task("source", 1, 10, 10, 8, core="other"),
+            Task("more", 2, 10, 10, 8, core="other"),
+            Task("high", 2, 50, 50, 5, core="here"),
+            Task("low", 1, 10, 10, 1, core="here"),
+        ),
+        released_by={"low": "source"},
+    )
+    assert holistic.analyse(network).from_event("high") == 5
+    costly = replace(network, platforms={"here": Platform(release=1)})
+    assert holistic.analyse(costly).from_event("high") is None

@@ -1,0 +1,22 @@
+"""Systems in the formats of other analysis tools. No number is rounded: times are whole ns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from analysis.core.chains import Chain
+from analysis.core.holistic import Network
+
+from . import cheddar, mast, pycpa
+from .shapes import Unfit
+
+Export = Callable[[Network, Sequence[Chain], str], str]
+"""The text of a system with that title; `Unfit` where the format cannot express it."""
+
+FORMATS: Mapping[str, Export] = {
+    "mast": mast.export,
+    "cheddar": cheddar.export,
+    "pycpa": pycpa.export,
+}
+
+__all__ = ["FORMATS", "Export", "Unfit"]

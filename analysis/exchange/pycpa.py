@@ -1,0 +1,113 @@
+"""Scripts for pyCPA: the same system, built and analysed by its Python interface.
+
+pyCPA counts a response from the release: its figures are smaller, by up to the own jitter.
+It has no sections, so the script brings a scheduler that adds the blocking found here.
+"""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Iterator, Sequence
+
+from analysis.core.blocking import blockers
+from analysis.core.bus import Frame
+from analysis.core.chains import Chain, Hop
+from analysis.core.holistic import Network
+from analysis.core.tasks import Task
+
+from .shapes import Unfit, dense, names, no_queues_or_errors, spelled_out, trees
+
+TAKEN = (*keyword.kwlist, "analysis", "blocked", "blocking", "int", "model", "options", "print",
+         "results", "schedulers", "sorted", "str", "sum", "system", "task")  # fmt: skip
+"""Names with a meaning of their own in the script."""
+
+HEAD = '''"""{title}, for pyCPA. Times in ns; responses count from the release."""
+
+from pycpa import analysis, model, options, schedulers
+
+
+class Blocked(schedulers.SPPScheduler):
+    """Static priorities, preemptive; each task is held up once by `blocking` ns."""
+
+    def b_plus(self, task, q, details=None, **others):
+        demand = own = q * task.wcet + blocking.get(task.name, 0)
+        while True:
+            needed = own + sum(
+                other.wcet * other.in_event_model.eta_plus(demand)
+                for other in task.get_resource_interferers()
+                if self.priority_cmp(other.scheduling_parameter, task.scheduling_parameter)
+            )
+            if needed == demand:
+                return demand
+            demand = needed
+
+
+'''
+
+TAIL = """
+if __name__ == "__main__":
+    options.init_pycpa()
+    results = analysis.analyze_system(system)
+    for task in sorted(results, key=str):
+        print(task.name, results[task].wcrt)
+"""
+
+
+def export(network: Network, chains: Sequence[Chain], title: str) -> str:
+    """The script for ``network``, with the sampling ``chains`` as effect chains of tasks."""
+    no_queues_or_errors(network, "pyCPA")
+    for name, bus in network.buses.items():
+        if bus.unknown:
+            raise Unfit(f"pyCPA needs every message: leave out the unknown ones of bus {name}")
+    network = spelled_out(network)
+    trees(network, "pyCPA")
+    lines = [*_lines(network), *_effect_chains(network, chains)]
+    return HEAD.format(title=names([title])[title]) + "\n".join(lines) + "\n\n" + TAIL
+
+
+def _lines(network: Network) -> Iterator[str]:
+    """The statements that build the system."""
+    items = names(network.items(), TAKEN)
+    cores = list(dict.fromkeys(task.core for task in network.tasks))
+    places = names([*cores, *network.frames], [*items.values(), *TAKEN])
+    held = blockers(network.tasks, network.sections, network.ceilings)
+    yield "system = model.System()"
+    lengths = {items[name]: section.length for name, section in held.items()}
+    yield f"blocking = {lengths!r}"
+    for core in cores:
+        yield f'{places[core]} = system.bind_resource(model.Resource("{places[core]}", Blocked()))'
+        members = [task for task in network.tasks if task.core == core]
+        levels = dense(-task.priority for task in members)
+        for task in members:
+            yield _task(items[task.name], places[core], task, levels[-task.priority])
+    for bus, frames in network.frames.items():
+        scheduler = f"schedulers.SPNPScheduler(cycle_time={network.buses[bus].bit_time})"
+        yield f'{places[bus]} = system.bind_resource(model.Resource("{places[bus]}", {scheduler}))'
+        for level, frame in enumerate(sorted(frames, key=lambda frame: frame.rank), 1):
+            yield _task(items[frame.name], places[bus], frame, level)
+    for name, item in network.items().items():
+        by = network.released_by.get(name)
+        if by is not None:
+            yield f"{items[by]}.link_dependent_task({items[name]})"
+        else:
+            event = f"model.PJdEventModel(P={item.period}, J={item.jitter})"
+            yield f"{items[name]}.in_event_model = {event}"
+
+
+def _task(name: str, place: str, item: Task | Frame, level: int) -> str:
+    return (
+        f'{name} = {place}.bind_task(model.Task("{name}", wcet={item.cost}, bcet={item.best}, '
+        f"scheduling_parameter={level}))"
+    )
+
+
+def _effect_chains(network: Network, chains: Sequence[Chain]) -> Iterator[str]:
+    """Chains whose every step is a task that samples."""
+    items = names(network.items(), TAKEN)
+    tasks = {task.name for task in network.tasks}
+    for number, chain in enumerate(chains, 1):
+        steps = chain.steps
+        sampled = all(step.hop is Hop.SAMPLED for step in steps[1:])
+        if sampled and all(step.name in tasks for step in steps):
+            members = ", ".join(items[step.name] for step in steps)
+            yield f'chain_{number} = model.EffectChain("chain_{number}", tasks=[{members}])'

@@ -1,0 +1,141 @@
+"""What the exports share: names that every tool accepts, dense priorities, trees of releases."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from analysis.core.bus import Frame
+from analysis.core.fixed_priority import NO_OVERHEAD
+from analysis.core.holistic import Network
+from analysis.core.tasks import Task
+
+EXACT = 2**53
+"""Tools that reckon in doubles hold integers up to here."""
+
+
+class Unfit(Exception):  # noqa: N818
+    """The format cannot express the system; the text says what and why."""
+
+
+def names(given: Iterable[str], taken: Iterable[str] = ()) -> dict[str, str]:
+    """A distinct name of letters, digits and underscores for each given one."""
+    found: dict[str, str] = {}
+    used = {name.lower() for name in taken}
+    for name in dict.fromkeys(given):
+        plain = re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_") or "core"
+        if not plain[0].isalpha():
+            plain = f"n_{plain}"
+        plain = re.sub("__+", "_", plain)
+        free, number = plain, 1
+        while free.lower() in used:
+            number += 1
+            free = f"{plain}_{number}"
+        used.add(free.lower())
+        found[name] = free
+    return found
+
+
+def dense(levels: Iterable[int]) -> dict[int, int]:
+    """The same order by the numbers from 1 up."""
+    return {level: number for number, level in enumerate(sorted(set(levels)), 1)}
+
+
+def exact(network: Network) -> None:
+    """Refuse times that a double cannot hold."""
+    for name, item in network.items().items():
+        cost = item.plain_cost if isinstance(item, Task) else item.cost
+        largest = max(item.period, item.deadline, item.jitter, cost)
+        if largest >= EXACT:
+            raise Unfit(f"the times of {name} must be below 2**53 ns, which is 104 days")
+
+
+def no_queues_or_errors(network: Network, tool: str) -> None:
+    """Refuse what only this analysis has."""
+    for bus, frames in network.frames.items():
+        if network.buses[bus].errors is not None:
+            raise Unfit(f"{tool} has no errors on a bus: leave out error_period of bus {bus}")
+        for frame in frames:
+            if frame.queue:
+                raise Unfit(
+                    f"{tool} has no first-in first-out queues: message {frame.name} has one"
+                )
+
+
+def spelled_out(network: Network) -> Network:
+    """The same bounds without platforms: overheads as costs, jitter and tasks above all others.
+
+    A table of rows becomes its sum, which can only make bounds larger.
+    """
+    tasks: list[Task] = []
+    released = dict(network.released_by)
+    for task in network.tasks:
+        platform = network.platforms.get(task.core, NO_OVERHEAD)
+        late = task.jitter + (platform.tick_period if task.timed else 0)
+        cost = task.plain_cost + 2 * platform.context_switch
+        tasks.append(replace(task, cost=cost, jitter=late, rows=(), timed=False))
+        if platform.release:
+            extra = _above_all(network, f"{task.name}_release", task.core, platform.release)
+            tasks.append(
+                replace(extra, period=task.period, deadline=task.period + late, jitter=late)
+            )
+            if task.name in released:
+                released[extra.name] = released[task.name]
+    for core in dict.fromkeys(task.core for task in network.tasks):
+        platform = network.platforms.get(core, NO_OVERHEAD)
+        if platform.tick_cost:
+            tick = _above_all(network, f"{core}_tick", core, platform.tick_cost)
+            tasks.append(replace(tick, period=platform.tick_period, deadline=platform.tick_period))
+    try:
+        return replace(network, tasks=tuple(tasks), released_by=released, platforms={})
+    except ValueError as fault:
+        raise Unfit(f"overheads become tasks of their own, and {fault}") from None
+
+
+def _above_all(network: Network, name: str, core: str, cost: int) -> Task:
+    """A task that all others of its core wait for."""
+    highest = max(
+        [task.priority for task in network.tasks if task.core == core]
+        + list(network.ceilings.values())
+    )
+    return Task(name, highest + 1, 1, 1, cost, core=core)
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """An item, and what its completion releases."""
+
+    item: Task | Frame
+    followers: tuple[Tree, ...]
+
+    def walk(self) -> list[Tree]:
+        """This tree and all in it, each before what it releases."""
+        found = [self]
+        for one in self.followers:
+            found += one.walk()
+        return found
+
+
+def trees(network: Network, tool: str) -> list[Tree]:
+    """The items that events release, each with all that follows it.
+
+    `Unfit` where something that follows has jitter of its own.
+    """
+    items = network.items()
+    followers: dict[str, list[str]] = {}
+    for name, by in network.released_by.items():
+        if items[name].jitter:
+            raise Unfit(f"{tool} has no jitter of what is released by another: {name} has")
+        followers.setdefault(by, []).append(name)
+
+    def tree(name: str) -> Tree:
+        return Tree(items[name], tuple(tree(one) for one in followers.get(name, ())))
+
+    return [tree(name) for name in items if name not in network.released_by]
+
+
+def urgency(frames: Sequence[Frame]) -> dict[str, int]:
+    """A larger number for a more urgent frame, from 1 up."""
+    order = sorted(frames, key=lambda frame: -frame.rank)
+    return {frame.name: number for number, frame in enumerate(order, 1)}

@@ -1,0 +1,247 @@
+"""From rows to the records of `analysis.core`; what does not fit together is told by line."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TypeVar
+
+from analysis.core import frames
+from analysis.core.blocking import Section, blockers
+from analysis.core.bus import ERROR_BITS, Bus, Errors, Frame
+from analysis.core.chains import Chain, Hop, Step
+from analysis.core.holistic import Network
+from analysis.core.platform import Platform
+from analysis.core.tasks import Row, Task
+
+from .columns import Values, values
+from .entries import Problem, Reading, read
+
+SECOND = 10**9
+
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True, slots=True)
+class PlainSystem:
+    """What a plain file holds; all times in ns."""
+
+    network: Network
+    chains: tuple[Chain, ...]
+
+
+def load(text: str, file: str) -> PlainSystem | tuple[Problem, ...]:
+    """The system in the text of a file, or what is wrong with it."""
+    reading = read(text, file)
+    rows: dict[str, list[Values]] = {}
+    for entry in reading.entries:
+        found = values(entry, reading)
+        if found is not None:
+            rows.setdefault(entry.kind, []).append(found)
+    if not reading.problems and not rows.get("task") and not rows.get("message"):
+        reading.complain(0, "there are neither tasks nor messages")
+    if not reading.problems:
+        _check(rows, reading)
+    if not reading.problems:
+        system = _system(rows, reading)
+        if system is not None and not reading.problems:
+            return system
+    return tuple(reading.problems)
+
+
+def _check(rows: dict[str, list[Values]], reading: Reading) -> None:
+    """Names that are given twice, and names that nothing has."""
+    for kinds in (("task", "message"), ("core",), ("bus",), ("object",)):
+        seen: dict[str, Values] = {}
+        for row in (row for kind in kinds for row in rows.get(kind, ())):
+            first = seen.setdefault(row.name, row)
+            if first is not row:
+                reading.complain(
+                    row.entry.line,
+                    f"the name {row.name} is already given in line {first.entry.line}",
+                )
+    names = {kind: {row.name for row in some} for kind, some in rows.items()}
+    tasks = names.get("task", set())
+    items = tasks | names.get("message", set())
+    for kind, column, known, what in (
+        ("row", "task", tasks, "task"),
+        ("section", "task", tasks, "task"),
+        ("message", "bus", names.get("bus", set()), "bus"),
+        ("chain", "step", items, "task or message"),
+        ("task", "released_by", items, "task or message"),
+        ("message", "released_by", items, "task or message"),
+    ):
+        for row in rows.get(kind, ()):
+            name = row.word(column)
+            if name and name not in known:
+                reading.complain(
+                    row.entry.line, f"{column} of {kind} {row.name}: there is no {what} {name}"
+                )
+    used = {task.word("core") for task in rows.get("task", ())}
+    for core in rows.get("core", ()):
+        if core.name not in used:
+            reading.complain(core.entry.line, f"no task is on core {core.name}")
+
+
+def _system(rows: dict[str, list[Values]], reading: Reading) -> PlainSystem | None:
+    tables: dict[str, list[Row]] = {}
+    for row in rows.get("row", ()):
+        made = _made(row, reading, _row)
+        if made is not None:
+            tables.setdefault(row.word("task"), []).append(made)
+    tasks = [
+        _made(row, reading, lambda row: _task(row, tables.get(row.name, [])))
+        for row in rows.get("task", ())
+    ]
+    sections = [
+        Section(row.name, row.word("task"), row.number("length")) for row in rows.get("section", ())
+    ]
+    buses = {row.name: row for row in rows.get("bus", ())}
+    on: dict[str, list[Frame]] = {}
+    for row in rows.get("message", ()):
+        frame = _made(row, reading, lambda row: _frame(row, buses[row.word("bus")]))
+        if frame is not None:
+            on.setdefault(row.word("bus"), []).append(frame)
+    platforms = {row.name: _made(row, reading, _platform) for row in rows.get("core", ())}
+    chains = [
+        _chain(list(steps), reading)
+        for _, steps in groupby(rows.get("chain", ()), key=lambda row: row.name)
+    ]
+    for name, count in Counter(chain.name for chain in chains if chain).items():
+        if count > 1:
+            reading.complain(0, f"the steps of chain {name} must stand together")
+    _ranks(rows, on, reading)
+    if reading.problems:
+        return None
+    ceilings = {row.name: row.number("ceiling") for row in rows.get("object", ())}
+    try:
+        network = Network(
+            tuple(task for task in tasks if task is not None),
+            {bus: tuple(some) for bus, some in on.items()},
+            {name: _bus(row) for name, row in buses.items()},
+            {
+                row.name: row.word("released_by")
+                for kind in ("task", "message")
+                for row in rows.get(kind, ())
+                if row.word("released_by")
+            },
+            tuple(sections),
+            {name: made for name, made in platforms.items() if made is not None},
+            ceilings,
+        )
+        blockers(network.tasks, network.sections, network.ceilings)
+    except ValueError as fault:
+        reading.complain(_line_of(str(fault), rows), str(fault))
+        return None
+    return PlainSystem(network, tuple(chain for chain in chains if chain is not None))
+
+
+def _line_of(text: str, rows: dict[str, list[Values]]) -> int:
+    """The line of the first row whose name is the first one that the text speaks of."""
+    lines = {row.name: row.entry.line for some in reversed(rows.values()) for row in reversed(some)}
+    return next((lines[word] for word in text.replace(",", "").split() if word in lines), 0)
+
+
+def _made(row: Values, reading: Reading, make: Callable[[Values], Made]) -> Made | None:
+    """What is made of a row; None, and a problem, where its numbers do not go together."""
+    try:
+        return make(row)
+    except ValueError as fault:
+        reading.complain(row.entry.line, str(fault))
+        return None
+
+
+def _row(row: Values) -> Row:
+    return Row(row.name, row.number("cost"), row.number("every", 1), row.number("phase"))
+
+
+def _task(row: Values, table: list[Row]) -> Task:
+    if not table and not row.number("cost"):
+        raise ValueError(f"cost_us of task {row.name} is missing, and it has no rows")
+    period = row.number("period")
+    return Task(
+        row.name,
+        row.number("priority"),
+        period,
+        row.number("deadline", period),
+        row.number("cost"),
+        row.number("jitter"),
+        row.word("core"),
+        tuple(table),
+        bool(row.number("timed")),
+        bool(row.number("sporadic")),
+        row.number("best"),
+    )
+
+
+def _platform(row: Values) -> Platform:
+    return Platform(
+        row.number("context_switch"),
+        row.number("release"),
+        row.number("tick_period"),
+        row.number("tick_cost"),
+    )
+
+
+def _bus(row: Values) -> Bus:
+    period = row.number("error_period")
+    errors = (
+        Errors(period, row.number("error_burst", 1), row.number("error_bits", ERROR_BITS))
+        if period
+        else None
+    )
+    return Bus(-(-SECOND // row.number("bit_rate")), row.number("unknown"), errors)
+
+
+def _frame(row: Values, bus: Values) -> Frame:
+    extended = bool(row.number("extended"))
+    cost = row.number("cost")
+    if bool(cost) == ("bytes" in row.numbers):
+        raise ValueError(f"message {row.name} must have either bytes or cost_us")
+    if not cost:
+        length = row.number("bytes")
+        fd = row.number("fd")
+        bits = (frames.fd_bits if fd else frames.classic_bits)(length, extended=extended)
+        cost = bits.time(bus.number("bit_rate"), bus.number("data_rate"), SECOND)
+    period = row.number("period")
+    return Frame(
+        row.name,
+        frames.rank(row.number("identifier"), extended=extended),
+        period,
+        row.number("deadline", period),
+        cost,
+        row.number("jitter"),
+        row.word("queue"),
+        row.number("best"),
+    )
+
+
+def _ranks(rows: dict[str, list[Values]], on: dict[str, list[Frame]], reading: Reading) -> None:
+    """Two messages of one bus must not have the same identifier."""
+    lines = {row.name: row.entry.line for row in rows.get("message", ())}
+    for bus, some in on.items():
+        seen: dict[int, str] = {}
+        for frame in some:
+            other = seen.setdefault(frame.rank, frame.name)
+            if other != frame.name:
+                reading.complain(
+                    lines[frame.name],
+                    f"identifier of message {frame.name} is already that of {other} on bus {bus}",
+                )
+
+
+def _chain(rows: list[Values], reading: Reading) -> Chain | None:
+    steps = []
+    for row in rows:
+        word = row.word("hop")
+        if word not in {hop.value for hop in Hop}:
+            reading.complain(
+                row.entry.line,
+                f"hop of chain {row.name} must be released, sampled or queued, not {word}",
+            )
+            return None
+        steps.append(Step(row.word("step"), Hop(word), row.number("takes", 1)))
+    limits = [max(row.number(name) for row in rows) for name in ("reaction_limit", "age_limit")]
+    return Chain(rows[0].name, tuple(steps), *limits)

@@ -1,0 +1,115 @@
+"""When things arrive and how late they are released: what the analysis leaves open."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+from analysis.core.blocking import Section
+from analysis.core.bus import Frame
+from analysis.core.holistic import Network
+from analysis.core.tasks import Task
+
+Choice = Callable[[int], int]
+"""A number of ticks for job k, from 0 on."""
+
+
+def none(_: int) -> int:
+    """No ticks, whichever job."""
+    return 0
+
+
+@dataclass(frozen=True, slots=True)
+class Inside:
+    """A job is inside the object of ``section`` from its tick ``start`` on."""
+
+    start: int
+    section: Section
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """One way in which a task or message can behave; all times in ticks.
+
+    ``first``   arrival of the first job; unused for what another item releases
+    ``late``    from arrival to release of job k, at most its jitter
+    ``more``    how much more than a period passes between the arrivals of jobs k and k + 1
+    ``frame``   the frame of the table that the first job executes
+    ``inside``  the sections of a job, in order, none overlapping another
+    """
+
+    first: int = 0
+    late: Choice = none
+    more: Choice = none
+    frame: int = 0
+    inside: tuple[Inside, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """The phases of a network's items by name (all others arrive at 0) and faults of buses.
+
+    ``faults`` gives, by bus, the instants at which what is being sent is destroyed, in order.
+    """
+
+    phases: Mapping[str, Phase] = field(default_factory=dict)
+    faults: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+
+
+def chance_scenario(network: Network, chance: random.Random, until: int) -> Scenario:
+    """Phases, delays, frames, places of sections and allowed faults at random."""
+    phases = {
+        name: _chance_phase(item, network.sections, chance)
+        for name, item in network.items().items()
+    }
+    return Scenario(
+        phases, {name: _chance_faults(network, name, chance, until) for name in network.buses}
+    )
+
+
+def _chance_phase(item: Task | Frame, sections: Iterable[Section], chance: random.Random) -> Phase:
+    jitter = item.jitter
+    late = chance.choice((none, lambda _: jitter, lambda _: chance.randint(0, jitter)))
+    first = chance.randrange(item.period)
+    if isinstance(item, Frame):
+        return Phase(first, late)
+    sporadic = item.sporadic and chance.random() < 0.5
+    return Phase(
+        first,
+        late,
+        (lambda _: chance.randrange(item.period)) if sporadic else none,
+        chance.randrange(item.frame_count),
+        _chance_inside([s for s in sections if s.user == item.name], item, chance),
+    )
+
+
+def _chance_inside(
+    sections: list[Section], task: Task, chance: random.Random
+) -> tuple[Inside, ...]:
+    """The sections in any order, as many as fit a job, with a random rest between them."""
+    found = []
+    at = 0
+    least = min(task.cost + sum(row.cost for row in rows) for rows in task.frames)
+    for section in chance.sample(sections, len(sections)):
+        room = least - at - section.length
+        if room >= 0:
+            found.append(Inside(at + chance.randint(0, room), section))
+            at = found[-1].start + section.length
+    return tuple(found)
+
+
+def _chance_faults(
+    network: Network, bus: str, chance: random.Random, until: int
+) -> tuple[int, ...]:
+    """As many faults as the bus's model allows, or fewer."""
+    model = network.buses[bus].errors
+    if model is None:
+        return ()
+    times = []
+    at = chance.randrange(model.period)
+    while at < until:
+        times.append(at)
+        at += model.period + chance.choice((0, chance.randrange(model.period)))
+    extra = [chance.randrange(until) for _ in range(model.burst - 1)]
+    return tuple(sorted(times + extra))

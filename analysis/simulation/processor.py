@@ -1,0 +1,116 @@
+"""One core: preemptive fixed priorities, first-in first-out among equals, immediate ceilings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from analysis.core.tasks import Task
+
+from .phases import Inside
+
+
+@dataclass(slots=True)
+class Segment:
+    """A stretch of a job: ticks left, priority inside, and the row that ends with it."""
+
+    left: int
+    level: int
+    row: str = ""
+    begun: bool = False
+
+
+@dataclass(slots=True)
+class Job:
+    """A released job of ``task``; ``event`` began its chain, ``arrival`` and ``order`` itself."""
+
+    task: Task
+    number: int
+    event: int
+    arrival: int
+    order: int
+    segments: list[Segment] = field(default_factory=list)
+
+    def urgency(self) -> tuple[int, bool, int]:
+        """Its priority now, whether it is inside an object, and who came first."""
+        segment = self.segments[0]
+        if segment.begun:
+            return segment.level, segment.level > self.task.priority, -self.order
+        return self.task.priority, False, -self.order
+
+
+def segments_of(
+    task: Task, frame: int, inside: tuple[Inside, ...], ceilings: Mapping[str, int]
+) -> list[Segment]:
+    """The stretches of a job that executes ``frame``: cut where a row or a section ends."""
+    rows = list(_rows(task, frame))
+    cuts = {end for end, _ in rows}
+    for one in inside:
+        cuts |= {one.start, one.start + one.section.length}
+    names = dict(rows)
+    found = []
+    before = 0
+    for cut in sorted(cuts - {0}):
+        level = max(
+            (
+                ceilings[one.section.resource]
+                for one in inside
+                if one.start <= before < one.start + one.section.length
+            ),
+            default=task.priority,
+        )
+        found.append(Segment(cut - before, max(level, task.priority), names.get(cut, "")))
+        before = cut
+    return found
+
+
+def _rows(task: Task, frame: int) -> Iterator[tuple[int, str]]:
+    """Where each row ends within the job, the task's own work before all of them."""
+    at = task.cost
+    yield at, ""
+    for row in task.frames[frame]:
+        at += row.cost
+        yield at, row.name
+
+
+@dataclass(slots=True)
+class Processor:
+    """The state of one core at the time ``now``."""
+
+    now: int = 0
+    ready: list[Job] = field(default_factory=list)
+    running: Job | None = None
+
+    @property
+    def due(self) -> int | None:
+        """When the running job's segment ends, if nothing happens before."""
+        return None if self.running is None else self.now + self.running.segments[0].left
+
+    def advance(self, now: int) -> tuple[Job, Segment] | None:
+        """Execute until ``now``, at most until `due`; the segment that has ended."""
+        job = self.running
+        spent, self.now = now - self.now, now
+        if job is None or not spent:
+            return None
+        segment = job.segments[0]
+        segment.left -= spent
+        segment.begun = True
+        if segment.left:
+            return None
+        job.segments.pop(0)
+        if not job.segments:
+            self.ready.remove(job)
+            self.running = None
+        return job, segment
+
+    def release(self, job: Job) -> None:
+        """Make a job ready; one that has nothing to execute is not for here."""
+        self.ready.append(job)
+
+    def dispatch(self) -> None:
+        """Choose who runs from now on: of equals, who runs, then who came first."""
+        self.running = max(
+            self.ready,
+            key=lambda job: (job.urgency()[:2], job is self.running, job.urgency()),
+            default=None,
+        )

@@ -1,0 +1,86 @@
+"""The phases that bring one task or message to its bound, where theory has such phases.
+
+All rivals are released together at one instant, each with its whole jitter, and from then
+on without any; one tick before, the blocking section has been entered; one bit before,
+the blocking frame has begun.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from analysis.core.bus import Frame
+from analysis.core.can_response import FrameResponse
+from analysis.core.responses import Response
+from analysis.core.tasks import Task
+
+from .phases import Choice, Inside, Phase, Scenario
+
+
+@dataclass(frozen=True, slots=True)
+class WorstCase:
+    """A scenario and how long it must run for the worst completion to be seen."""
+
+    scenario: Scenario
+    until: int
+
+
+def of_task(response: Response) -> WorstCase:
+    """The worst case of a task that has a bound; ValueError where it has none.
+
+    It attains the bound, one tick of the blocking less, for tasks of one frame and of
+    priorities that differ, unless the task's own job ends inside an object.
+    """
+    task = response.task
+    if response.bound is None:
+        raise ValueError(f"task {task.name} has no bound")
+    level = response.level
+    lead = 1 + max(other.jitter for other in level.order)
+    frames = {share.task.name: share.frame for share in response.interference}
+    frames[task.name] = (response.frame - response.worst_job) % task.frame_count
+    phases = _together(level.order[: level.reach], lead, frames)
+    for other in level.order[level.reach :]:
+        phases[other.name] = Phase(_never(lead, response))
+    blocking = response.blocking
+    if blocking is not None and blocking.user in phases:
+        phases[blocking.user] = Phase(lead - 1, inside=(Inside(0, blocking),))
+    return WorstCase(Scenario(phases), _never(lead, response))
+
+
+def _never(lead: int, response: Response) -> int:
+    """After the worst completion."""
+    return lead + response.jobs * response.task.period + response.window + 1
+
+
+def of_frame(response: FrameResponse) -> WorstCase:
+    """The worst case of a frame that has a bound; ValueError where it has none.
+
+    It attains the bound, one bit of the blocking less, without queues and errors.
+    """
+    frame, level = response.frame, response.level
+    if response.bound is None:
+        raise ValueError(f"message {frame.name} has no bound")
+    lead = level.bus.bit_time + max(other.jitter for other in level.order)
+    until = lead + response.instances * frame.period + response.window + frame.cost
+    phases = _together(level.order[: level.reach], lead, {})
+    for other in level.order[level.reach :]:
+        blocker = other.name == response.blocker
+        phases[other.name] = Phase(lead - level.bus.bit_time if blocker else until + 1)
+    return WorstCase(Scenario(phases), until)
+
+
+def _together(
+    items: Iterable[Task | Frame], instant: int, frames: dict[str, int]
+) -> dict[str, Phase]:
+    """Phases in which all are released at the instant, as late as their jitter allows."""
+    return {
+        item.name: Phase(instant - item.jitter, _first_late(item), frame=frames.get(item.name, 0))
+        for item in items
+    }
+
+
+def _first_late(item: Task | Frame) -> Choice:
+    """Every job that can be is released with the first one; later ones are not late."""
+    jitter, period = item.jitter, item.period
+    return lambda job: max(0, jitter - job * period)

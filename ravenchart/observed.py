@@ -1,0 +1,40 @@
+"""`ravenchart analyse --observed`: recorded execution times against the model's budgets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from analysis.observed import TraceError, read_map, read_trace
+from analysis.report import executions
+from analysis.units import microseconds
+
+from .steps import Checked, Refused
+
+
+def within_budgets(checked: Checked, path: Path) -> bool:
+    """Print every activity that was executed, nearest to its budget first; none is above it.
+
+    ``path`` is the trace that `ravenchart run` writes beside its report, of a program that
+    was generated from this model: ``generated/trace.json`` says what its numbers mean.
+    `Refused` for a trace that cannot be read, was cut off, or holds no executions.
+    """
+    names = checked.folder / "generated" / "trace.json"
+    try:
+        trace_map = read_map(names.read_text(encoding="utf-8"), str(names))
+        with path.open(encoding="ascii", errors="replace") as lines:
+            seen = read_trace(lines, trace_map, str(path))
+    except TraceError as fault:
+        raise Refused(str(fault)) from None
+    if not seen.complete:
+        raise Refused(f"{path}: error: the trace was cut off: the run did not end by itself")
+    rows = executions(checked.analysis, seen)
+    if not rows:
+        raise Refused(f"{path}: error: no activity of {checked.system.name} was executed")
+    for row in rows:
+        longest, budget = microseconds(row.observed), microseconds(row.claimed)
+        word = "ABOVE" if row.exceeded else "within"
+        print(f"{row.row}: {longest} us, {word} its budget of {budget} us")
+    unseen = {slot.element for processor in checked.system.processors for slot in processor.slots}
+    for name in sorted(unseen - {row.row for row in rows}):
+        print(f"{name}: not executed in this run")
+    return not any(row.exceeded for row in rows)

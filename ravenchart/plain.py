@@ -1,0 +1,130 @@
+"""`ravenchart analyse` of a plain CSV or JSON file: the verdict, a table, JSON, exports."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from analysis.core.holistic import Holistic
+from analysis.core.responses import Response
+from analysis.exchange import FORMATS, Unfit
+from analysis.plain.build import PlainSystem, load
+from analysis.plain.results import PlainResult, analyse, everything, loads
+from analysis.units import duration, percent
+
+from .steps import Refused
+
+EXPORTS = tuple(FORMATS)
+"""Tools that a system can be exported for."""
+
+ENDINGS = (".csv", ".json")
+"""How the names of plain files end."""
+
+SHOWN = 50
+"""Rows of the table; the tightest come first."""
+
+
+def read(path: Path) -> PlainSystem:
+    """The system in a file; `Refused` with everything that is wrong with it."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise Refused(f"{path}: error: the file must be UTF-8 text") from None
+    found = load(text, str(path))
+    if isinstance(found, PlainSystem):
+        return found
+    raise Refused("\n".join(map(str, found[:SHOWN])))
+
+
+def run(path: Path, *, as_json: bool, export: str | None) -> bool:
+    """Analyse and print; whether every deadline is met, or the export was printed."""
+    system = read(path)
+    if export is not None:
+        try:
+            print(FORMATS[export](system.network, system.chains, path.stem), end="")
+        except Unfit as unfit:
+            raise Refused(f"{path}: error: {unfit}") from None
+        return True
+    try:
+        result = analyse(system)
+    except ValueError as fault:
+        raise Refused(f"{path}: error: {fault}") from None
+    if as_json:
+        print(json.dumps(everything(result), indent=1))
+    else:
+        show(result, Console(highlight=False))
+    return result.met
+
+
+def show(result: PlainResult, out: Console) -> None:
+    """The verdict, then the tightest rows, chains and loads."""
+    found = result.found
+    missed = [name for name in found.responses if not found.meets(name)]
+    late = [latency.chain.name for latency in result.latencies if not latency.met]
+    if result.met:
+        out.print("every deadline is met", markup=False)
+    for name in missed[:SHOWN]:
+        out.print(_miss(name, found), markup=False)
+    for name in late:
+        out.print(f"chain {name} is above its limit", markup=False)
+    if result.scaling is not None:
+        factor = result.scaling.factor
+        limit = f", then {result.scaling.binding} fails" if result.scaling.binding else ""
+        out.print(
+            f"all execution times can be multiplied by {float(factor):.4f}{limit}", markup=False
+        )
+    for name, share in loads(result.system.network).items():
+        out.print(f"load of {name or 'the core'}: {percent(share)}", markup=False)
+    out.print(_table(result))
+    if len(found.responses) > SHOWN:
+        out.print(f"and {len(found.responses) - SHOWN} more with more slack", markup=False)
+    for latency in result.latencies:
+        out.print(
+            f"chain {latency.chain.name}: reaction {_shown(latency.reaction)}, "
+            f"age {_shown(latency.age)}",
+            markup=False,
+        )
+
+
+def _miss(name: str, found: Holistic) -> str:
+    """One line on a missed deadline."""
+    needed, reason = found.from_event(name), found.responses[name].reason
+    if needed is None:
+        return f"{name} has no bound: {reason.value if reason else 'unknown'}"
+    over = needed - found.deadline(name)
+    return f"{name} misses its deadline by {duration(over)}"
+
+
+def _table(result: PlainResult) -> Table:
+    found = result.found
+    table = Table(box=None)
+    for title in ("", "T", "D", "C", "J", "B", "R", "slack"):
+        table.add_column(title, justify="right" if title else "left")
+    names = sorted(found.responses, key=lambda name: _slack(name, found))
+    for name in names[:SHOWN]:
+        response = found.responses[name]
+        item = response.task if isinstance(response, Response) else response.frame
+        cost = response.task.plain_cost if isinstance(response, Response) else response.frame.cost
+        needed = found.from_event(name)
+        slack = None if needed is None else found.deadline(name) - needed
+        table.add_row(
+            name,
+            *map(duration, (item.period, item.deadline, cost)),
+            duration(item.jitter),
+            duration(response.blocked),
+            _shown(needed),
+            _shown(slack),
+        )
+    return table
+
+
+def _slack(name: str, found: Holistic) -> tuple[bool, int]:
+    needed = found.from_event(name)
+    return needed is not None, 0 if needed is None else found.deadline(name) - needed
+
+
+def _shown(time: int | None) -> str:
+    return "no bound" if time is None else duration(time)

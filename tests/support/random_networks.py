@@ -1,0 +1,106 @@
+"""Random networks of tasks, sections, tables, frames and chains, small enough to simulate."""
+
+from __future__ import annotations
+
+import random
+
+from analysis.core.blocking import Section
+from analysis.core.bus import Bus, Errors, Frame
+from analysis.core.holistic import Network
+from analysis.core.tasks import Row, Task
+
+PERIODS = (100, 150, 200, 300, 400, 600, 1_000)
+
+
+def random_network(chance: random.Random, *, plain: bool = False) -> Network:
+    """One or two cores, perhaps a bus, loads up to 1.1; ``plain``: one core, no tables."""
+    cores = 1 if plain else chance.choice((1, 1, 2))
+    tasks: list[Task] = []
+    sections: list[Section] = []
+    for core in range(cores):
+        some = _tasks(chance, f"c{core}", plain)
+        tasks += some
+        sections += _sections(chance, some, f"c{core}", plain)
+    if plain:
+        return Network(tuple(tasks), sections=tuple(sections))
+    frames, bus = _frames(chance)
+    released: dict[str, str] = {}
+    if frames and chance.random() < 0.7:
+        tasks, frames, released = _chain(chance, tasks, frames)
+    homes = {"can": tuple(frames)} if frames else {}
+    return Network(tuple(tasks), homes, {"can": bus} if frames else {}, released, tuple(sections))
+
+
+def _tasks(chance: random.Random, core: str, plain: bool) -> list[Task]:
+    count = chance.randint(1, 5)
+    load = chance.choice((0.5, 0.8, 0.95, 1.05))
+    found = []
+    for n in range(count):
+        period = chance.choice(PERIODS) + chance.choice((0, 0, chance.randint(1, 50)))
+        cost = max(2, int(period * load / count * chance.uniform(0.4, 1.4)))
+        jitter = chance.choice((0, 0, chance.randint(0, period), 2 * period))
+        priority = count - n if plain else chance.randint(1, count)
+        task = Task(f"{core}.t{n}", priority, period, 3 * period, cost, jitter, core)
+        if not plain and chance.random() < 0.4:
+            task = _table(chance, task)
+        found.append(task)
+    return found
+
+
+def _table(chance: random.Random, task: Task) -> Task:
+    """The task with its cost in rows of different periods."""
+    rows = tuple(
+        Row(f"r{n}", max(1, task.cost // 2), every, chance.randrange(every))
+        for n, every in enumerate(chance.choices((1, 2, 3, 4), k=chance.randint(1, 3)))
+    )
+    own, sporadic = chance.randint(0, 2), chance.random() < 0.3
+    return Task(
+        task.name, task.priority, task.period, task.deadline, own, task.jitter, task.core,
+        rows, sporadic=sporadic,
+    )  # fmt: skip
+
+
+def _sections(chance: random.Random, tasks: list[Task], core: str, plain: bool) -> list[Section]:
+    """At most one section a task; a plain one is no longer than its job's beginning."""
+    found = []
+    for task in tasks:
+        if chance.random() < 0.4:
+            longest = task.cost - 1 if plain else task.plain_cost
+            length = chance.randint(1, max(1, longest))
+            found.append(Section(f"{core}.o{chance.randint(0, 1)}", task.name, length))
+    return found
+
+
+def _frames(chance: random.Random) -> tuple[list[Frame], Bus]:
+    count = chance.randint(0, 5)
+    queues = ("", "", "node") if chance.random() < 0.5 else ("",)
+    frames = []
+    for n in range(count):
+        period = chance.choice(PERIODS) * 2
+        cost = max(5, int(period * 0.8 / count * chance.uniform(0.3, 1.2)))
+        jitter = chance.choice((0, 0, chance.randint(0, period)))
+        queue = chance.choice(queues)
+        frames.append(Frame(f"m{n}", n, period, 3 * period, cost, jitter, queue))
+    errors = Errors(4_000, chance.choice((1, 2)), bits=31) if chance.random() < 0.3 else None
+    return frames, Bus(1, errors=errors)
+
+
+def _chain(
+    chance: random.Random, tasks: list[Task], frames: list[Frame]
+) -> tuple[list[Task], list[Frame], dict[str, str]]:
+    """A task that releases a frame that releases a task of its own, on the last core."""
+    sender, number = chance.choice(tasks), chance.randrange(len(frames))
+    old = frames[number]
+    frame = Frame(
+        old.name,
+        old.rank,
+        sender.period,
+        sender.deadline,
+        old.cost,
+        chance.choice((0, 7)),
+        old.queue,
+    )
+    core = tasks[-1].core
+    taker = Task("taker", chance.randint(0, 9), sender.period, sender.deadline, 3, core=core)
+    frames = [*frames[:number], frame, *frames[number + 1 :]]
+    return [*tasks, taker], frames, {frame.name: sender.name, taker.name: frame.name}

@@ -1,0 +1,184 @@
+"""Allocation: every strategy's tables hold by the analysis, and search is near the best."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+import pytest
+
+from analysis.core.allocation import (
+    Activity,
+    Allocation,
+    Strategy,
+    Table,
+    allocate,
+    by_locality,
+    by_period,
+    checked,
+)
+from analysis.core.blocking import Section
+from analysis.core.platform import Platform
+
+
+def names(tables: Sequence[Table]) -> list[list[str]]:
+    return [[activity.name for activity in table] for table in tables]
+
+
+def partitions(items: Sequence[Activity]) -> Iterator[list[Table]]:
+    """Every way to put the activities together, possible or not."""
+    if not items:
+        yield []
+        return
+    first, *rest = items
+    for tables in partitions(rest):
+        yield [(first,), *tables]
+        for n, table in enumerate(tables):
+            yield [*tables[:n], (first, *table), *tables[n + 1 :]]
+
+
+def some_activities(chance: random.Random, count: int, load: float) -> list[Activity]:
+    found = []
+    for n in range(count):
+        period = 100 * chance.choice((1, 2, 3, 4, 6, 8))
+        cost = max(1, int(period * load / count * chance.uniform(0.4, 1.6)))
+        deadline = chance.choice((period, max(cost, period // 2)))
+        found.append(Activity(f"a{n}", period, cost, deadline, f"o{chance.randint(0, 2)}"))
+    return found
+
+
+def consistent(found: Allocation, activities: Sequence[Activity]) -> None:
+    """Every activity is in one table, and the tasks execute the tables as they are."""
+    assert sorted(a.name for table in found.tables for a in table) == sorted(
+        a.name for a in activities
+    )
+    for table, task in zip(found.tables, found.tasks, strict=True):
+        assert {a.core for a in table} == {task.core}
+        assert [row.name for row in task.rows] == [a.name for a in table]
+        for activity, row in zip(table, task.rows, strict=True):
+            assert row.every * task.period == activity.period
+
+
+# --- The strategies ---------------------------------------------------------------------
+
+
+def test_by_period_there_is_one_task_for_each_period() -> None:
+    activities = [
+        Activity("a", 10, 1, 10, "x"),
+        Activity("b", 20, 1, 20, "x"),
+        Activity("c", 10, 1, 10, "y"),
+        Activity("d", 15, 1, 15, "y"),
+    ]
+    assert names(by_period(activities)) == [["a", "c"], ["d"], ["b"]]
+
+
+def test_by_locality_an_owners_activities_share_where_their_rates_fit() -> None:
+    activities = [
+        Activity("slow", 40, 1, 40, "x"),
+        Activity("fast", 10, 1, 10, "x"),
+        Activity("odd", 15, 1, 15, "x"),
+        Activity("rare", 10 * 17, 1, 170, "x"),
+        Activity("other", 10, 1, 10, "y"),
+    ]
+    assert names(by_locality(activities)) == [["fast", "slow"], ["odd"], ["rare"], ["other"]]
+
+
+def test_phases_level_what_a_job_costs() -> None:
+    activities = tuple(Activity(f"a{n}", 40, 5, 40) for n in range(4))
+    found = checked([(Activity("fast", 10, 1, 10), *activities)])
+    (task,) = found.tasks
+    assert sorted(row.phase for row in task.rows if row.every == 4) == [0, 1, 2, 3]
+    assert found.responses[0].bound == 6
+
+
+def test_an_activitys_own_deadline_counts_and_the_urgent_one_runs_first() -> None:
+    activities = (Activity("late", 10, 5, 10), Activity("soon", 10, 2, 3))
+    found = checked([activities])
+    assert (found.response("soon"), found.response("late")) == (2, 7)
+    assert (found.met, found.slack) == (True, Fraction(3, 10))
+    with pytest.raises(KeyError):
+        found.response("none")
+
+
+def test_cores_are_kept_apart() -> None:
+    activities = [Activity(f"a{n}", 10, 4, 10, core=f"c{n % 2}") for n in range(4)]
+    for strategy in Strategy:
+        found = allocate(activities, strategy)
+        consistent(found, activities)
+        assert found.met and len(found.tables) == 2
+
+
+def test_what_is_impossible_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"period of b must be a multiple of 10, .* not 15"):
+        checked([(Activity("a", 10, 1, 10), Activity("b", 15, 1, 15))])
+    with pytest.raises(ValueError, match="two activities have the name a"):
+        allocate([Activity("a", 10, 1, 10)] * 2, Strategy.BY_PERIOD)
+    with pytest.raises(ValueError, match="cost of activity a must be an integer above 0"):
+        Activity("a", 10, 0, 10)
+
+
+def test_an_overload_is_no_allocation_that_meets_deadlines() -> None:
+    activities = [Activity(f"a{n}", 10, 6, 10) for n in range(3)]
+    for strategy in Strategy:
+        found = allocate(activities, strategy)
+        consistent(found, activities)
+        assert not found.met
+
+
+# --- Against all there are --------------------------------------------------------------
+
+
+def best(
+    activities: Sequence[Activity], sections: Sequence[Section], platforms: dict[str, Platform]
+) -> tuple[int, object]:
+    """Fewest tasks and most slack over all partitions that meet every deadline."""
+    fewest, slack = len(activities) + 1, None
+    for tables in partitions(activities):
+        try:
+            found = checked(tables, sections, platforms)
+        except ValueError:
+            continue
+        if found.met:
+            assert found.slack is not None
+            fewest = min(fewest, len(tables))
+            slack = found.slack if slack is None else max(slack, found.slack)
+    return fewest, slack
+
+
+def test_search_finds_the_best_nearly_always_and_never_a_wrong_one() -> None:
+    few, most, possible = 0, 0, 0
+    for seed in range(40):
+        chance = random.Random(seed)
+        activities = some_activities(chance, 5, chance.choice((0.5, 0.8, 0.95)))
+        sections = [Section("o", a.name, 1) for a in activities if chance.random() < 0.3]
+        platforms = {"": Platform(context_switch=chance.randint(0, 3))}
+        fewest, slack = best(activities, sections, platforms)
+        small = allocate(activities, Strategy.FEWEST_TASKS, sections, platforms)
+        roomy = allocate(activities, Strategy.MOST_SLACK, sections, platforms)
+        for found in (small, roomy):
+            consistent(found, activities)
+            assert found == checked(found.tables, sections, platforms)
+        if slack is None:
+            assert not small.met and not roomy.met
+            continue
+        possible += 1
+        for strategy in (Strategy.BY_PERIOD, Strategy.BY_LOCALITY):
+            simple = allocate(activities, strategy, sections, platforms)
+            if simple.met:
+                assert small.met and len(small.tables) <= len(simple.tables)
+                assert roomy.slack is not None and simple.slack is not None
+                assert roomy.slack >= simple.slack
+        few += small.met and len(small.tables) == fewest
+        most += roomy.slack == slack
+    assert possible > 20
+    assert few >= possible - 2 and most >= possible - 2, (few, most, possible)
+
+
+def test_forty_activities_are_searched_in_seconds() -> None:
+    activities = some_activities(random.Random(1), 40, 0.7)
+    by_rates = allocate(activities, Strategy.BY_PERIOD)
+    small = allocate(activities, Strategy.FEWEST_TASKS)
+    consistent(small, activities)
+    if by_rates.met:
+        assert len(small.tables) <= len(by_rates.tables)

@@ -1,0 +1,126 @@
+"""The arrays give what the integers give: small sets one after another, large ones at random."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analysis.core import batch, fixed_priority
+from analysis.core.blocking import Section
+from analysis.core.fixed_priority import analyse, bounds
+from analysis.core.platform import Platform
+from analysis.core.responses import Response
+from analysis.core.tasks import Row, Task
+
+NEVER = 10**9
+
+
+def found(
+    tasks: Sequence[Task], sections: Sequence[Section], platform: Platform, worth_it: int
+) -> tuple[Response, ...]:
+    """The responses where arrays are taken from so many tasks on."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fixed_priority, "WORTH_IT", worth_it)
+        responses = analyse(tasks, sections, {"": platform})
+        assert bounds(tasks, sections, {"": platform}) == tuple(r.bound for r in responses)
+        return responses
+
+
+def compare(
+    tasks: Sequence[Task],
+    sections: Sequence[Section] = (),
+    platform: Platform = fixed_priority.NO_OVERHEAD,
+) -> None:
+    for fast, slow in zip(
+        found(tasks, sections, platform, 1), found(tasks, sections, platform, NEVER), strict=True
+    ):
+        assert (fast.bound, fast.reason, fast.window) == (slow.bound, slow.reason, slow.window)
+        assert fast.interference == slow.interference
+        assert (fast.own, fast.blocked, fast.overheads) == (slow.own, slow.blocked, slow.overheads)
+
+
+def small_sets(count: int, longest: int) -> Iterator[list[Task]]:
+    pairs = [(t, c) for t in range(1, longest + 1) for c in range(1, t + 1)]
+    for chosen in product(pairs, repeat=count):
+        yield [Task(f"t{n}", 9 - n, t, t, c) for n, (t, c) in enumerate(chosen)]
+
+
+@pytest.mark.parametrize(("count", "longest"), [(1, 12), (2, 5), (3, 3)])
+def test_all_small_sets_agree_overloaded_ones_too(count: int, longest: int) -> None:
+    for tasks in small_sets(count, longest):
+        compare(tasks)
+
+
+@st.composite
+def large_sets(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
+    rng = random.Random(draw(st.integers(0, 10**9)))
+    count, load = draw(st.integers(1, 200)), draw(st.sampled_from((0.4, 0.8, 0.97, 1.0, 1.3)))
+    longest = draw(st.sampled_from((3, 50, 10**6, 10**9, 1 << 47)))
+    levels = draw(st.sampled_from((1, count // 3 + 1, 3 * count)))
+    few = [rng.randint(1, longest) for _ in range(9)]
+    tasks = []
+    for n in range(count):
+        period = rng.choice(few) if draw(st.booleans()) else rng.randint(1, longest)
+        cost = max(1, int(period * load / count * 2 * rng.random()))
+        tasks.append(Task(f"t{n}", rng.randint(1, levels), period, period, cost))
+    sections = [
+        Section(f"o{rng.randint(0, 3)}", task.name, rng.randint(1, task.cost))
+        for task in tasks
+        if draw(st.integers(0, 9)) == 0
+    ]
+    return tasks, sections, Platform(context_switch=draw(st.integers(0, 1)))
+
+
+@settings(max_examples=40, deadline=None)
+@given(large_sets())
+def test_large_sets_agree(drawn: tuple[list[Task], list[Section], Platform]) -> None:
+    compare(*drawn)
+
+
+def test_more_tasks_than_a_block_holds_and_levels_across_its_edge() -> None:
+    count = 3 * batch.NARROWEST + 60
+    tasks = [Task(f"t{n}", -(n // 7), 10_000 + 61 * n, 10**6, 40) for n in range(count)]
+    compare(tasks, [Section("o", "t150", 39), Section("o", "t3", 1)])
+
+
+def test_full_to_the_brim_and_a_tick_more() -> None:
+    tasks = [Task(f"t{n}", 50 - n, 50, 50, 1) for n in range(50)]
+    compare(tasks)
+    assert bounds(tasks)[-1] == 50
+    compare([*tasks, Task("more", 0, 10**12, 10**12, 1)])
+
+
+def test_what_doubles_cannot_hold_is_left_to_integers() -> None:
+    huge = 1 << 70
+    tasks = [Task(f"t{n}", 50 - n, huge + n, huge, huge // 64) for n in range(40)]
+    compare(tasks)
+    assert bounds(tasks)[39] == 40 * (huge // 64)
+    near = [Task(f"t{n}", 50 - n, (1 << 47) + n, 1 << 47, (1 << 41) - n) for n in range(40)]
+    compare(near)
+
+
+def test_counts_are_exact_next_to_whole_numbers() -> None:
+    """One tick to either side of a release, with quotients that a double cannot tell apart."""
+    for period in (3, 7, 10**6 + 3, (1 << 40) - 1):
+        for times in (1, 2, batch.LIMIT // period // 2):
+            for away in (-1, 0, 1):
+                first = period * times + away
+                if first > 0:
+                    tasks = [Task("a", 2, batch.LIMIT - 1, 1, first), Task("b", 1, period, 1, 1)]
+                    compare(tasks)
+
+
+def test_what_is_not_plain_is_left_to_the_general_analysis() -> None:
+    plain = [Task(f"t{n}", 50 - n, 1_000, 1_000, 10) for n in range(40)]
+    for other in (
+        Task("x", 99, 1_000, 1_000, 10, jitter=5),
+        Task("x", 99, 1_000, 1_000, 10, rows=(Row("r", 9, 2, 1),)),
+    ):
+        compare([*plain, other])
+    compare(plain, platform=Platform(release=1))
+    compare(plain, platform=Platform(tick_period=100, tick_cost=1))

@@ -1,0 +1,73 @@
+"""`analyse --observed`: what a run recorded against the budgets of the model."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ravenchart.__main__ import OK, WRONG, main
+
+PUMP = Path(__file__).parents[2] / "examples" / "pump"
+MODEL = PUMP / "model.yaml"
+
+
+def rows() -> dict[str, int]:
+    """The numbers of the rows in a trace of the pump."""
+    elements = json.loads((PUMP / "generated" / "trace.json").read_text(encoding="utf-8"))
+    return {e["element"]: e["id"] for e in elements["elements"] if e["kind"] == "row"}
+
+
+def trace(folder: Path, text: str) -> str:
+    path = folder / "trace.txt"
+    path.write_text(text, encoding="ascii")
+    return str(path)
+
+
+def test_executions_within_their_budgets_pass(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = "".join(f"A {number} 1000\n" for number in rows().values())
+    assert main(["analyse", str(MODEL), "--observed", trace(tmp_path, lines + "END\n")]) == OK
+    found = capsys.readouterr().out
+    for name in rows():
+        assert f"{name}: 1 us, within its budget of " in found
+
+
+def test_an_execution_above_its_budget_fails_and_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (first, number), *others = rows().items()
+    path = trace(tmp_path, f"A {number} 999999999\nEND\n")
+    assert main(["analyse", str(MODEL), "--observed", path]) == WRONG
+    found = capsys.readouterr().out
+    assert f"{first}: 1000000 us, ABOVE its budget of " in found
+    for name, _ in others:
+        assert f"{name}: not executed in this run" in found
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("A 1 5\n", "the trace was cut off"),
+        ("END\n", "no activity of"),
+        ("A 1\nEND\n", "trace.txt:1: error: not a trace line"),
+    ],
+)
+def test_a_trace_that_says_nothing_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str
+) -> None:
+    number = next(iter(rows().values()))
+    path = trace(tmp_path, text.replace("A 1 5", f"A {number} 5"))
+    assert main(["analyse", str(MODEL), "--observed", path]) == WRONG
+    assert message in capsys.readouterr().err
+
+
+def test_options_of_the_other_kind_of_file_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["analyse", str(MODEL), "--json"]) == WRONG
+    assert "--json and --export are for CSV and JSON files" in capsys.readouterr().err
+    assert main(["analyse", str(tmp_path / "a.csv"), "--observed", "x"]) == WRONG
+    assert "--html and --observed are for models" in capsys.readouterr().err

@@ -1,0 +1,317 @@
+"""Plain files: units and rounding, errors by line and column, hostile numbers, large sets."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis.core import holistic
+from analysis.plain.build import PlainSystem, load
+from analysis.plain.columns import KINDS, LARGEST
+from analysis.plain.results import analyse, everything
+from ravenchart.__main__ import main
+from tests.support.core_cases import two_nodes
+
+HERE = Path(__file__).parents[1] / "plain"
+CSV = (HERE / "two_nodes.csv").read_text(encoding="utf-8")
+JSON = (HERE / "two_nodes.json").read_text(encoding="utf-8")
+
+
+def system(text: str, file: str = "a.csv") -> PlainSystem:
+    found = load(text, file)
+    assert isinstance(found, PlainSystem), [str(problem) for problem in found]
+    return found
+
+
+def problems(text: str, file: str = "a.csv") -> list[str]:
+    found = load(text, file)
+    assert not isinstance(found, PlainSystem)
+    return [str(problem) for problem in found]
+
+
+def task_file(**columns: str) -> str:
+    given = {"task": "a", "priority": "1", "period_us": "10", "cost_us": "1"} | columns
+    return f"{','.join(given)}\n{','.join(given.values())}\n"
+
+
+# --- What is read -------------------------------------------------------------------------
+
+
+def test_csv_and_json_hold_the_same_system_as_the_reference() -> None:
+    from_csv, from_json = system(CSV), system(JSON, "a.json")
+    assert from_csv == from_json
+    found, reference = holistic.analyse(from_csv.network), holistic.analyse(two_nodes())
+    for name in reference.responses:
+        needed = reference.from_event(name)
+        assert needed is not None
+        assert found.from_event(name) == 1_000 * needed
+
+
+def test_times_are_rounded_to_the_safe_side() -> None:
+    text = (
+        "task,priority,period_us,deadline_us,cost_us,jitter_us,best_us\n"
+        "a,1,10.0009,9.9999,1.0001,0.0001,0.9999\n"
+    )
+    (task,) = system(text).network.tasks
+    assert (task.period, task.deadline) == (10_000, 9_999)
+    assert (task.cost, task.jitter, task.best) == (1_001, 1, 999)
+
+
+@pytest.mark.parametrize(
+    ("title", "value", "ns"),
+    [
+        ("period_ns", "12", 12),
+        ("period_us", "12", 12_000),
+        ("period_ms", "0.1", 100_000),
+        ("period_s", "1e-3", 1_000_000),
+        ("period_us", "1.5E+2", 150_000),
+        ("period_ns", str(LARGEST), LARGEST),
+    ],
+)
+def test_units_are_exact(title: str, value: str, ns: int) -> None:
+    text = f"task,priority,{title},cost_ns\na,1,{value},1\n"
+    assert system(text).network.tasks[0].period == ns
+
+
+def test_tables_flags_identifiers_and_bit_rates() -> None:
+    text = """\
+task,priority,period_ms,sporadic
+a,1,10,yes
+
+row,task,cost_us,every,phase
+fast,a,5,,
+slow,a,7,2,1
+
+bus,bit_rate,data_rate,error_period_ms,error_burst
+can,250000,,10,2
+fd,500000,2000000,,
+
+message,bus,identifier,extended,fd,bytes,cost_us,period_ms
+m,can,0x1F,no,,8,,10
+n,fd,0x1ABCDEF,yes,yes,64,,10
+o,fd,7,,,,123,10
+"""
+    network = system(text).network
+    (task,) = network.tasks
+    assert (task.sporadic, task.deadline, len(task.frames)) == (True, 10**7, 2)
+    assert network.frames["can"][0].cost == 135 * 4_000
+    assert network.buses["can"].bit_time == 4_000
+    errors = network.buses["can"].errors
+    assert errors is not None
+    assert (errors.period, errors.burst) == (10**7, 2)
+    n, o = network.frames["fd"]
+    assert n.cost < 64 * 8 * 2_000 and o.cost == 123_000
+
+
+# --- What is wrong, and where ----------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"period_us": "0"}, "a.csv:2: error: period_us of task a must be above 0, not 0"),
+        ({"period_us": "-10"}, "a.csv:2: error: period_us of task a must be above 0, not -10"),
+        ({"cost_us": "0"}, "a.csv:2: error: cost_us of task a must be above 0, not 0"),
+        ({"period_us": "0.0001"}, "period_us of task a must be at least 1 ns, not 0.0001"),
+        ({"jitter_us": "-1"}, "jitter_us of task a must be at least 0, not -1"),
+        ({"period_us": ""}, "period_us of task a is missing"),
+        ({"cost_us": ""}, "cost_us of task a is missing, and it has no rows"),
+        ({"priority": ""}, "priority of task a is missing"),
+        ({"priority": "1.5"}, "priority of task a must be a whole number, not 1.5"),
+        ({"period_us": "ten"}, "period_us of task a must be a number such as 12.5, not ten"),
+        ({"period_us": "1/3"}, "period_us of task a must be a number such as 12.5, not 1/3"),
+        ({"period_us": "nan"}, "must be a number such as 12.5, not nan"),
+        ({"period_us": "inf"}, "must be a number such as 12.5, not inf"),
+        ({"period_us": "9e99"}, f"must be at most {LARGEST} ns, 292 years, not 9e99"),
+        ({"period_us": "1e999999999"}, "must be a number such as 12.5, not 1e999999999"),
+        ({"period_us": "9" * 50}, "must be a number such as 12.5, not 999999"),
+        ({"period_s": str(2**63)}, "period is given twice"),
+        ({"priority": str(2**63)}, f"priority of task a must be at most {LARGEST} (63 bits)"),
+        ({"timed": "maybe"}, "timed of task a must be yes or no, not maybe"),
+        ({"period": "5"}, "column period of task must say its unit: period_ns, _us, _ms or _s"),
+        ({"wcet_us": "5"}, "task has no column wcet_us, only core, priority, period_us"),
+        ({"task": ""}, "task needs a name in the column task"),
+        ({"released_by": "b"}, "released_by of task a: there is no task or message b"),
+        ({"released_by": "a"}, "a is released by itself"),
+    ],
+)
+def test_a_wrong_value_is_named_by_line_and_column(columns: dict[str, str], message: str) -> None:
+    assert any(message in problem for problem in problems(task_file(**columns)))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "a.csv: error: there are neither tasks nor messages"),
+        ("tusk,period_us\na,1\n", "a.csv:2: error: tusk is none of core, task, row"),
+        (task_file() + "a,2,10,1\n", "a.csv:3: error: the name a is already given in line 2"),
+        (task_file() + "b,2,10,1,9\n", "a.csv:3: error: the row has 5 columns"),
+        (
+            task_file() + "\nsection,task,length_us\no,a,2\n",
+            "a.csv:2: error: the section of a on o must be at most 1000, the cost of the task",
+        ),
+        (task_file() + "\nsection,task,length_us\no,c,2\n", "a.csv:5: error: task of section o"),
+        (task_file() + "\nrow,task,cost_us\nr,a,2\nr,a,3\n", "two rows of task a have the name r"),
+        (
+            task_file() + "\nrow,task,cost_us,every,phase\nr,a,2,2,2\n",
+            "a.csv:5: error: phase of row r must be below 2, not 2",
+        ),
+        (task_file() + "\ncore,release_us\nx,1\n", "a.csv:5: error: no task is on core x"),
+        ("task,priority,priority\na,1,2\n", "a.csv:1: error: there are two columns priority"),
+        (task_file() + '\nchain,step,hop\nc,a,"sam', "not CSV: unexpected end of data"),
+        (
+            task_file() + "\nchain,step,hop\nc,a,sampling\n",
+            "hop of chain c must be released, sampled or queued, not sampling",
+        ),
+        (
+            task_file() + "b,2,20,1\n\nchain,step,hop\nc,a,released\nc,b,released\n",
+            "step b of chain c is not released by a",
+        ),
+        (
+            "bus,bit_rate\nb,125000\n\nmessage,bus,identifier,bytes,period_ms\nm,b,5,9,10\n",
+            "a.csv:5: error: length of a classic frame must be at most 8, not 9",
+        ),
+        (
+            "bus,bit_rate\nb,125000\n\nmessage,bus,identifier,bytes,period_ms\nm,b,5,8,9\nn,b,5,8,9\n",
+            "a.csv:6: error: identifier of message n is already that of m on bus b",
+        ),
+        (
+            "bus,bit_rate\nb,125000\n\nmessage,bus,identifier,period_ms\nm,b,5,8\n",
+            "message m must have either bytes or cost_us",
+        ),
+        (
+            "bus,bit_rate\nb,125000\n\nmessage,bus,identifier,bytes,period_ms\nm,b,2048,8,9\n",
+            "a.csv:5: error: identifier of a frame must fit 11 bits, not 2048",
+        ),
+    ],
+)
+def test_what_does_not_go_together_is_refused_by_line(text: str, message: str) -> None:
+    try:
+        found = load(text, "a.csv")
+        if isinstance(found, PlainSystem):
+            analyse(found)
+            pytest.fail("accepted")
+        shown = [str(problem) for problem in found]
+    except ValueError as fault:
+        shown = [str(fault)]
+    assert any(message in one for one in shown), shown
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "a.json:1: error: not JSON"),
+        ("[1]", "a.json:1: error: the file must hold an object"),
+        ('{"task": 5}', "task must be a list of objects"),
+        ('{"task": [{"task": "a", "task": "b"}]}', "task is given twice in one object"),
+        ('{"task": [{"task": "a", "priority": NaN}]}', "NaN is no number"),
+        (
+            '{"task": [\n\n{"task": "a", "priority": [1]}]}',
+            "a.json:3: error: priority must be",
+        ),
+        (
+            '{"task": [{"task":"a"},\n{"task": "b", "period_us": 0}]}',
+            "a.json:2: error: period_us",
+        ),
+        ("[" * 100_000, "nested too deeply"),
+        (
+            '{"task": [{"task": "a", "priority": 1, "cost_us": 1, "period_us": %s}]}'
+            % ("9" * 9_999),
+            "must be a number such as 12.5",
+        ),
+    ],
+)
+def test_wrong_json_is_refused_by_line(text: str, message: str) -> None:
+    assert any(message in problem for problem in problems(text, "a.json")), problems(text, "a.json")
+
+
+# --- Verdicts --------------------------------------------------------------------------
+
+
+def verdict(text: str, file: str = "a.csv") -> Any:
+    return json.loads(json.dumps(everything(analyse(system(text, file)))))
+
+
+def test_overload_and_misses_have_a_verdict_and_a_reason() -> None:
+    over = verdict("task,priority,period_us,cost_us\na,2,10,6\nb,1,10,6\n")
+    assert (over["met"], over["load"]) == (False, {"": "6/5"})
+    a, b = over["tasks"]
+    assert (a["response"], a["met"]) == (6_000, True)
+    assert b["response"] is None and b["reason"].startswith("what runs at its level needs more")
+    missed = verdict("task,priority,period_us,deadline_us,cost_us\na,1,10,5,6\n")
+    assert (missed["met"], missed["tasks"][0]["slack"]) == (False, -1_000)
+    full = verdict("task,priority,period_us,cost_us\na,2,10,5\nb,1,10,5\n")
+    assert (full["met"], full["scaling"]) == (True, "1/1")
+
+
+def test_huge_hyperperiods_and_numbers_near_64_bits_end_at_once() -> None:
+    start = time.perf_counter()
+    primes = (10**9 + 7, 10**9 + 9, 10**9 + 21, 10**9 + 33, 10**9 + 87)
+    lines = [f"t{n},{n},{p},{p // 6}" for n, p in enumerate(primes)]
+    assert verdict("task,priority,period_ns,cost_ns\n" + "\n".join(lines))["met"] is True
+    lines = [f"t{n},{n},{LARGEST - n},{LARGEST // 5}" for n in range(4)]
+    big = verdict("task,priority,period_ns,cost_ns\n" + "\n".join(lines))
+    assert [task["response"] for task in big["tasks"]] == [k * (LARGEST // 5) for k in (4, 3, 2, 1)]
+    tight = [f"t{n},{n},{p},{p // 5}" for n, p in enumerate(primes)] + ["last,-1,999999937,3"]
+    assert isinstance(verdict("task,priority,period_ns,cost_ns\n" + "\n".join(tight))["met"], bool)
+    assert time.perf_counter() - start < 20
+
+
+def test_five_thousand_tasks_are_analysed_in_seconds(tmp_path: Path) -> None:
+    lines = [f"t{n},{5_000 - n},{100 + n},0.01" for n in range(5_000)]
+    file = tmp_path / "many.csv"
+    file.write_text("task,priority,period_ms,cost_ms\n" + "\n".join(lines), encoding="utf-8")
+    start = time.process_time()
+    assert main(["analyse", str(file)]) == 0
+    assert main(["analyse", str(file), "--json"]) == 0
+    assert time.process_time() - start < 30
+
+
+# --- The command -----------------------------------------------------------------------
+
+
+def test_the_command_prints_a_verdict_a_table_and_json(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = HERE / "two_nodes.csv"
+    assert main(["analyse", str(file)]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("every deadline is met\nall execution times can be multiplied by 3.9")
+    assert "chain control: reaction 13350 us, age 3350 us" in text
+    assert main(["analyse", str(file), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [task["response"] for task in found["tasks"]] == [2_100_000, 3_960_000, 3_350_000]
+    assert found["chains"][0]["reaction"] == 13_350_000
+    for tool in ("mast", "cheddar", "pycpa"):
+        assert main(["analyse", str(file), "--export", tool]) == 0
+        assert "sense" in capsys.readouterr().out
+
+
+def test_the_command_fails_with_what_is_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "bad.csv"
+    file.write_text(task_file(period_us="0"), encoding="utf-8")
+    assert main(["analyse", str(file)]) == 1
+    assert (
+        capsys.readouterr().err == f"{file}:2: error: period_us of task a must be above 0, not 0\n"
+    )
+    file.write_text("task,priority,period_us,cost_us\na,1,10,11\n", encoding="utf-8")
+    assert main(["analyse", str(file)]) == 1
+    assert "a has no bound: what runs at its level needs more" in capsys.readouterr().out
+    file.write_bytes(b"\xff\xfe")
+    assert main(["analyse", str(file)]) == 1
+    assert "must be UTF-8" in capsys.readouterr().err
+
+
+def test_every_column_is_described() -> None:
+    page = (HERE.parents[1] / "docs" / "plain-files.md").read_text(encoding="utf-8")
+    for kind, columns in KINDS.items():
+        section = page.split(f"### {kind}\n")[1].split("\n### ")[0]
+        for name, column in columns.items():
+            suffix = "_us" if column.form.timed else ""
+            assert f"| `{name}{suffix}` |" in section, (kind, name)

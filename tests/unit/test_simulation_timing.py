@@ -1,0 +1,212 @@
+"""Simulated tasks and buses against the bounds: never above, and equal where theory says so."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+
+from analysis.core import can, holistic
+from analysis.core.blocking import Section
+from analysis.core.bus import Bus, Errors, Frame
+from analysis.core.fixed_priority import analyse, response_under
+from analysis.core.holistic import Network
+from analysis.core.platform import Platform
+from analysis.core.responses import Response
+from analysis.core.tasks import Row, Task
+from analysis.simulation import worst
+from analysis.simulation.engine import simulate
+from analysis.simulation.phases import Inside, Phase, Scenario, chance_scenario
+from tests.support.random_networks import random_network
+
+SYSTEMS = 1_000
+
+
+def late(limit: int) -> Phase:
+    return Phase(late=lambda _: limit)
+
+
+# --- The rules, by hand -------------------------------------------------------------------
+
+
+def test_a_more_urgent_task_preempts_and_every_stretch_is_recorded() -> None:
+    tasks = (Task("low", 1, 100, 100, 10), Task("high", 2, 100, 100, 3))
+    scenario = Scenario({"high": Phase(first=4)})
+    seen = simulate(Network(tasks), scenario, 50, record=True)
+    assert seen.longest == {"low": 13, "high": 3}
+    assert [(s.name, s.start, s.end) for s in seen.stretches] == [
+        ("low", 0, 4),
+        ("high", 4, 7),
+        ("low", 7, 13),
+    ]
+
+
+def test_a_section_runs_at_its_ceiling_from_its_first_tick_on() -> None:
+    tasks = (Task("low", 1, 100, 100, 10), Task("high", 2, 100, 100, 3))
+    sections = (Section("o", "low", 5), Section("o", "high", 1))
+    inside = {"low": Phase(inside=(Inside(2, sections[0]),))}
+    for first, response in ((2, 3), (3, 7), (6, 4), (7, 3)):
+        phases = inside | {"high": Phase(first=first)}
+        seen = simulate(Network(tasks, sections=sections), Scenario(phases), 50)
+        assert seen.longest["high"] == response, first
+
+
+def test_equals_run_first_in_first_out() -> None:
+    tasks = (Task("a", 1, 100, 100, 5), Task("b", 1, 100, 100, 5), Task("top", 2, 100, 100, 2))
+    scenario = Scenario({"b": Phase(first=1), "top": Phase(first=2)})
+    assert simulate(Network(tasks), scenario, 50).longest == {"a": 7, "b": 11, "top": 2}
+
+
+def test_rows_run_in_their_frames_and_each_is_timed() -> None:
+    rows = (Row("fast", 2), Row("slow", 5, every=2, phase=1))
+    task = Task("t", 1, 10, 10, 1, rows=rows)
+    seen = simulate(Network((task,)), Scenario(), 40)
+    assert seen.rows == {("t", "fast"): 3, ("t", "slow"): 8}
+    assert seen.longest == {"t": 8}
+    only = simulate(Network((task,)), Scenario(), 9)
+    assert only.rows == {("t", "fast"): 3}
+
+
+def test_a_frame_is_not_preempted_and_one_queued_within_a_bit_takes_part() -> None:
+    frames = {"can": (Frame("low", 2, 1_000, 1_000, 100), Frame("high", 1, 1_000, 1_000, 60))}
+    for first, response in ((0, 60), (1, 59), (2, 158)):
+        network = Network((), frames, {"can": Bus(2)})
+        seen = simulate(network, Scenario({"high": Phase(first=first)}), 900)
+        assert seen.longest["high"] == response, first
+
+
+def test_a_queue_sends_its_oldest_and_a_fault_costs_the_frame_and_its_recovery() -> None:
+    frames = (
+        Frame("slow", 9, 1_000, 1_000, 60, queue="node"),
+        Frame("urgent", 1, 1_000, 1_000, 60, queue="node"),
+        Frame("middle", 5, 1_000, 1_000, 60),
+    )
+    network = Network((), {"can": frames}, {"can": Bus(1)})
+    assert simulate(network, Scenario(), 900).longest == {"middle": 60, "slow": 120, "urgent": 180}
+    struck = simulate(network, Scenario(faults={"can": (50,)}), 900)
+    assert struck.longest["middle"] == 50 + 31 + 60
+
+
+def test_a_completion_releases_what_follows() -> None:
+    network = Network(
+        (Task("send", 1, 1_000, 1_000, 10, jitter=5), Task("take", 1, 1_000, 1_000, 20, core="b")),
+        {"can": (Frame("m", 1, 1_000, 1_000, 60, jitter=3),)},
+        {"can": Bus(1)},
+        {"m": "send", "take": "m"},
+    )
+    seen = simulate(network, Scenario({"send": late(5), "m": late(3)}), 900)
+    assert seen.longest == {"send": 15, "m": 78, "take": 98}
+
+
+def test_what_cannot_be_simulated_is_refused() -> None:
+    task = Task("t", 1, 10, 10, 1, jitter=2)
+    with pytest.raises(ValueError, match="overheads of core  cannot be simulated"):
+        simulate(Network((task,), platforms={"": Platform(release=1)}), Scenario(), 10)
+    with pytest.raises(ValueError, match="t must be released at most 2 late"):
+        simulate(Network((task,)), Scenario({"t": late(3)}), 10)
+    with pytest.raises(ValueError, match="until of the simulation"):
+        simulate(Network((task,)), Scenario(), -1)
+
+
+# --- Against the bounds ----------------------------------------------------------------
+
+
+def test_no_random_system_is_observed_above_its_bounds() -> None:
+    """Tables, sections, jitter, several cores, a bus with queues and faults, chains."""
+    compared = 0
+    for seed in range(SYSTEMS):
+        chance = random.Random(seed)
+        network = random_network(chance)
+        found = holistic.analyse(network)
+        until = 8 * max(item.period for item in network.items().values())
+        for _ in range(2):
+            seen = simulate(network, chance_scenario(network, chance, until), until)
+            for name, longest in seen.longest.items():
+                bound = found.from_event(name)
+                assert bound is None or longest <= bound, (seed, name, longest, bound)
+                compared += 1
+            for (name, row), longest in seen.rows.items():
+                response = found.responses[name]
+                assert isinstance(response, Response)
+                for one in response.rows:
+                    if one.row.name == row:
+                        best = found.best[name]
+                        assert longest <= best + one.bound, (seed, name, row)
+    assert compared > 5 * SYSTEMS
+
+
+def test_every_task_attains_its_bound_where_theory_has_such_phases() -> None:
+    """One cost a task, priorities that differ; the blocker has begun a tick before."""
+    attained = 0
+    for seed in range(SYSTEMS // 2):
+        chance = random.Random(seed)
+        network = random_network(chance, plain=True)
+        for response in analyse(network.tasks, network.sections):
+            if response.bound is None:
+                continue
+            case = worst.of_task(response)
+            alone = replace(network, frames={}, buses={}, released_by={})
+            seen = simulate(alone, case.scenario, case.until).longest[response.task.name]
+            order, reach = response.level.order, response.level.reach
+            section = response.blocking
+            if section is not None:
+                section = (
+                    replace(section, length=section.length - 1) if section.length > 1 else None
+                )
+            exact = response_under(response.task, order[: reach - 1], order[reach:], section)
+            assert seen == exact.bound, (seed, response.task.name)
+            attained += 1
+    assert attained > SYSTEMS
+
+
+def test_every_frame_attains_its_bound_but_for_one_bit_of_blocking() -> None:
+    attained = 0
+    for seed in range(SYSTEMS // 2):
+        chance = random.Random(seed)
+        bus = Bus(1)
+        periods = [chance.randint(300, 3_000) for _ in range(chance.randint(1, 6))]
+        frames = tuple(
+            Frame(
+                f"m{n}", n, t, 10 * t, chance.randint(40, 130), chance.choice((0, 0, t // 3, 2 * t))
+            )
+            for n, t in enumerate(periods)
+        )
+        for response in can.analyse(frames, bus):
+            if response.bound is None:
+                continue
+            case = worst.of_frame(response)
+            seen = simulate(Network((), {"": frames}, {"": bus}), case.scenario, case.until)
+            frame, level = response.frame, response.level
+            lower = [
+                replace(f, cost=f.cost - 1)
+                for f in level.order[level.reach :]
+                if f.name == response.blocker
+            ]
+            exact = can.response_under(frame, level.order[: level.reach - 1], lower, bus)
+            assert seen.longest[frame.name] == exact.bound, (seed, frame.name)
+            attained += 1
+    assert attained > SYSTEMS
+
+
+def test_a_simulation_that_only_starts_together_would_not_show_blocking() -> None:
+    network = Network(
+        (Task("high", 2, 100, 100, 5), Task("low", 1, 100, 100, 20)),
+        sections=(Section("o", "low", 9), Section("o", "high", 1)),
+    )
+    response = analyse(network.tasks, network.sections)[0]
+    assert response.bound == 14
+    case = worst.of_task(response)
+    assert simulate(network, Scenario(), 90).longest["high"] == 5
+    assert simulate(network, case.scenario, case.until).longest["high"] == 13
+
+
+def test_errors_within_the_model_stay_within_the_bound_and_others_show() -> None:
+    frames = tuple(Frame(f"m{n}", n, 2_000, 2_000, 130) for n in range(3))
+    bus = Bus(1, errors=Errors(1_000))
+    bound = can.analyse(frames, bus)[2].bound
+    assert bound is not None
+    network = Network((), {"": frames}, {"": bus})
+    assert simulate(network, Scenario(faults={"": (120,)}), 1_900).longest["m2"] <= bound
+    many = tuple(range(100, 1_500, 150))
+    assert simulate(network, Scenario(faults={"": many}), 5_000).longest["m2"] > bound
