@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import lru_cache
 
@@ -124,8 +126,31 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
     return out
 
 
+MANY = 1000
+"""So many units are printed by all processors of the machine together."""
+
+_shared: list[Unit] = []
+"""What a process that was forked to print has of its parent: units are not sent."""
+
+
+def _texts(found: list[Unit]) -> list[str]:
+    """Each unit's item, as text."""
+    if len(found) < MANY or "fork" not in multiprocessing.get_all_start_methods():
+        return [print_item(unit) for unit in found]
+    _shared[:] = found
+    try:
+        with ProcessPoolExecutor(mp_context=multiprocessing.get_context("fork")) as pool:
+            return list(pool.map(_text_of, range(len(found)), chunksize=MANY // 20))
+    finally:
+        _shared.clear()
+
+
+def _text_of(index: int) -> str:
+    return print_item(_shared[index])
+
+
 def _printed(found: list[Unit], root: str) -> dict[str, str]:
-    texts = [print_item(unit) for unit in found]
+    texts = _texts(found)
     pairs = zip(found, texts, strict=True)
     pruned = _without_repeats([_pruned(unit, root, text) for unit, text in pairs])
     return {u.file_name: print_unit(u, text) for u, text in zip(pruned, texts, strict=True)}

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ProcessPoolExecutor
 from cProfile import Profile
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from pstats import Stats
+
+import pytest
 
 from gen.claims import Claims
 from gen.emit.naming import ada_case
@@ -36,3 +40,20 @@ def test_each_further_region_of_a_component_takes_as_many_calls() -> None:
     few, some, many = (_calls(1, regions) for regions in (4, 12, 20))
     # every region looks for its events and data among all those of the component
     assert many - some <= 1.02 * (some - few)
+
+
+def test_many_processes_print_the_same_as_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = large_model(4, 2).encode()
+    system = load(Path("model.yaml"), lambda path, limit: model).system
+    assert system is not None
+    alone = generate(system, Claims())
+    started: list[int] = []
+
+    def counted(mp_context: BaseContext) -> ProcessPoolExecutor:
+        started.append(1)
+        return ProcessPoolExecutor(mp_context=mp_context)
+
+    monkeypatch.setattr("gen.generate.MANY", 20)
+    monkeypatch.setattr("gen.generate.ProcessPoolExecutor", counted)
+    assert generate(system, Claims()) == alone
+    assert started

@@ -11,7 +11,6 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    use type Ravenchart.Event_Count;
-   use type Deferrals.List;
 
    function Select_Motor
      (Place : Infusion_States.Configuration;

@@ -118,6 +118,8 @@ is
       Null_Event => Pump.No_Event,
       Capacity => 4);
 
+   use type Deferrals.List;
+
    type Firing_Array is array (1 .. 9) of Selection;
 
    --  What one step has fired, in order; None behind the last.

@@ -123,7 +123,7 @@ def _records(shape: RegionShape) -> list[Decl]:
             RecordType("Memory", tuple(past)),
         ]
     if shape.deferring:
-        items.append(
+        items += [
             Instance(
                 "Deferrals",
                 "Ravenchart.Event_Lists",
@@ -132,8 +132,9 @@ def _records(shape: RegionShape) -> list[Decl]:
                     Null_Event=null_event(component),
                     Capacity=number(region.deferral_depth),
                 ),
-            )
-        )
+            ),
+            UseType("Deferrals.List"),
+        ]
     if shape.listed:
         most = shape.most_firings
         none = Aggregate((Arg("others", Ref("None")),))

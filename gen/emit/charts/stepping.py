@@ -53,7 +53,6 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     more += ["Ravenchart.Event_Count"] if shape.working else []
     more += sorted(shape.compared_in(flows) - shape.compared_in(guards_of(region)))
     moves = Moves(shape)
-    more += ["Deferrals.List"] if shape.deferring else []
     return (
         *(UseType(name) for name in more),
         *selectors(shape),
