@@ -605,6 +605,7 @@ is
       with Ghost;
       Active : Chart.Node_Set := Before with Ghost;
       Past : constant Memory := Self.Past;
+      Kept : constant Deferrals.List := Self.Deferred with Ghost;
       procedure Exit_Self_Test
       with
         Pre =>
@@ -621,7 +622,7 @@ is
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -639,7 +640,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -660,7 +661,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -680,7 +681,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -699,7 +700,7 @@ is
             = (Last_In_Infusing => Infusion_States.Filling,
                Known_In_Infusing => True)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -724,7 +725,7 @@ is
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -743,7 +744,7 @@ is
             = (Last_In_Infusing => Infusion_States.Loading,
                Known_In_Infusing => True)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -764,7 +765,7 @@ is
             = (Last_In_Infusing => Infusion_States.Maintaining,
                Known_In_Infusing => True)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -784,7 +785,7 @@ is
             = (Last_In_Infusing => Infusion_States.All_Given,
                Known_In_Infusing => True)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -804,7 +805,7 @@ is
             = (Last_In_Infusing => Infusion_States.Trickling,
                Known_In_Infusing => True)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -825,7 +826,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -845,7 +846,7 @@ is
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -873,7 +874,7 @@ is
           and then Self.Past
             = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -900,7 +901,7 @@ is
           and then Self.Past
             = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -932,7 +933,7 @@ is
           and then Self.Past
             = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -967,7 +968,7 @@ is
           and then Self.Past
             = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -997,7 +998,7 @@ is
           and then Self.Past
             = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1024,7 +1025,7 @@ is
           and then Self.Past
             = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1051,7 +1052,7 @@ is
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1078,7 +1079,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1104,7 +1105,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1130,7 +1131,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1153,7 +1154,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1171,7 +1172,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1194,7 +1195,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1220,7 +1221,7 @@ is
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1243,7 +1244,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1268,7 +1269,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1292,7 +1293,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1316,7 +1317,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1334,7 +1335,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1357,7 +1358,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1384,7 +1385,7 @@ is
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1408,7 +1409,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1426,7 +1427,7 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
-          and then Self.Deferred = Self.Deferred'Old
+          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin

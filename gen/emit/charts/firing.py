@@ -93,6 +93,10 @@ class Moves:
         past: tuple[Decl, ...] = ()
         if self.shape.memories:
             past = (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
+        procedures = self.moving.procedures()
+        if self.shape.deferring and procedures:
+            kept = Ref("Self.Deferred")
+            past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
         return Subprogram(
             "Fire",
             self.fire_params(),
@@ -103,7 +107,7 @@ class Moves:
                 Object("Before", "Chart.Node_Set", before, constant=True, aspects=ghost),
                 Object("Active", "Chart.Node_Set", Ref("Before"), aspects=ghost),
                 *past,
-                *self.moving.procedures(),
+                *procedures,
             ),
             body=(Case(Ref("Chosen"), (start, *rows)), Pragma("Assert", (agreed,))),
         )

@@ -350,5 +350,10 @@ class Lasting:
 
     def _kept(self) -> list[Expr]:
         """Exits and entries do not start the region, and defer nothing."""
-        same = ["Started", *(("Deferred", "Lost") if self.shape.deferring else ())]
-        return [equal(Ref(f"Self.{n}"), Ref(f"Self.{n}'Old")) for n in same]
+        started = equal(Ref("Self.Started"), Ref("Self.Started'Old"))
+        if not self.shape.deferring:
+            return [started]
+        #  by way of one constant: for a prover the equality of lists is no simple thing
+        was, remains = (equal(Ref(f"Self.Deferred{n}"), Ref("Kept")) for n in ("'Old", ""))
+        lost = equal(Ref("Self.Lost"), Ref("Self.Lost'Old"))
+        return [started, IfExpr(((was, remains),), None), lost]
