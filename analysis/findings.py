@@ -179,20 +179,20 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
 
 
 def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
-    """Receptions that take frames more slowly than they come."""
+    """Receptions that take frames no faster than they come."""
     for processor in analysis.system.processors:
-        taken_here = [
-            one.message
-            for one in analysis.deliveries.values()
-            if one.message.bus == processor.released_by
+        waiting = [
+            one for one in analysis.deliveries.values() if one.message.bus == processor.released_by
         ]
+        taken_here = [one.message for one in waiting]
         load = sum((Fraction(processor.period, m.period) for m in taken_here), Fraction(0))
-        if load > 1:
+        if load > 1 or any(one.bound is None for one in waiting):
+            lost = "frames will be lost" if load > 1 else "a frame may wait without bound"
             yield error(
                 NO_BOUND,
                 processor.origin,
                 f"{processor.name} takes a frame every {duration(processor.period)}, and "
-                f"{percent(load)} of that are needed: frames will be lost",
+                f"{percent(load)} of that are needed: {lost}",
                 notes=[
                     (m.origin, f"{m.name} comes every {duration(m.period)}") for m in taken_here
                 ],

@@ -68,7 +68,7 @@ def growth_line(analysis: Analysis) -> str:
     change = scaling.factor - 1
     share = f"{float(abs(change) * 100):.1f} %"
     if change >= 0:
-        return f"all execution times may grow by {share} before a deadline is missed"
+        return f"all execution times may grow by {share} before a task or frame is late"
     return f"all execution times must shrink by {share} to meet every deadline"
 
 

@@ -292,7 +292,8 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     if form.deadline is not None and form.deadline > period and whole:
         message = f"the deadline of {name} is longer than its period"
         findings.error("RV-0703", form.at("deadline"), message)
-    deadline = table_deadline(sound, period) if form.deadline is None else Ns(form.deadline)
+    shortest = table_deadline(sound, period)
+    deadline = shortest if form.deadline is None else min(Ns(form.deadline), shortest)
     return Processor(
         name=name,
         origin=form.origin,

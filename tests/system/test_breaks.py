@@ -47,13 +47,8 @@ def test_a_transition_to_the_wrong_state_is_not_proved(checkout: Path) -> None:
     unit = "three_components-station-handling.adb"
     _prove(checkout, unit)
     body = checkout / "three" / "generated" / unit
-    _break(body, "            Enter_Holding;", "            Enter_Elsewhere;")
-    _break(
-        body,
-        "            Exit_Holding;\n",
-        "            Exit_Holding;\n            Enter_Holding;\n",
-    )
-    _break(body, "            Enter_Elsewhere;", "            Enter_Empty;")
+    entered = "Self.Leaf := Handling_States.{0};\n            Active (Chart.{0}) := True;"
+    _break(body, entered.format("Holding"), entered.format("Empty"))
     with pytest.raises(ToolFailed, match="might fail"):
         _prove(checkout, unit)
 

@@ -99,6 +99,11 @@ def test_a_reception_that_loses_frames_is_a_finding() -> None:
     assert only.message == (
         "reception takes a frame every 11 ms, and 110.0 % of that are needed: frames will be lost"
     )
+    change = ("released_by: can_bus, period: 1 ms", "released_by: can_bus, period: 10 ms")
+    analysis = analyse(system_of(change))
+    assert not analysis.schedulable
+    (only,) = findings(analysis)
+    assert only.message.endswith("100.0 % of that are needed: a frame may wait without bound")
 
 
 def test_what_limits_a_system_is_said_in_a_sentence() -> None:

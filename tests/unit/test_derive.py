@@ -67,6 +67,11 @@ def test_deadline_of_a_processor_is_the_shortest_of_its_table() -> None:
     assert short.processors[1].deadline == 5_000_000
     given = system_of(("stack: 16 KiB,", "stack: 16 KiB, deadline: 8 ms,"))
     assert given.processors[1].deadline == 8_000_000
+    both = system_of(
+        ("wcet: 30 us\n        body", "wcet: 30 us\n        deadline: 5 ms\n        body"),
+        ("stack: 16 KiB,", "stack: 16 KiB, deadline: 8 ms,"),
+    )
+    assert both.processors[1].deadline == 5_000_000
 
 
 def test_budget_is_the_table_and_the_rows_are_told() -> None:
