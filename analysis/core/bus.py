@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .checks import natural, positive
+from .checks import at_most, natural, positive
 
 ERROR_BITS = 31
 """Bits lost to one error besides the frame that is sent again: Tindell and Burns 1994.
@@ -44,6 +44,7 @@ class Frame:
         owner = f"message {self.name}"
         positive(owner, period=self.period, deadline=self.deadline, cost=self.cost)
         natural(owner, rank=self.rank, jitter=self.jitter, best=self.best)
+        at_most(owner, "best", self.best, self.cost)
 
     @property
     def utilisation(self) -> Fraction:

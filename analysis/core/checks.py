@@ -17,6 +17,12 @@ def natural(owner: str, **fields: int) -> None:
             raise ValueError(f"{field} of {owner} must be an integer from 0 up, not {value!r}")
 
 
+def at_most(owner: str, field: str, value: int, limit: int) -> None:
+    """Refuse a best case of ``owner`` that is longer than its worst, with a ValueError."""
+    if value > limit:
+        raise ValueError(f"{field} of {owner} is {value}, above its worst case of {limit}")
+
+
 def distinct(kind: str, names: list[str]) -> None:
     """Refuse a name that two of ``kind`` have, with a ValueError."""
     if len(set(names)) == len(names):

@@ -105,7 +105,10 @@ def _scaled_network(network: Network, factor: Fraction, names: Collection[str] |
         ),
         frames={
             bus: tuple(
-                replace(f, cost=_up(f.cost * factor)) if chosen(f.name) else f for f in frames
+                replace(f, cost=_up(f.cost * factor), best=_down(f.best, factor))
+                if chosen(f.name)
+                else f
+                for f in frames
             )
             for bus, frames in network.frames.items()
         },
@@ -144,7 +147,12 @@ def growth(
 def scaled(task: Task, factor: Fraction) -> Task:
     """The task with its own time and its rows multiplied by ``factor``, each rounded up."""
     rows = tuple(Row(r.name, _up(r.cost * factor), r.every, r.phase) for r in task.rows)
-    return replace(task, cost=_up(task.cost * factor), rows=rows)
+    return replace(task, cost=_up(task.cost * factor), rows=rows, best=_down(task.best, factor))
+
+
+def _down(best: int, factor: Fraction) -> int:
+    """A best case that is never above the worst, and does not grow with it."""
+    return min(best, int(best * factor))
 
 
 def tightest(responses: Sequence[Response]) -> tuple[Response, ...]:

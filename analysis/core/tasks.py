@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from .checks import distinct, natural, positive
+from .checks import at_most, distinct, natural, positive
 
 FRAME_LIMIT = 1024
 """Releases after which a table must repeat; with more, every row counts in every job."""
@@ -72,6 +72,7 @@ class Task:
             distinct(f"rows of {owner}", [row.name for row in self.rows])
         else:
             positive(owner, cost=self.cost)
+        at_most(owner, "best", self.best, self.plain_cost)
 
     @property
     def plain_cost(self) -> int:

@@ -248,6 +248,18 @@ def test_overload_and_misses_have_a_verdict_and_a_reason() -> None:
     assert (full["met"], full["scaling"]) == (True, "1/1")
 
 
+BEST = "task,priority,period_ms,cost_ms,best_ms,released_by\na,2,10,1,{},\nb,1,10,1,1,a\n"
+
+
+def test_a_best_case_shrinks_with_the_costs_and_is_never_above_them(tmp_path: Path) -> None:
+    file = tmp_path / "best.csv"
+    file.write_text(BEST.format(1), encoding="utf-8")
+    assert main(["analyse", str(file)]) == 0
+    assert problems(BEST.format(3)) == [
+        "a.csv:2: error: best of task a is 3000000, above its worst case of 1000000"
+    ]
+
+
 def test_huge_hyperperiods_and_numbers_near_64_bits_end_at_once() -> None:
     start = time.perf_counter()
     primes = (10**9 + 7, 10**9 + 9, 10**9 + 21, 10**9 + 33, 10**9 + 87)
