@@ -206,8 +206,6 @@ def followed(shape: RegionShape) -> Expr:
 
 def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """Every lane's transition in order; what conflicts with an earlier one is dropped."""
-    choose = Call("Choose", shape.choice_args())
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     work: tuple[Stmt, ...] = tuple(
         s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))
     )
@@ -215,27 +213,31 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
         fields = [f"C.{shape.lane_name(n)}" for n in shape.busy_lanes]
         rows = [(call("Is_Deferral", Ref(f)), (do("Fire_Whole", Ref(f)),)) for f in fields]
         work = (If(tuple(rows), work),)
-    return Subprogram(
-        "Step",
-        profile,
-        declarations=(Object("C", "Choice"), _fire_whole(shape, moves)),
-        body=(
-            Assign("Fired", _nothing()),
-            If(((begun, (do("Fire_Whole", Ref(START)),)),), (Assign("C", choose), *work)),
-        ),
-    )
+    choose = Assign("C", Call("Choose", shape.choice_args()))
+    return _step(shape, moves, profile, Object("C", "Choice"), (choose, *work))
 
 
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
-    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     pick = Assign("Chosen", Call("Select_Transition", shape.choice_args()))
     some = Chain("/=", (Ref("Chosen"), Ref("None")))
     work = (pick, If(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
+    return _step(shape, moves, profile, Object("Chosen", "Selection"), work)
+
+
+def _step(
+    shape: RegionShape,
+    moves: Moves,
+    profile: tuple[Param, ...],
+    choice: Object,
+    work: tuple[Stmt, ...],
+) -> Subprogram:
+    """At the start of the region its initial entry; later ``work``, with a variable for it."""
+    begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     return Subprogram(
         "Step",
         profile,
-        declarations=(Object("Chosen", "Selection"), _fire_whole(shape, moves)),
+        declarations=(choice, _fire_whole(shape, moves)),
         body=(
             Assign("Fired", _nothing()),
             If(((begun, (do("Fire_Whole", Ref(START)),)),), work),

@@ -64,7 +64,7 @@ class Moving:
 
     def exit(self, state: str) -> tuple[Stmt, ...]:
         """The exit of one state."""
-        if self._work_of_exit(state):
+        if state in self._exited or self._work_of_exit(state):
             self._exited.add(state)
             return (Do(f"Exit_{ada_case(state)}"),)
         return (*self._noted(state, "exit"), Assign(f"Active ({_node(state)})", FALSE))
@@ -72,7 +72,7 @@ class Moving:
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
         """The entry of one state or pseudostate."""
         passed = self.region.pseudostate(vertex) is not None
-        if passed or any(self._work_of_entry(vertex)):
+        if passed or vertex in self._entered or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
             return (Do(f"Enter_{ada_case(vertex)}"),)
         enter = Assign(f"Active ({_node(vertex)})", TRUE)
