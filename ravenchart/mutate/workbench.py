@@ -21,7 +21,6 @@ from .mutants import Files, Mutant
 from .observing import Observer, Simulated
 from .source import choices, subprogram
 
-PROOF = ("--level=1", "--prover=z3,cvc4", "--timeout=10", "--checks-as-errors")
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
 
@@ -180,11 +179,12 @@ class Workbench:
     def prove(self, units: Sequence[str], only: str | None = None, *, jobs: int = 1) -> None:
         """Prove units, or one subprogram of one; ToolFailed with what is left.
 
+        With the switches of the project, as `make prove`.
         What earlier runs left unproved would count again: their results go first.
         """
         for old in self.folder.rglob("*.spark"):
             old.unlink()
-        command = ["gnatprove", "-P", self.project, "-q", "--output=oneline", *PROOF]
+        command = ["gnatprove", "-P", self.project, "-q", "--output=oneline"]
         command += [f"-j{jobs}", "-u", *units]
         if only is not None:
             command.append(f"--limit-subp={only}")
