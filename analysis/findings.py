@@ -40,8 +40,7 @@ def findings(analysis: Analysis) -> tuple[Diagnostic, ...]:
             found.append(_of_task(response, analysis))
         else:
             found.append(_of_message(response, analysis))
-    overloaded = [bus for bus in analysis.system.buses if analysis.bus_load(bus) > 1]
-    found += [_of_bus(bus, analysis) for bus in overloaded]
+    found += [_of_bus(bus, analysis) for bus in analysis.overloaded]
     return (*found, *_of_receptions(analysis), *_of_chains(analysis))
 
 
@@ -181,12 +180,13 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
 def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
     """Receptions that take frames no faster than they come."""
     for processor in analysis.system.processors:
-        waiting = [
-            one for one in analysis.deliveries.values() if one.message.bus == processor.released_by
+        taken_here = [
+            one.message
+            for one in analysis.deliveries.values()
+            if one.message.bus == processor.released_by
         ]
-        taken_here = [one.message for one in waiting]
         load = sum((Fraction(processor.period, m.period) for m in taken_here), Fraction(0))
-        if load > 1 or any(one.bound is None for one in waiting):
+        if load > 1 or any(message in analysis.undelivered for message in taken_here):
             lost = "frames will be lost" if load > 1 else "a frame may wait without bound"
             yield error(
                 NO_BOUND,

@@ -118,8 +118,17 @@ class Analysis:
     @property
     def schedulable(self) -> bool:
         """Every deadline is met, every queue of received frames is served, every limit kept."""
-        served = all(one.bound is not None for one in self.deliveries.values())
-        return self.found.met and served and all(one.met for _, one in self.limited)
+        return self.found.met and not self.undelivered and all(one.met for _, one in self.limited)
+
+    @property
+    def undelivered(self) -> tuple[Message, ...]:
+        """Messages that may wait for their reception without bound."""
+        return tuple(one.message for one in self.deliveries.values() if one.bound is None)
+
+    @property
+    def overloaded(self) -> tuple[Bus, ...]:
+        """Buses whose messages and errors may need more than all of their time."""
+        return tuple(bus for bus in self.system.buses if self.bus_load(bus) > 1)
 
     def utilisation(self, node: str) -> Fraction:
         """Share of one node's core that its tasks and overheads may need together."""

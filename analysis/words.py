@@ -31,7 +31,7 @@ def verdict_line(analysis: Analysis) -> str:
     name, failed = analysis.system.name, analysis.failed()
     tasks, messages = len(analysis.tasks), len(analysis.messages)
     total = f"{tasks} tasks" + (f", {messages} messages" if messages else "")
-    over = [bus.name for bus in analysis.system.buses if analysis.bus_load(bus) > 1]
+    over = [bus.name for bus in analysis.overloaded]
     late = [chain.name for chain, found in analysis.limited if not found.met]
     parts = []
     if failed:
@@ -43,7 +43,7 @@ def verdict_line(analysis: Analysis) -> str:
         parts.append(f"overloaded: {', '.join(over)}")
     if late:
         parts.append(f"too slow: {', '.join(late)}")
-    lost = [one.message.name for one in analysis.deliveries.values() if one.bound is None]
+    lost = [message.name for message in analysis.undelivered]
     if lost and not failed:
         parts.append(f"not received in time: {', '.join(lost)}")
     return f"{name}: {'; '.join(parts) or f'every deadline is met ({total})'}"
