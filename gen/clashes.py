@@ -9,18 +9,14 @@ unit. The elements that gave the name are reported.
 
 from __future__ import annotations
 
-import re
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from .claims import Claims
 from .diagnostics import Diagnostic, error
-from .emit import ada
 from .emit.ada_text import WIDTH, print_unit
-from .emit.naming import ada_case, root_package
-from .generate import units
+from .emit.naming import ada_case
+from .generate import program
 from .model import Component, System
 from .terms import EnumerationType, Origin
 
@@ -28,170 +24,19 @@ PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"}
 """Words that no GNAT project can have as its name, beside those of Ada."""
 
 
-class _Name(NamedTuple):
-    """One declaration; ``profile`` tells overloaded ones apart, None where there are none."""
-
-    text: str
-    profile: tuple[str, ...] | None = None
-    completes: bool = False
-
-    @property
-    def key(self) -> str:
-        return self.text.lower()
-
-    def bars(self, other: _Name) -> bool:
-        """Can the two not both be visible?"""
-        if self.profile is None or other.profile is None:
-            return True
-        return self.profile == other.profile and not (self.completes or other.completes)
-
-
-_Known = dict[str, list[_Name]]
-"""Names by their keys."""
-
-
-def _by_key(names: Sequence[_Name]) -> _Known:
-    found: _Known = defaultdict(list)
-    for name in names:
-        found[name.key].append(name)
-    return found
-
-
-def _names(item: ada.Decl) -> Iterator[_Name]:
-    """What one declaration declares in its scope."""
-    match item:
-        case ada.EnumType(name, literals):
-            yield _Name(name)
-            yield from (_Name(i, ("return", name)) for i in literals)
-        case ada.PlainType(name) | ada.RecordType(name) | ada.Object(name) | ada.Instance(name):
-            yield _Name(name)
-        case ada.Package(name):
-            yield _Name(name)
-        case ada.Subprogram(name, params, result):
-            #  how a literal and a function without parameters look alike
-            types = (*(p.type for p in params), "return", result or "")
-            yield _Name(name, types, completes=item.body is not None)
-
-
-def _loops(body: Sequence[ada.Stmt]) -> Iterator[_Name]:
-    """The variables of the loops in a body."""
-    for statement in body:
-        match statement:
-            case ada.Loop(head, inner):
-                if head:
-                    yield _Name(head.split()[1])
-                yield from _loops(inner)
-            case ada.If(branches, otherwise):
-                for _, inner in branches:
-                    yield from _loops(inner)
-                yield from _loops(otherwise)
-            case ada.Case(_, rows):
-                for _, inner in rows:
-                    yield from _loops(inner)
-
-
-@dataclass(slots=True)
-class _Unit:
-    """The declarations of one unit, and the names in it that bar each other."""
-
-    unit: ada.Unit
-    deep: list[_Name] = field(default_factory=list)
-    """Every name declared in the unit, at any depth."""
-    found: list[str] = field(default_factory=list)
-
-    def scope(self, names: Sequence[_Name], outer: _Known) -> None:
-        """One scope inside others whose names are used in it."""
-        own: _Known = defaultdict(list)
-        for name in names:
-            key = name.key
-            if any(name.bars(other) for other in (*outer.get(key, ()), *own[key])):
-                self.found.append(name.text)
-            own[key].append(name)
-        self.deep += names
-
-    def walk(self, items: Sequence[ada.Decl], outer: Sequence[_Name]) -> list[_Name]:
-        """The declarations of a package, nested ones included; its own names."""
-        names = [n for item in items for n in _names(item)]
-        self.scope(names, _by_key(outer))
-        around = _by_key([*outer, *names])
-        for item in items:
-            match item:
-                case ada.Package(_, inner):
-                    self.walk(inner, ())
-                case ada.RecordType(_, components):
-                    self.record(components)
-                case ada.Subprogram():
-                    self.inside(item, around)
-        return names
-
-    def record(self, components: Sequence[ada.Component]) -> None:
-        """A component hides what the types after it begin with, and other components."""
-        seen: set[str] = set()
-        for name, of_type, _ in components:
-            if name.lower() in seen:
-                self.found.append(name)
-            seen.add(name.lower())
-            if of_type.split(".")[0].lower() in seen:
-                self.found.append(of_type.split(".")[0])
-
-    def inside(self, item: ada.Subprogram, around: _Known) -> None:
-        """Parameters and local declarations; activities call none of their neighbours."""
-        name = self.unit.item.name
-        own = [_Name(p.name) for p in item.params]
-        own += [n for d in item.declarations for n in _names(d)]
-        apart = name.endswith((".Flows", ".Activities"))
-        loops = list(_loops(item.body or ()))
-        if loops:
-            taken = {n.key for n in loops}
-            self.deep += [n for n in (*own, *loops) if n.key in taken]
-            own = [n for n in own if n.key not in taken]
-        self.scope(own, {} if apart else around)
-        for declaration in item.declarations:
-            if isinstance(declaration, ada.Subprogram):
-                self.inside(declaration, {})
-
-
-def _of_item(unit: _Unit, outer: Sequence[_Name]) -> list[_Name]:
-    match unit.unit.item:
-        case ada.Package(_, items):
-            return unit.walk(items, outer)
-        case ada.Subprogram() as main:
-            unit.inside(main, {})
-    return []
-
-
 def _clashing(system: System) -> Iterator[tuple[str, str]]:
     """(Ada name, unit) of whatever clashes."""
-    made = units(system, Claims())
-    root = root_package(system)
-    specs: dict[str, list[_Name]] = {}
-    for unit in made:
-        name = unit.item.name
-        is_body = isinstance(unit.item, ada.Package) and unit.item.is_body
-        if name in specs and not is_body:
+    specs: dict[str, frozenset[str]] = {}
+    for made in program(system, Claims()):
+        name = made.reading.name
+        if name in specs and not made.reading.is_body:
             yield name.rpartition(".")[2], name
-        parent = name.rpartition(".")[0]
-        #  of what the parent declares, children name its types and packages by themselves
-        outer = [n for n in specs.get(parent, ()) if n.profile is None and parent != root]
-        outer = [n for n in outer if not n.text.endswith(("_Port", "_View"))]
-        reading = _Unit(unit)
-        own = _of_item(reading, [*outer, *(specs.get(name, ()) if is_body else ())])
-        yield from ((text, name) for text in reading.found)
-        if not is_body:
-            specs[name] = own
-        externals = {w.removeprefix(f"{root}.").split(".")[0].lower() for w in unit.withs}
-        above = name.split(".")[:2]  # a region's or activity's package never names itself
-        externals |= {part.lower() for part in above}
-        declared = [*reading.deep, *(specs.get(name, ()) if is_body else ())]
-        declared += [_Name(part) for part in name.split(".")[2:]]
-        taken = {n.text for n in declared if n.key in externals}
-        text = re.sub(r"--.*", "", print_unit(unit)) if taken else ""
-        for hidden in sorted(taken):
-            if re.search(rf"(?<![\w.]){hidden}\.", text, re.IGNORECASE):
-                yield hidden, name
+        yield from ((text, name) for text in made.reading.barred)
+        if not made.reading.is_body:
+            specs[name] = made.reading.declared
     for name in specs:
         parent, _, own_name = name.rpartition(".")
-        if any(n.key == own_name.lower() for n in specs.get(parent, ())):
+        if own_name.lower() in specs.get(parent, ()):
             yield own_name, parent
 
 
@@ -258,8 +103,8 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
     if all(len(e.name) <= LONG_NAME for e in _elements(system)):
         return
     reported: set[Origin] = set()
-    for unit in units(system, Claims()):
-        for line in print_unit(unit).splitlines():
+    for made in program(system, Claims()):
+        for line in print_unit(made.unit, made.text).splitlines():
             if len(line) <= WIDTH:
                 continue
             everything = list(_elements(system))
@@ -268,7 +113,9 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
             if found.origin in reported:
                 continue
             reported.add(found.origin)
-            message = f"the {found.kind} `{found.name}` makes a line of {unit.item.name} too long"
+            message = (
+                f"the {found.kind} `{found.name}` makes a line of {made.unit.item.name} too long"
+            )
             hint = f"lines have {WIDTH} columns, and names stand joined in them: shorten it"
             yield error("RV-0304", found.origin, message, hint=hint)
 

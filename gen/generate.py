@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from .claims import Claims
-from .emit.ada import Unit
+from .emit.ada import Package, Unit
 from .emit.ada_text import print_item, print_unit
 from .emit.certificate import emit_certificate
 from .emit.charts.declared import emit_region
@@ -17,12 +16,14 @@ from .emit.components import emit_activities, emit_component
 from .emit.dbc import emit_dbc
 from .emit.deployment import emit_deployment, emit_without_tasks
 from .emit.instances import emit_instances
-from .emit.naming import ada_case
+from .emit.naming import ada_case, root_package
 from .emit.project import project_text, simulation_project
 from .emit.quiet import has_decided_conditions, quiet
 from .emit.simulation import emit_simulation, simulated
 from .emit.types import emit_root
-from .model import System
+from .model import Component, System
+from .parallel import made_by_all
+from .readings import Reading, readings
 from .terms import IntegerType
 from .trace import trace_json
 
@@ -31,62 +32,102 @@ HEADER = (
     "generate again. Names in brackets are the model's elements; trace.json says where they stand."
 )
 
+MANY = 500
+"""So many regions are made by all processors of the machine together."""
 
-def units(system: System, claims: Claims) -> tuple[Unit, ...]:
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A unit of the program: its context, the text of its item, and what was read in it.
+
+    The declarations themselves are dropped: there are millions in a large program.
+    """
+
+    unit: Unit
+    text: str
+    reading: Reading
+
+
+class _Maker:
+    """Makes units of one system, with what depends on the whole program."""
+
+    def __init__(self, system: System, *, noted: bool = False) -> None:
+        self.system = system
+        self.header = HEADER.format(system=system.name)
+        self.noted = noted
+        #  without such a type the root has no need of the runtime, and its children
+        #  cannot see it through the root
+        self.blind = not any(isinstance(t, IntegerType) for t in system.types)
+        self.decided = has_decided_conditions(system)
+        used = {i.component.name for i in system.instances}
+        self.components = [c for c in system.components if c.name in used]
+
+    def logic(self) -> list[Made]:
+        """The root and the components: no state, no tasks."""
+        root = self.made([emit_root(self.system, self.header)])
+        if sum(len(c.regions) for c in self.components) < MANY:
+            parts = [self._of_component(c) for c in self.components]
+        else:
+            parts = made_by_all(
+                lambda number: self._of_component(self.components[number]), len(self.components)
+            )
+        return [*root, *(made for part in parts for made in part)]
+
+    def _of_component(self, component: Component) -> list[Made]:
+        system, header = self.system, self.header
+        found = [emit_component(system, component, header)]
+        for region in component.regions:
+            found += emit_region(system, component, region, header, noted=self.noted)
+        found += emit_activities(system, component, header)
+        return self.made(found)
+
+    def made(self, found: Sequence[Unit]) -> list[Made]:
+        """Units with their texts and readings."""
+        if self.blind:
+            found = [_seeing_runtime(unit) for unit in found]
+        if self.decided:
+            found = [quiet(unit) for unit in found]
+        texts = [print_item(unit) for unit in found]
+        read = readings(found, texts, root_package(self.system))
+        return [Made(_context(u), t, r) for u, t, r in zip(found, texts, read, strict=True)]
+
+
+def program(system: System, claims: Claims) -> tuple[Made, ...]:
     """Every Ada unit of the program; ``claims`` are what its certificate shows."""
-    header = HEADER.format(system=system.name)
     before, after = _without_claims(system)
-    return (*before, *_finished(system, [emit_certificate(system, claims, header)]), *after)
+    maker = _Maker(system)
+    return (*before, *maker.made([emit_certificate(system, claims, maker.header)]), *after)
 
 
 @lru_cache(maxsize=1)
-def _without_claims(system: System) -> tuple[tuple[Unit, ...], tuple[Unit, ...]]:
-    """The units before and behind the timing certificate: made once, checked and then printed."""
-    header = HEADER.format(system=system.name)
-    before = [
-        *_logic(system, header),
-        *emit_codecs(system, header),
-        *emit_instances(system, header),
-    ]
-    after = emit_deployment(system, header)
-    return tuple(_finished(system, before)), tuple(_finished(system, [*after]))
-
-
-def _logic(system: System, header: str, *, noted: bool = False) -> list[Unit]:
-    """The root and the components: no state, no tasks."""
-    found: list[Unit] = [emit_root(system, header)]
-    used = {i.component.name for i in system.instances}
-    for component in system.components:
-        if component.name in used:
-            found.append(emit_component(system, component, header))
-            for region in component.regions:
-                found += emit_region(system, component, region, header, noted=noted)
-            found += emit_activities(system, component, header)
-    return found
-
-
-def _finished(system: System, found: list[Unit]) -> list[Unit]:
-    """The units with what depends on the whole program."""
-    if not any(isinstance(t, IntegerType) for t in system.types):
-        #  the root has no need of the runtime, and its children cannot see it through the root
-        found = [_seeing_runtime(unit) for unit in found]
-    if has_decided_conditions(system):
-        found = [quiet(unit) for unit in found]
-    return found
+def _without_claims(system: System) -> tuple[tuple[Made, ...], tuple[Made, ...]]:
+    """The units before and behind the timing certificate: made once, checked and then written."""
+    maker = _Maker(system)
+    before = [*emit_codecs(system, maker.header), *emit_instances(system, maker.header)]
+    after = emit_deployment(system, maker.header)
+    return (*maker.logic(), *maker.made(before)), tuple(maker.made(after))
 
 
 def simulation(system: System) -> dict[str, str]:
     """The files of the program that runs in virtual time, project file included."""
     reduced = simulated(system)
-    header = HEADER.format(system=system.name)
-    found = _logic(reduced, header, noted=True)
-    found += emit_instances(reduced, header, noted=True)
-    found += emit_without_tasks(reduced, header)
-    found.append(emit_simulation(reduced, header))
-    files = _printed(_finished(system, found), ada_case(system.name))
+    maker = _Maker(reduced, noted=True)
+    found = [
+        *emit_instances(reduced, maker.header, noted=True),
+        *emit_without_tasks(reduced, maker.header),
+        emit_simulation(reduced, maker.header),
+    ]
+    files = _printed([*maker.logic(), *maker.made(found)], root_package(system))
     name = ada_case(system.name).lower()
     files[f"{name}_simulation.gpr"] = simulation_project(system)
     return files
+
+
+def _context(unit: Unit) -> Unit:
+    """The unit without its declarations."""
+    if isinstance(unit.item, Package):
+        return replace(unit, item=replace(unit.item, items=()))
+    return unit
 
 
 def _seeing_runtime(unit: Unit) -> Unit:
@@ -126,40 +167,16 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
     return out
 
 
-MANY = 1000
-"""So many units are printed by all processors of the machine together."""
-
-_shared: list[Unit] = []
-"""What a process that was forked to print has of its parent: units are not sent."""
-
-
-def _texts(found: list[Unit]) -> list[str]:
-    """Each unit's item, as text."""
-    if len(found) < MANY or "fork" not in multiprocessing.get_all_start_methods():
-        return [print_item(unit) for unit in found]
-    _shared[:] = found
-    try:
-        with ProcessPoolExecutor(mp_context=multiprocessing.get_context("fork")) as pool:
-            return list(pool.map(_text_of, range(len(found)), chunksize=MANY // 20))
-    finally:
-        _shared.clear()
-
-
-def _text_of(index: int) -> str:
-    return print_item(_shared[index])
-
-
-def _printed(found: list[Unit], root: str) -> dict[str, str]:
-    texts = _texts(found)
-    pairs = zip(found, texts, strict=True)
-    pruned = _without_repeats([_pruned(unit, root, text) for unit, text in pairs])
-    return {u.file_name: print_unit(u, text) for u, text in zip(pruned, texts, strict=True)}
+def _printed(found: Sequence[Made], root: str) -> dict[str, str]:
+    pruned = _without_repeats([_pruned(made.unit, root, made.text) for made in found])
+    pairs = zip(pruned, found, strict=True)
+    return {unit.file_name: print_unit(unit, made.text) for unit, made in pairs}
 
 
 def generate(system: System, claims: Claims) -> dict[str, str]:
     """File name to text, the same bytes for the same model."""
     root = ada_case(system.name)
-    files = _printed(list(units(system, claims)), root)
+    files = _printed(program(system, claims), root)
     name = root.lower()
     files[f"{name}.gpr"] = project_text(system, has_user_code=bool(user_units(system)))
     files["trace.json"] = trace_json(system)

@@ -78,6 +78,11 @@ class Moving:
         enter = Assign(f"Active ({_node(vertex)})", TRUE)
         return (*self._place(vertex), enter, *self._noted(vertex, "entry"))
 
+    def agrees_after(self, move: Stmt) -> bool:
+        """Is it the entry of a leaf whose contract says that all active states are right?"""
+        last = filter(self.nodes.is_last, self._entered)
+        return any(move == Do(f"Enter_{ada_case(vertex)}") for vertex in last)
+
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
         if place not in self._left:
@@ -159,6 +164,8 @@ class Moving:
             here = self._place(vertex)
             noted = self._noted(vertex, "entry")
             body = (*here, *first, Assign(f"Active ({node})", TRUE), *noted, *then)
+        if self.nodes.is_last(vertex):
+            active = equal(Ref("Active"), call("Chart.Active_In", Ref(self.held)))
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
             aspects=(

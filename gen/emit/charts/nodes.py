@@ -12,6 +12,7 @@ from ..ada import (
     Aggregate,
     Arg,
     Aspect,
+    Chain,
     Decl,
     EnumType,
     Expr,
@@ -22,6 +23,8 @@ from ..ada import (
     Prefix,
     Ref,
     Subprogram,
+    both,
+    equal,
 )
 from ..naming import ada_case
 from .compound import TOP, Place
@@ -72,12 +75,24 @@ class Nodes:
         return [active, self.none_in(f"{first} .. {last}")]
 
     def ready_to_enter(self, vertex: str) -> list[Expr]:
-        """Its parent is active, and nothing in its own region is."""
+        """Its parent is active, and nothing in its own region is.
+
+        What is entered last is told more: all states around it are active, nothing else.
+        """
+        if self.is_last(vertex):
+            around: Expr = Ref(f"Chart.Active_In ({self.shape.literal(vertex)}) (N)")
+            if self.region.pseudostate(vertex) is None:
+                around = both(Chain("/=", (Ref("N"), Ref(f"Chart.{ada_case(vertex)}"))), around)
+            return [ForAll("N", NODES, equal(Ref("Active (N)"), around))]
         place = self.shape.compounds.place(vertex)
         none = self.none_in(self.inside(place))
         if place.owner is None:
             return [none]
         return [Ref(f"Active (Chart.{ada_case(place.owner)})"), none]
+
+    def is_last(self, vertex: str) -> bool:
+        """Does its entry always end a firing? So does that of a leaf where there is one lane."""
+        return self.shape.single and self.shape.is_literal(vertex)
 
     def inside(self, place: Place) -> str:
         """The states in a region, as a range."""

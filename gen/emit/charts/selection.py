@@ -36,7 +36,8 @@ from .compound import PASSED, TOP, Firing, Kind, Place
 from .places import flat
 from .shape import HELD, PASSING, RegionShape, plain_args
 
-FEW = 4
+
+FEW = 8
 """Up to so many leaves are selected for by the function of the state around them."""
 
 
@@ -94,8 +95,10 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
     rows: list[tuple[str, Expr]] = []
     children = [s.name for s in shape.region.children(place.owner, place.region)]
     passed = shape.compounds.passed(place)
-    few = sum(map(shape.is_literal, children)) <= FEW
-    for child in (*children, *passed):
+    literals = tuple(shape.literals_in(place))
+    whole = len(literals) <= FEW
+    few = whole or sum(map(shape.is_literal, children)) <= FEW
+    for child in literals if whole else (*children, *passed):
         name = f"In_{ada_case(child)}"
         if few and child not in passed and shape.is_literal(child):
             rows.append((shape.literal(child), _in_leaf(shape, lane, child)))
@@ -106,19 +109,19 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
             region = shape.region.state(child).regions[0].name
             items += _of_place(shape, lane, Place(child, region))
             rows.append((shape.literal(child), Call(name, plain_args(params))))
-    whole = place == TOP or (place.owner == lane.owner and place.region == lane.name)
-    own = _whole_name(shape, lane) if whole else f"In_{ada_case(place.owner or '')}"
-    leaf_type = shape.place_type if whole else shape.literal(place.owner or "")
+    is_lane = place == TOP or (place.owner == lane.owner and place.region == lane.name)
+    own = _whole_name(shape, lane) if is_lane else f"In_{ada_case(place.owner or '')}"
+    leaf_type = shape.place_type if is_lane else shape.literal(place.owner or "")
     leaf = shape.at(shape.place, lane)
     if shape.single:
         params = (params[0]._replace(type=leaf_type), *params[1:])
-    elif not whole:
+    elif not is_lane:
         leaf = f"{leaf_type}'({leaf})"
     chosen: Expr = CaseExpr(Ref(leaf), tuple(rows))
-    if whole and lane.owner is not None:
+    if is_lane and lane.owner is not None:
         chosen = IfExpr(((shape.in_state(shape.place, lane.owner), chosen),), Ref("None"))
     aspects = [Aspect("Post", _is_right(shape, lane, own, shape.place))]
-    if not shape.single and not whole:
+    if not shape.single and not is_lane:
         ready = shape.in_state(shape.place, place.owner or "")
         aspects.insert(0, Aspect("Pre", ready))
     items.append(Subprogram(own, params, "Selection", aspects=tuple(aspects), expression=chosen))

@@ -1,0 +1,32 @@
+"""A list made item by item, by all processors of the machine together."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from typing import TypeVar
+
+T = TypeVar("T")
+
+_shared: list[Callable[[int], object]] = []
+"""What a forked process has of its parent: the model is not sent."""
+
+
+def made_by_all(make: Callable[[int], T], count: int) -> list[T]:
+    """``[make(0), ... make(count - 1)]``; what ``make`` gives is sent between processes.
+
+    Without `fork` one process makes all.
+    """
+    if "fork" not in multiprocessing.get_all_start_methods():
+        return [make(number) for number in range(count)]
+    _shared[:] = [make]
+    try:
+        with ProcessPoolExecutor(mp_context=multiprocessing.get_context("fork")) as pool:
+            return list(pool.map(_make, range(count), chunksize=count // 20 + 1))  # type: ignore[arg-type]
+    finally:
+        _shared.clear()
+
+
+def _make(number: int) -> object:
+    return _shared[0](number)
