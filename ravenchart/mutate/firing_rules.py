@@ -10,7 +10,7 @@ from .mutants import NOTE, Edit, Files, Found, replaced, swapped
 from .source import Branch, Span, Subprogram, arms, choices, statements, subprogram, subprograms
 
 _MOVE = re.compile(r"^(Exit|Leave|Enter)_\w+;$")
-_GHOST = re.compile(r"^(pragma |Active\b)")
+_GHOST = re.compile(r"^(pragma |Active(_\w+)? :=)")
 _HELD = re.compile(r"^Self\.(Place(\.\w+)?|Leaf) :=")
 _KEPT = re.compile(r"^Self\.(Past|Completed_|Timers)|^Ravenchart\.Timers\.")
 

@@ -47,7 +47,7 @@ def test_a_transition_to_the_wrong_state_is_not_proved(checkout: Path) -> None:
     unit = "three_components-station-handling.adb"
     _prove(checkout, unit)
     body = checkout / "three" / "generated" / unit
-    entered = "Self.Leaf := Handling_States.{0};\n            Active (Chart.{0}) := True;"
+    entered = "{0});\n            Self.Leaf := Handling_States.{0};"
     _break(body, entered.format("Holding"), entered.format("Empty"))
     with pytest.raises(ToolFailed, match="might fail"):
         _prove(checkout, unit)

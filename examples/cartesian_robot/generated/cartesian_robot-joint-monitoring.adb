@@ -38,17 +38,18 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Watching, Alarmed);
+      type Node is (Nowhere, Watching, Alarmed);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Monitoring_States.Leaf) return Node is
+        (Node'Val (Monitoring_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Monitoring_States.Leaf) return Node_Set is
-        ((Watching => Leaf = Monitoring_States.Watching,
-          Alarmed => Leaf = Monitoring_States.Alarmed));
-
-      function Holder (I : Positive) return Node is
-        (case I is
-           when others => Alarmed);
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -93,80 +94,70 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Alarmed
       with
-        Pre => Active (Chart.Alarmed),
+        Pre => Active = Chart.Alarmed,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Alarmed and then Active'Old (N)))
+          and then Active = Chart.Nowhere
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Alarmed
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active (Chart.Alarmed) := False;
+         Active := Chart.Nowhere;
       end Exit_Alarmed;
       procedure Enter_Alarmed
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Monitoring_States.Alarmed
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Alarmed or else Active'Old (N)))
+          and then Active = Chart.Alarmed
           and then Self.Timers (1) = Ravenchart.Timers.Started (50)
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Alarmed
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Monitoring_States.Alarmed;
          Ravenchart.Timers.Arm (Self.Timers (1), 50);
-         Active (Chart.Alarmed) := True;
+         Active := Chart.Alarmed;
       end Enter_Alarmed;
    begin
       case Chosen is
          when Initial_Entry =>
-            Self.Leaf := Monitoring_States.Watching;
-            Active (Chart.Watching) := True;
             Self.Started := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Watching);
+            Self.Leaf := Monitoring_States.Watching;
          when Strayed =>
-            Active (Chart.Watching) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Strayed);
             Enter_Alarmed;
          when Limit_Hit =>
-            Active (Chart.Watching) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
             Enter_Alarmed;
          when End_Reached =>
-            Active (Chart.Watching) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
             Enter_Alarmed;
          when Drive_Failed =>
-            Active (Chart.Watching) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Drive_Failed);
             Enter_Alarmed;
          when Calm =>
             Exit_Alarmed;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Watching);
             Self.Leaf := Monitoring_States.Watching;
-            Active (Chart.Watching) := True;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

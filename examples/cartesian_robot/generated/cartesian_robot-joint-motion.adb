@@ -5,13 +5,34 @@
 package body Cartesian_Robot.Joint.Motion
 with SPARK_Mode
 is
-   function In_Homing
-     (Leaf : Motion_States.Homing;
+   function Select_Transition
+     (Leaf : Motion_States.Leaf;
       Now  : Occurrence;
       Data : Variables;
       Ins  : Inputs)
      return Selection is
      (case Leaf is
+        when Motion_States.Idle =>
+           (if Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Home
+               and then Ins.Feedback.State = Ravenchart.Fresh
+               then Start_Homing
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Move
+               and then Data.Homed
+               then Start_Move
+            elsif Now = On_Ordered
+               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = On_Feedback_Lost
+               then Lost
+            elsif Now = On_Drive_Failed
+               then Failed
+            elsif Now = On_Strayed
+               then Strayed
+            elsif Now = On_Limit_Hit
+               then Limit
+            else None),
         when Motion_States.Seeking =>
            (if Now = Conditions
                and then Ins.Feedback.Value.Limit = Cartesian_Robot.Low_End
@@ -47,16 +68,7 @@ is
                then Strayed
             elsif Now = On_Limit_Hit
                then Limit
-            else None))
-   with Post => Is_Selection (In_Homing'Result, Leaf, Now, Data, Ins);
-
-   function In_Moving
-     (Leaf : Motion_States.Moving;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
+            else None),
         when Motion_States.Accelerating =>
            (if Now = Conditions
                and then Ins.Profile.Phase = Cartesian_Robot.At_Speed
@@ -119,48 +131,7 @@ is
                then Strayed
             elsif Now = On_Limit_Hit
                then Limit
-            else None))
-   with Post => Is_Selection (In_Moving'Result, Leaf, Now, Data, Ins);
-
-   function In_Operational
-     (Leaf : Motion_States.Operational;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
-        when Motion_States.Idle =>
-           (if Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Home
-               and then Ins.Feedback.State = Ravenchart.Fresh
-               then Start_Homing
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Move
-               and then Data.Homed
-               then Start_Move
-            elsif Now = On_Ordered
-               and then Ins.Order.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = On_Feedback_Lost
-               then Lost
-            elsif Now = On_Drive_Failed
-               then Failed
-            elsif Now = On_Strayed
-               then Strayed
-            elsif Now = On_Limit_Hit
-               then Limit
             else None),
-        when Motion_States.Homing => In_Homing (Leaf, Now, Data, Ins),
-        when Motion_States.Moving => In_Moving (Leaf, Now, Data, Ins))
-   with Post => Is_Selection (In_Operational'Result, Leaf, Now, Data, Ins);
-
-   function In_Fault
-     (Leaf : Motion_States.Fault;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
         when Motion_States.Limit =>
            (if Now = On_Ordered
                and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
@@ -173,18 +144,6 @@ is
                and then Ins.Feedback.State = Ravenchart.Fresh
                then Reset
             else None))
-   with Post => Is_Selection (In_Fault'Result, Leaf, Now, Data, Ins);
-
-   function Select_Transition
-     (Leaf : Motion_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
-        when Motion_States.Operational =>
-           In_Operational (Leaf, Now, Data, Ins),
-        when Motion_States.Fault => In_Fault (Leaf, Now, Data, Ins))
    with
      Post => Is_Selection (Select_Transition'Result, Leaf, Now, Data, Ins);
 
@@ -192,38 +151,30 @@ is
    with Ghost
    is
       type Node is
-        (Operational,
+        (Nowhere,
          Idle,
-         Homing,
          Seeking,
          Backing_Off,
-         Moving,
          Accelerating,
          Cruising,
          Braking,
-         Fault,
          Limit,
-         Drive);
+         Drive,
+         Operational,
+         Homing,
+         Moving,
+         Fault);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Motion_States.Leaf) return Node is
+        (Node'Val (Motion_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Motion_States.Leaf) return Node_Set is
-        ((Operational => Leaf in Motion_States.Operational,
-          Idle => Leaf = Motion_States.Idle,
-          Homing => Leaf in Motion_States.Homing,
-          Seeking => Leaf = Motion_States.Seeking,
-          Backing_Off => Leaf = Motion_States.Backing_Off,
-          Moving => Leaf in Motion_States.Moving,
-          Accelerating => Leaf = Motion_States.Accelerating,
-          Cruising => Leaf = Motion_States.Cruising,
-          Braking => Leaf = Motion_States.Braking,
-          Fault => Leaf in Motion_States.Fault,
-          Limit => Leaf = Motion_States.Limit,
-          Drive => Leaf = Motion_States.Drive));
-
-      function Holder (I : Positive) return Node is
-        (case I is
-           when others => Homing);
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -265,226 +216,180 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Homing
       with
-        Pre =>
-          Active (Chart.Homing)
-          and then (for all N in Chart.Seeking .. Chart.Backing_Off =>
-                not Active (N)),
+        Pre => Active = Chart.Homing,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Homing and then Active'Old (N)))
+          and then Active = Chart.Operational
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Homing
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active (Chart.Homing) := False;
+         Active := Chart.Operational;
       end Exit_Homing;
       procedure Leave_Fault
       with
         Pre =>
           Self.Leaf in Motion_States.Fault
-          and then (for all N in Chart.Limit .. Chart.Drive =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Limit .. Chart.Drive
-                   and then Active'Old (N)))
+          and then Active = Chart.Fault
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Fault'(Self.Leaf) is
             when Motion_States.Limit =>
-               Active (Chart.Limit) := False;
+               Active := Chart.Moved (Active, Chart.Limit, Chart.Fault);
             when Motion_States.Drive =>
-               Active (Chart.Drive) := False;
+               Active := Chart.Moved (Active, Chart.Drive, Chart.Fault);
          end case;
       end Leave_Fault;
       procedure Leave_Moving
       with
         Pre =>
           Self.Leaf in Motion_States.Moving
-          and then (for all N in Chart.Accelerating .. Chart.Braking =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Accelerating .. Chart.Braking
-                   and then Active'Old (N)))
+          and then Active = Chart.Moving
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Moving'(Self.Leaf) is
             when Motion_States.Accelerating =>
-               Active (Chart.Accelerating) := False;
+               Active :=
+                 Chart.Moved (Active, Chart.Accelerating, Chart.Moving);
             when Motion_States.Cruising =>
-               Active (Chart.Cruising) := False;
+               Active := Chart.Moved (Active, Chart.Cruising, Chart.Moving);
             when Motion_States.Braking =>
-               Active (Chart.Braking) := False;
+               Active := Chart.Moved (Active, Chart.Braking, Chart.Moving);
          end case;
       end Leave_Moving;
       procedure Leave_Homing
       with
         Pre =>
           Self.Leaf in Motion_States.Homing
-          and then (for all N in Chart.Seeking .. Chart.Backing_Off =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Seeking .. Chart.Backing_Off
-                   and then Active'Old (N)))
+          and then Active = Chart.Homing
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Homing'(Self.Leaf) is
             when Motion_States.Seeking =>
-               Active (Chart.Seeking) := False;
+               Active := Chart.Moved (Active, Chart.Seeking, Chart.Homing);
             when Motion_States.Backing_Off =>
-               Active (Chart.Backing_Off) := False;
+               Active :=
+                 Chart.Moved (Active, Chart.Backing_Off, Chart.Homing);
          end case;
       end Leave_Homing;
       procedure Leave_Operational
       with
         Pre =>
           Self.Leaf in Motion_States.Operational
-          and then (for all N in Chart.Idle .. Chart.Braking =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Idle .. Chart.Braking
-                   and then Active'Old (N)))
-          and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Idle .. Chart.Braking
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+          and then Active = Chart.Operational
+          and then Self.Timers (1)
+            = (if Self.Leaf in Motion_States.Homing
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (1))
           and then Self.Started = Self.Started'Old
       is
       begin
          case Motion_States.Operational'(Self.Leaf) is
             when Motion_States.Idle =>
-               Active (Chart.Idle) := False;
+               Active :=
+                 Chart.Moved (Active, Chart.Idle, Chart.Operational);
             when Motion_States.Homing =>
                Leave_Homing;
                Exit_Homing;
             when Motion_States.Moving =>
                Leave_Moving;
-               Active (Chart.Moving) := False;
+               Active :=
+                 Chart.Moved (Active, Chart.Moving, Chart.Operational);
          end case;
       end Leave_Operational;
       procedure Enter_Idle
       with
-        Pre =>
-          Active (Chart.Operational)
-          and then (for all N in Chart.Idle .. Chart.Braking =>
-                not Active (N)),
+        Pre => Active = Chart.Operational,
         Post =>
           Self.Leaf = Motion_States.Idle
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Idle or else Active'Old (N)))
+          and then Active = Chart.Idle
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Idle;
-         Active (Chart.Idle) := True;
+         Active := Chart.Idle;
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
       end Enter_Idle;
       procedure Enter_Homing
       with
-        Pre =>
-          Active (Chart.Operational)
-          and then (for all N in Chart.Idle .. Chart.Braking =>
-                not Active (N)),
+        Pre => Active = Chart.Operational,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Homing or else Active'Old (N)))
+          and then Active = Chart.Homing
           and then Self.Timers (1) = Ravenchart.Timers.Started (1_000)
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Homing
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
-         Active (Chart.Homing) := True;
+         Active := Chart.Homing;
       end Enter_Homing;
       procedure Enter_Seeking
       with
-        Pre =>
-          Active (Chart.Homing)
-          and then (for all N in Chart.Seeking .. Chart.Backing_Off =>
-                not Active (N)),
+        Pre => Active = Chart.Homing,
         Post =>
           Self.Leaf = Motion_States.Seeking
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Seeking or else Active'Old (N)))
+          and then Active = Chart.Seeking
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Seeking;
-         Active (Chart.Seeking) := True;
+         Active := Chart.Seeking;
          Self.Data.Homed := False;
          Self.Data.Goal.Wanted := Cartesian_Robot.Seek_Low_End;
       end Enter_Seeking;
       procedure Enter_Backing_Off
       with
-        Pre =>
-          Active (Chart.Homing)
-          and then (for all N in Chart.Seeking .. Chart.Backing_Off =>
-                not Active (N)),
+        Pre => Active = Chart.Homing,
         Post =>
           Self.Leaf = Motion_States.Backing_Off
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Backing_Off or else Active'Old (N)))
+          and then Active = Chart.Backing_Off
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Backing_Off;
-         Active (Chart.Backing_Off) := True;
+         Active := Chart.Backing_Off;
          Self.Data.Goal.Wanted := Cartesian_Robot.Leave_Low_End;
       end Enter_Backing_Off;
       procedure Enter_Moving
       with
-        Pre =>
-          Active (Chart.Operational)
-          and then (for all N in Chart.Idle .. Chart.Braking =>
-                not Active (N)),
+        Pre => Active = Chart.Operational,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Moving or else Active'Old (N)))
+          and then Active = Chart.Moving
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Moving) := True;
+         Active := Chart.Moving;
          Self.Data.Goal.Target :=
            Cartesian_Robot.Unit_Um'Min
              (Cartesian_Robot.Unit_Um'Max (Ins.Order.Value.Target, 0),
@@ -493,106 +398,106 @@ is
       end Enter_Moving;
       procedure Enter_Fault
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Fault or else Active'Old (N)))
+          and then Active = Chart.Fault
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Fault) := True;
+         Active := Chart.Fault;
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
          Self.Data.Homed := False;
       end Enter_Fault;
    begin
       case Chosen is
          when Initial_Entry =>
-            Active (Chart.Operational) := True;
-            Enter_Idle;
             Self.Started := True;
+            Active :=
+              Chart.Moved (Active, Chart.Nowhere, Chart.Operational);
+            Enter_Idle;
          when End_Found =>
-            Active (Chart.Seeking) := False;
+            Active := Chart.Moved (Active, Chart.Seeking, Chart.Homing);
             Enter_Backing_Off;
          when End_Left =>
-            Active (Chart.Backing_Off) := False;
+            Active := Chart.Moved (Active, Chart.Backing_Off, Chart.Homing);
             Exit_Homing;
-            pragma Assert
-              ((for all N in Chart.Node =>
-                   Active (N)
-                   = (N not in Chart.Idle .. Chart.Braking
-                      and then Before (N))));
+            pragma Assert (Active = Chart.Operational);
             Self.Data.Homed := True;
             Enter_Idle;
          when At_Speed =>
-            Active (Chart.Accelerating) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Accelerating, Chart.Cruising);
             Self.Leaf := Motion_States.Cruising;
-            Active (Chart.Cruising) := True;
          when No_Cruise =>
-            Active (Chart.Accelerating) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Accelerating, Chart.Braking);
             Self.Leaf := Motion_States.Braking;
-            Active (Chart.Braking) := True;
          when Brake =>
-            Active (Chart.Cruising) := False;
+            Active := Chart.Moved (Active, Chart.Cruising, Chart.Braking);
             Self.Leaf := Motion_States.Braking;
-            Active (Chart.Braking) := True;
          when Start_Homing =>
-            Active (Chart.Idle) := False;
+            Active := Chart.Moved (Active, Chart.Idle, Chart.Operational);
             Enter_Homing;
             Enter_Seeking;
          when No_End =>
             Leave_Homing;
             Exit_Homing;
-            Active (Chart.Operational) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
+            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
             Self.Leaf := Motion_States.Drive;
-            Active (Chart.Drive) := True;
          when Start_Move =>
-            Active (Chart.Idle) := False;
+            Active := Chart.Moved (Active, Chart.Idle, Chart.Operational);
             Enter_Moving;
+            Active :=
+              Chart.Moved (Active, Chart.Moving, Chart.Accelerating);
             Self.Leaf := Motion_States.Accelerating;
-            Active (Chart.Accelerating) := True;
          when Arrived =>
             Leave_Moving;
-            Active (Chart.Moving) := False;
+            Active := Chart.Moved (Active, Chart.Moving, Chart.Operational);
             Enter_Idle;
          when Halt =>
             Leave_Operational;
-            Active (Chart.Operational) := False;
-            Active (Chart.Operational) := True;
+            Active :=
+              Chart.Moved (Active, Chart.Operational, Chart.Operational);
             Enter_Idle;
          when Lost =>
             Leave_Operational;
-            Active (Chart.Operational) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
+            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
             Self.Leaf := Motion_States.Drive;
-            Active (Chart.Drive) := True;
          when Failed =>
             Leave_Operational;
-            Active (Chart.Operational) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
+            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
             Self.Leaf := Motion_States.Drive;
-            Active (Chart.Drive) := True;
          when Strayed =>
             Leave_Operational;
-            Active (Chart.Operational) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
+            Active := Chart.Moved (Active, Chart.Fault, Chart.Drive);
             Self.Leaf := Motion_States.Drive;
-            Active (Chart.Drive) := True;
          when Limit =>
             Leave_Operational;
-            Active (Chart.Operational) := False;
+            Active :=
+              Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
             Enter_Fault;
+            Active := Chart.Moved (Active, Chart.Fault, Chart.Limit);
             Self.Leaf := Motion_States.Limit;
-            Active (Chart.Limit) := True;
          when Reset =>
             Leave_Fault;
-            Active (Chart.Fault) := False;
-            Active (Chart.Operational) := True;
+            Active := Chart.Moved (Active, Chart.Fault, Chart.Operational);
             Enter_Idle;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

@@ -5,62 +5,10 @@
 package body Cartesian_Robot.Robot_Coordinator.Mission
 with SPARK_Mode
 is
-   function In_Travelling
-     (Leaf : Mission_States.Travelling;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
-        when Mission_States.Departing =>
-           (if Now = Expiry_Of_Under_Way
-               then Under_Way
-            elsif Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = Conditions
-               and then ((Ins.Report_X.Value.Condition
-                   = Cartesian_Robot.Failed
-                   or else Ins.Report_Y.Value.Condition
-                     = Cartesian_Robot.Failed)
-                  or else Ins.Report_Z.Value.Condition
-                    = Cartesian_Robot.Failed)
-               then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
-            else None),
-        when Mission_States.Under_Way =>
-           (if Now = Conditions
-               and then Ins.Report_X.Value.Condition
-                 = Cartesian_Robot.Standing
-               and then Ins.Report_Y.Value.Condition
-                 = Cartesian_Robot.Standing
-               and then Ins.Report_Z.Value.Condition
-                 = Cartesian_Robot.Standing
-               then Arrived
-            elsif Now = On_Commanded
-               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
-               then Halt
-            elsif Now = Conditions
-               and then ((Ins.Report_X.Value.Condition
-                   = Cartesian_Robot.Failed
-                   or else Ins.Report_Y.Value.Condition
-                     = Cartesian_Robot.Failed)
-                  or else Ins.Report_Z.Value.Condition
-                    = Cartesian_Robot.Failed)
-               then Joint_Failed
-            elsif Now = On_Joint_Lost
-               then Joint_Lost
-            elsif Now = On_Shutdown
-               then Shut_Down
-            else None))
-   with Post => Is_Selection (In_Travelling'Result, Leaf, Now, Ins);
-
-   function In_Active
-     (Leaf : Mission_States.Active;
-      Now  : Occurrence;
-      Ins  : Inputs)
+   function Select_Transition
+     (Leaf : Mission_States.Leaf;
+      Now : Occurrence;
+      Ins : Inputs)
      return Selection is
      (case Leaf is
         when Mission_States.Waiting =>
@@ -125,15 +73,50 @@ is
             elsif Now = On_Shutdown
                then Shut_Down
             else None),
-        when Mission_States.Travelling => In_Travelling (Leaf, Now, Ins))
-   with Post => Is_Selection (In_Active'Result, Leaf, Now, Ins);
-
-   function In_Stopped
-     (Leaf : Mission_States.Stopped;
-      Now  : Occurrence;
-      Ins  : Inputs)
-     return Selection is
-     (case Leaf is
+        when Mission_States.Departing =>
+           (if Now = Expiry_Of_Under_Way
+               then Under_Way
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None),
+        when Mission_States.Under_Way =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Y.Value.Condition
+                 = Cartesian_Robot.Standing
+               and then Ins.Report_Z.Value.Condition
+                 = Cartesian_Robot.Standing
+               then Arrived
+            elsif Now = On_Commanded
+               and then Ins.Command.Value.Kind = Cartesian_Robot.Halt
+               then Halt
+            elsif Now = Conditions
+               and then ((Ins.Report_X.Value.Condition
+                   = Cartesian_Robot.Failed
+                   or else Ins.Report_Y.Value.Condition
+                     = Cartesian_Robot.Failed)
+                  or else Ins.Report_Z.Value.Condition
+                    = Cartesian_Robot.Failed)
+               then Joint_Failed
+            elsif Now = On_Joint_Lost
+               then Joint_Lost
+            elsif Now = On_Shutdown
+               then Shut_Down
+            else None),
         when Mission_States.Failed =>
            (if Now = On_Shutdown
                then Shut_Down_Failed
@@ -142,50 +125,34 @@ is
                then Recover
             else None),
         when Mission_States.Shut_Down => None)
-   with Post => Is_Selection (In_Stopped'Result, Leaf, Now, Ins);
-
-   function Select_Transition
-     (Leaf : Mission_States.Leaf;
-      Now : Occurrence;
-      Ins : Inputs)
-     return Selection is
-     (case Leaf is
-        when Mission_States.Active => In_Active (Leaf, Now, Ins),
-        when Mission_States.Stopped => In_Stopped (Leaf, Now, Ins))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
    package Chart
    with Ghost
    is
       type Node is
-        (Active,
+        (Nowhere,
          Waiting,
          Homing,
          Ready,
-         Travelling,
          Departing,
          Under_Way,
-         Stopped,
          Failed,
-         Shut_Down);
+         Shut_Down,
+         Active,
+         Travelling,
+         Stopped);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Mission_States.Leaf) return Node is
+        (Node'Val (Mission_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Mission_States.Leaf) return Node_Set is
-        ((Active => Leaf in Mission_States.Active,
-          Waiting => Leaf = Mission_States.Waiting,
-          Homing => Leaf = Mission_States.Homing,
-          Ready => Leaf = Mission_States.Ready,
-          Travelling => Leaf in Mission_States.Travelling,
-          Departing => Leaf = Mission_States.Departing,
-          Under_Way => Leaf = Mission_States.Under_Way,
-          Stopped => Leaf in Mission_States.Stopped,
-          Failed => Leaf = Mission_States.Failed,
-          Shut_Down => Leaf = Mission_States.Shut_Down));
-
-      function Holder (I : Positive) return Node is
-        (case I is
-           when others => Departing);
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -231,48 +198,36 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Departing
       with
-        Pre => Active (Chart.Departing),
+        Pre => Active = Chart.Departing,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Departing and then Active'Old (N)))
+          and then Active = Chart.Travelling
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Departing
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active (Chart.Departing) := False;
+         Active := Chart.Travelling;
       end Exit_Departing;
       procedure Leave_Travelling
       with
         Pre =>
           Self.Leaf in Mission_States.Travelling
-          and then (for all N in Chart.Departing .. Chart.Under_Way =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Departing .. Chart.Under_Way
-                   and then Active'Old (N)))
-          and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Departing .. Chart.Under_Way
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+          and then Active = Chart.Travelling
+          and then Self.Timers (1)
+            = (if Self.Leaf = Mission_States.Departing
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (1))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -280,58 +235,50 @@ is
             when Mission_States.Departing =>
                Exit_Departing;
             when Mission_States.Under_Way =>
-               Active (Chart.Under_Way) := False;
+               Active :=
+                 Chart.Moved (Active, Chart.Under_Way, Chart.Travelling);
          end case;
       end Leave_Travelling;
       procedure Leave_Active
       with
         Pre =>
           Self.Leaf in Mission_States.Active
-          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Waiting .. Chart.Under_Way
-                   and then Active'Old (N)))
-          and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Waiting .. Chart.Under_Way
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+          and then Active = Chart.Active
+          and then Self.Timers (1)
+            = (if Self.Leaf = Mission_States.Departing
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (1))
           and then Self.Started = Self.Started'Old
       is
       begin
          case Mission_States.Active'(Self.Leaf) is
             when Mission_States.Waiting =>
-               Active (Chart.Waiting) := False;
+               Active := Chart.Moved (Active, Chart.Waiting, Chart.Active);
             when Mission_States.Homing =>
-               Active (Chart.Homing) := False;
+               Active := Chart.Moved (Active, Chart.Homing, Chart.Active);
             when Mission_States.Ready =>
-               Active (Chart.Ready) := False;
+               Active := Chart.Moved (Active, Chart.Ready, Chart.Active);
             when Mission_States.Travelling =>
                Leave_Travelling;
-               Active (Chart.Travelling) := False;
+               Active :=
+                 Chart.Moved (Active, Chart.Travelling, Chart.Active);
          end case;
       end Leave_Active;
       procedure Enter_Homing
       with
-        Pre =>
-          Active (Chart.Active)
-          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
-                not Active (N)),
+        Pre => Active = Chart.Active,
         Post =>
           Self.Leaf = Mission_States.Homing
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Homing or else Active'Old (N)))
+          and then Active = Chart.Homing
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Homing;
-         Active (Chart.Homing) := True;
+         Active := Chart.Homing;
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Home,
             Target => 0);
@@ -347,19 +294,15 @@ is
       end Enter_Homing;
       procedure Enter_Travelling
       with
-        Pre =>
-          Active (Chart.Active)
-          and then (for all N in Chart.Waiting .. Chart.Under_Way =>
-                not Active (N)),
+        Pre => Active = Chart.Active,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Travelling or else Active'Old (N)))
+          and then Active = Chart.Travelling
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Travelling) := True;
+         Active := Chart.Travelling;
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Move,
             Target => Ins.Command.Value.X);
@@ -375,37 +318,29 @@ is
       end Enter_Travelling;
       procedure Enter_Departing
       with
-        Pre =>
-          Active (Chart.Travelling)
-          and then (for all N in Chart.Departing .. Chart.Under_Way =>
-                not Active (N)),
+        Pre => Active = Chart.Travelling,
         Post =>
           Self.Leaf = Mission_States.Departing
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Departing or else Active'Old (N)))
+          and then Active = Chart.Departing
           and then Self.Timers (1) = Ravenchart.Timers.Started (5)
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Departing
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Departing;
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
-         Active (Chart.Departing) := True;
+         Active := Chart.Departing;
       end Enter_Departing;
       procedure Enter_Stopped
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Stopped or else Active'Old (N)))
+          and then Active = Chart.Stopped
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Stopped) := True;
+         Active := Chart.Stopped;
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Halt,
             Target => 0);
@@ -422,54 +357,47 @@ is
    begin
       case Chosen is
          when Initial_Entry =>
-            Active (Chart.Active) := True;
-            Self.Leaf := Mission_States.Waiting;
-            Active (Chart.Waiting) := True;
             Self.Started := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Waiting);
+            Self.Leaf := Mission_States.Waiting;
          when Under_Way =>
             Exit_Departing;
+            Active :=
+              Chart.Moved (Active, Chart.Travelling, Chart.Under_Way);
             Self.Leaf := Mission_States.Under_Way;
-            Active (Chart.Under_Way) := True;
          when Arrived =>
-            Active (Chart.Under_Way) := False;
-            Active (Chart.Travelling) := False;
+            Active := Chart.Moved (Active, Chart.Under_Way, Chart.Ready);
             Self.Leaf := Mission_States.Ready;
-            Active (Chart.Ready) := True;
          when Home =>
-            Active (Chart.Waiting) := False;
+            Active := Chart.Moved (Active, Chart.Waiting, Chart.Active);
             Enter_Homing;
          when Home_Again =>
-            Active (Chart.Ready) := False;
+            Active := Chart.Moved (Active, Chart.Ready, Chart.Active);
             Enter_Homing;
          when Homed =>
-            Active (Chart.Homing) := False;
+            Active := Chart.Moved (Active, Chart.Homing, Chart.Ready);
             Self.Leaf := Mission_States.Ready;
-            Active (Chart.Ready) := True;
          when Move =>
-            Active (Chart.Ready) := False;
+            Active := Chart.Moved (Active, Chart.Ready, Chart.Active);
             Enter_Travelling;
             Enter_Departing;
          when Halt =>
             Leave_Travelling;
-            Active (Chart.Travelling) := False;
-            Active (Chart.Active) := False;
+            Active := Chart.Moved (Active, Chart.Travelling, Chart.Nowhere);
             Enter_Stopped;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
-            Active (Chart.Failed) := True;
          when Halt_Homing =>
-            Active (Chart.Homing) := False;
-            Active (Chart.Active) := False;
+            Active := Chart.Moved (Active, Chart.Homing, Chart.Nowhere);
             Enter_Stopped;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
-            Active (Chart.Failed) := True;
          when Shut_Down_Failed =>
-            Active (Chart.Failed) := False;
+            Active := Chart.Moved (Active, Chart.Failed, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
-            Active (Chart.Shut_Down) := True;
          when Recover =>
-            Active (Chart.Failed) := False;
-            Active (Chart.Stopped) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active := Chart.Moved (Active, Chart.Failed, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Box.Order_X :=
               Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
                Target => 0);
@@ -482,29 +410,28 @@ is
               Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
                Target => 0);
             Box.Order_Z_Sent := True;
-            Active (Chart.Active) := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
-            Active (Chart.Waiting) := True;
          when Joint_Failed =>
             Leave_Active;
-            Active (Chart.Active) := False;
+            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
-            Active (Chart.Failed) := True;
          when Joint_Lost =>
             Leave_Active;
-            Active (Chart.Active) := False;
+            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
             Self.Leaf := Mission_States.Failed;
-            Active (Chart.Failed) := True;
          when Shut_Down =>
             Leave_Active;
-            Active (Chart.Active) := False;
+            Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);
             Enter_Stopped;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
-            Active (Chart.Shut_Down) := True;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

@@ -10,46 +10,6 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function In_Red
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (case Lights_States.Red'(Place.In_Cars) is
-        when Lights_States.Stopping =>
-           (if Now = Expiry_Of_Stopped then Stopped else None),
-        when Lights_States.Held =>
-           (if Now = Conditions
-               and then Data.Road_Free
-               and then not Data.Requested
-               then Get_Ready
-            else None))
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars in Lights_States.Red,
-     Post => Is_Cars_Selection (In_Red'Result, Place, Now, Data, Item);
-
-   function In_Green
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (case Lights_States.Green'(Place.In_Cars) is
-        when Lights_States.Least =>
-           (if Now = Expiry_Of_Long_Enough then Long_Enough else None),
-        when Lights_States.Longer =>
-           (if Now = Conditions and then Data.Requested
-               then Slow_Down
-            else None))
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Cars in Lights_States.Green,
-     Post => Is_Cars_Selection (In_Green'Result, Place, Now, Data, Item);
-
    function Select_Cars
      (Place : Lights_States.Configuration;
       Now   : Occurrence;
@@ -58,56 +18,29 @@ is
      return Selection is
      (if Place.Top = Lights_States.Working
          then (case Place.In_Cars is
-               when Lights_States.Red => In_Red (Place, Now, Data, Item),
+               when Lights_States.Stopping =>
+                  (if Now = Expiry_Of_Stopped then Stopped else None),
+               when Lights_States.Held =>
+                  (if Now = Conditions
+                      and then Data.Road_Free
+                      and then not Data.Requested
+                      then Get_Ready
+                   else None),
                when Lights_States.Red_Yellow =>
                   (if Now = Expiry_Of_Start then Start else None),
-               when Lights_States.Green => In_Green (Place, Now, Data, Item),
+               when Lights_States.Least =>
+                  (if Now = Expiry_Of_Long_Enough
+                      then Long_Enough
+                   else None),
+               when Lights_States.Longer =>
+                  (if Now = Conditions and then Data.Requested
+                      then Slow_Down
+                   else None),
                when Lights_States.Yellow =>
                   (if Now = Expiry_Of_Stop then Stop else None))
       else None)
    with
      Post => Is_Cars_Selection (Select_Cars'Result, Place, Now, Data, Item);
-
-   function In_Dont_Walk
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (case Lights_States.Dont_Walk'(Place.In_Walkers) is
-        when Lights_States.Nobody => (if Now = On_Wish then Ask else None),
-        when Lights_States.Waiting =>
-           (if Now = Conditions and then Data.Cars_Stopped
-               then Walk
-            else None))
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Walkers in Lights_States.Dont_Walk,
-     Post =>
-       Is_Walkers_Selection (In_Dont_Walk'Result, Place, Now, Data, Item);
-
-   function In_On_The_Road
-     (Place : Lights_States.Configuration;
-      Now   : Occurrence;
-      Data  : Variables;
-      Item  : Event)
-     return Selection is
-     (case Lights_States.On_The_Road'(Place.In_Walkers) is
-        when Lights_States.Walking =>
-           (if Now = Expiry_Of_Last_Call
-               then Last_Call
-            elsif Now = Expiry_Of_Gone
-               then Gone
-            else None),
-        when Lights_States.Leaving =>
-           (if Now = Expiry_Of_Gone then Gone else None))
-   with
-     Pre =>
-       Place.Top = Lights_States.Working
-       and then Place.In_Walkers in Lights_States.On_The_Road,
-     Post =>
-       Is_Walkers_Selection (In_On_The_Road'Result, Place, Now, Data, Item);
 
    function Select_Walkers
      (Place : Lights_States.Configuration;
@@ -117,10 +50,20 @@ is
      return Selection is
      (if Place.Top = Lights_States.Working
          then (case Place.In_Walkers is
-               when Lights_States.Dont_Walk =>
-                  In_Dont_Walk (Place, Now, Data, Item),
-               when Lights_States.On_The_Road =>
-                  In_On_The_Road (Place, Now, Data, Item))
+               when Lights_States.Nobody =>
+                  (if Now = On_Wish then Ask else None),
+               when Lights_States.Waiting =>
+                  (if Now = Conditions and then Data.Cars_Stopped
+                      then Walk
+                   else None),
+               when Lights_States.Walking =>
+                  (if Now = Expiry_Of_Last_Call
+                      then Last_Call
+                   elsif Now = Expiry_Of_Gone
+                      then Gone
+                   else None),
+               when Lights_States.Leaving =>
+                  (if Now = Expiry_Of_Gone then Gone else None))
       else None)
    with
      Post =>
@@ -167,82 +110,51 @@ is
    with Ghost
    is
       type Node is
-        (Blinking,
-         Working,
-         Red,
+        (Nowhere,
          Stopping,
          Held,
          Red_Yellow,
-         Green,
          Least,
          Longer,
          Yellow,
-         Dont_Walk,
          Nobody,
          Waiting,
-         On_The_Road,
          Walking,
-         Leaving);
+         Leaving,
+         Blinking,
+         Working,
+         Red,
+         Green,
+         Dont_Walk,
+         On_The_Road);
 
-      type Node_Set is array (Node) of Boolean;
-
-      function Active_In
+      function Innermost_Cars
         (Place : Lights_States.Configuration)
-        return Node_Set is
-        ((Blinking => Place.Top = Lights_States.Blinking,
-          Working => Place.Top = Lights_States.Working,
-          Red =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars in Lights_States.Red,
-          Stopping =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Stopping,
-          Held =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Held,
-          Red_Yellow =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Red_Yellow,
-          Green =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars in Lights_States.Green,
-          Least =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Least,
-          Longer =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Longer,
-          Yellow =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Yellow,
-          Dont_Walk =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Walkers in Lights_States.Dont_Walk,
-          Nobody =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Walkers = Lights_States.Nobody,
-          Waiting =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Walkers = Lights_States.Waiting,
-          On_The_Road =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Walkers in Lights_States.On_The_Road,
-          Walking =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Walkers = Lights_States.Walking,
-          Leaving =>
-            Place.Top = Lights_States.Working
-            and then Place.In_Walkers = Lights_States.Leaving));
+        return Node is
+        (if Place.Top = Lights_States.Working
+            then Node'Val (Lights_States.Cars_Leaf'Pos (Place.In_Cars) + 1)
+         else Nowhere);
 
-      function Holder (I : Positive) return Node is
-        (case I is
-           when 1 => Blinking,
-           when 2 => Stopping,
-           when 3 => Red_Yellow,
-           when 4 => Least,
-           when 5 => Yellow,
-           when 6 => Walking,
-           when others => On_The_Road);
+      function Innermost_Walkers
+        (Place : Lights_States.Configuration)
+        return Node is
+        (if Place.Top = Lights_States.Working
+            then Node'Val
+                 (Lights_States.Walkers_Leaf'Pos (Place.In_Walkers) + 7)
+         else Nowhere);
+
+      function Innermost_Top
+        (Place : Lights_States.Configuration)
+        return Node is
+        (Node'Val (Lights_States.Leaf'Pos (Place.Top) + 11));
+
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -338,170 +250,156 @@ is
               Self.Timers'Old (7))
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active_Cars : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Place)
-         else (others => False))
+            then Chart.Innermost_Cars (Self.Place)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
+      Active_Walkers : Chart.Node :=
+        (if Self.Started
+            then Chart.Innermost_Walkers (Self.Place)
+         else Chart.Nowhere)
+      with Ghost;
+      Active_Top : Chart.Node :=
+        (if Self.Started
+            then Chart.Innermost_Top (Self.Place)
+         else Chart.Nowhere)
+      with Ghost;
       procedure Exit_Blinking
       with
-        Pre => Active (Chart.Blinking),
+        Pre => Active_Top = Chart.Blinking,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Blinking and then Active'Old (N)))
+          and then Active_Top = Chart.Nowhere
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Blinking
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active (Chart.Blinking) := False;
+         Active_Top := Chart.Nowhere;
       end Exit_Blinking;
       procedure Exit_Stopping
       with
-        Pre => Active (Chart.Stopping),
+        Pre => Active_Cars = Chart.Stopping,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Stopping and then Active'Old (N)))
+          and then Active_Cars = Chart.Red
           and then Self.Timers (2) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Stopping
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active (Chart.Stopping) := False;
+         Active_Cars := Chart.Red;
       end Exit_Stopping;
       procedure Exit_Held
       with
-        Pre => Active (Chart.Held),
+        Pre => Active_Cars = Chart.Held,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Held and then Active'Old (N)))
+          and then Active_Cars = Chart.Red
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Data.Cars_Stopped := False;
-         Active (Chart.Held) := False;
+         Active_Cars := Chart.Red;
       end Exit_Held;
       procedure Exit_Red_Yellow
       with
-        Pre => Active (Chart.Red_Yellow),
+        Pre => Active_Cars = Chart.Red_Yellow,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Red_Yellow and then Active'Old (N)))
+          and then Active_Cars = Chart.Nowhere
           and then Self.Timers (3) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Red_Yellow
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active (Chart.Red_Yellow) := False;
+         Active_Cars := Chart.Nowhere;
       end Exit_Red_Yellow;
       procedure Exit_Least
       with
-        Pre => Active (Chart.Least),
+        Pre => Active_Cars = Chart.Least,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Least and then Active'Old (N)))
+          and then Active_Cars = Chart.Green
           and then Self.Timers (4) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Least
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (4));
-         Active (Chart.Least) := False;
+         Active_Cars := Chart.Green;
       end Exit_Least;
       procedure Exit_Yellow
       with
-        Pre => Active (Chart.Yellow),
+        Pre => Active_Cars = Chart.Yellow,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Yellow and then Active'Old (N)))
+          and then Active_Cars = Chart.Nowhere
           and then Self.Timers (5) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Yellow
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (5));
-         Active (Chart.Yellow) := False;
+         Active_Cars := Chart.Nowhere;
       end Exit_Yellow;
       procedure Exit_On_The_Road
       with
-        Pre =>
-          Active (Chart.On_The_Road)
-          and then (for all N in Chart.Walking .. Chart.Leaving =>
-                not Active (N)),
+        Pre => Active_Walkers = Chart.On_The_Road,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.On_The_Road and then Active'Old (N)))
+          and then Active_Walkers = Chart.Nowhere
           and then Self.Timers (7) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.On_The_Road
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Data.Road_Free := True;
          Ravenchart.Timers.Disarm (Self.Timers (7));
-         Active (Chart.On_The_Road) := False;
+         Active_Walkers := Chart.Nowhere;
       end Exit_On_The_Road;
       procedure Exit_Walking
       with
-        Pre => Active (Chart.Walking),
+        Pre => Active_Walkers = Chart.Walking,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Walking and then Active'Old (N)))
+          and then Active_Walkers = Chart.On_The_Road
           and then Self.Timers (6) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Walking
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (6));
-         Active (Chart.Walking) := False;
+         Active_Walkers := Chart.On_The_Road;
       end Exit_Walking;
       procedure Leave_On_The_Road
       with
         Pre =>
           Self.Place.Top = Lights_States.Working
           and then Self.Place.In_Walkers in Lights_States.On_The_Road
-          and then (for all N in Chart.Walking .. Chart.Leaving =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Walkers = Chart.Innermost_Walkers (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Walking .. Chart.Leaving
-                   and then Active'Old (N)))
+          and then Active_Walkers = Chart.On_The_Road
+          and then Self.Timers (6)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Walkers = Lights_States.Walking
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (6))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Walking .. Chart.Leaving
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -509,7 +407,11 @@ is
             when Lights_States.Walking =>
                Exit_Walking;
             when Lights_States.Leaving =>
-               Active (Chart.Leaving) := False;
+               Active_Walkers :=
+                 Chart.Moved
+                   (Active_Walkers,
+                    Chart.Leaving,
+                    Chart.On_The_Road);
          end case;
       end Leave_On_The_Road;
       procedure Leave_Dont_Walk
@@ -517,23 +419,24 @@ is
         Pre =>
           Self.Place.Top = Lights_States.Working
           and then Self.Place.In_Walkers in Lights_States.Dont_Walk
-          and then (for all N in Chart.Nobody .. Chart.Waiting =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Walkers = Chart.Innermost_Walkers (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Nobody .. Chart.Waiting
-                   and then Active'Old (N)))
+          and then Active_Walkers = Chart.Dont_Walk
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          case Lights_States.Dont_Walk'(Self.Place.In_Walkers) is
             when Lights_States.Nobody =>
-               Active (Chart.Nobody) := False;
+               Active_Walkers :=
+                 Chart.Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
             when Lights_States.Waiting =>
-               Active (Chart.Waiting) := False;
+               Active_Walkers :=
+                 Chart.Moved
+                   (Active_Walkers,
+                    Chart.Waiting,
+                    Chart.Dont_Walk);
          end case;
       end Leave_Dont_Walk;
       procedure Leave_Green
@@ -541,20 +444,17 @@ is
         Pre =>
           Self.Place.Top = Lights_States.Working
           and then Self.Place.In_Cars in Lights_States.Green
-          and then (for all N in Chart.Least .. Chart.Longer =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Cars = Chart.Innermost_Cars (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Least .. Chart.Longer
-                   and then Active'Old (N)))
+          and then Active_Cars = Chart.Green
+          and then Self.Timers (4)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Cars = Lights_States.Least
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (4))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Least .. Chart.Longer
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -562,7 +462,8 @@ is
             when Lights_States.Least =>
                Exit_Least;
             when Lights_States.Longer =>
-               Active (Chart.Longer) := False;
+               Active_Cars :=
+                 Chart.Moved (Active_Cars, Chart.Longer, Chart.Green);
          end case;
       end Leave_Green;
       procedure Leave_Red
@@ -570,20 +471,17 @@ is
         Pre =>
           Self.Place.Top = Lights_States.Working
           and then Self.Place.In_Cars in Lights_States.Red
-          and then (for all N in Chart.Stopping .. Chart.Held =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Cars = Chart.Innermost_Cars (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Stopping .. Chart.Held
-                   and then Active'Old (N)))
+          and then Active_Cars = Chart.Red
+          and then Self.Timers (2)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Cars = Lights_States.Stopping
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (2))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Stopping .. Chart.Held
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -598,32 +496,47 @@ is
       with
         Pre =>
           Self.Place.Top = Lights_States.Working
-          and then (for all N in Chart.Red .. Chart.Yellow =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Cars = Chart.Innermost_Cars (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Red .. Chart.Yellow
-                   and then Active'Old (N)))
+          and then Active_Cars = Chart.Nowhere
+          and then Self.Timers (2)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Cars = Lights_States.Stopping
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (2))
+          and then Self.Timers (3)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Cars = Lights_States.Red_Yellow
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (3))
+          and then Self.Timers (4)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Cars = Lights_States.Least
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (4))
+          and then Self.Timers (5)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Cars = Lights_States.Yellow
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (5))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Red .. Chart.Yellow
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I not in 2 | 3 | 4 | 5
+                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          case Self.Place.In_Cars is
             when Lights_States.Red =>
                Leave_Red;
-               Active (Chart.Red) := False;
+               Active_Cars :=
+                 Chart.Moved (Active_Cars, Chart.Red, Chart.Nowhere);
             when Lights_States.Red_Yellow =>
                Exit_Red_Yellow;
             when Lights_States.Green =>
                Leave_Green;
-               Active (Chart.Green) := False;
+               Active_Cars :=
+                 Chart.Moved (Active_Cars, Chart.Green, Chart.Nowhere);
             when Lights_States.Yellow =>
                Exit_Yellow;
          end case;
@@ -632,27 +545,35 @@ is
       with
         Pre =>
           Self.Place.Top = Lights_States.Working
-          and then (for all N in Chart.Dont_Walk .. Chart.Leaving =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Walkers = Chart.Innermost_Walkers (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Dont_Walk .. Chart.Leaving
-                   and then Active'Old (N)))
+          and then Active_Walkers = Chart.Nowhere
+          and then Self.Timers (6)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Walkers = Lights_States.Walking
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (6))
+          and then Self.Timers (7)
+            = (if Self.Place.Top = Lights_States.Working
+                  and then Self.Place.In_Walkers
+                    in Lights_States.On_The_Road
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (7))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Dont_Walk .. Chart.Leaving
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I not in 6 | 7
+                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          case Self.Place.In_Walkers is
             when Lights_States.Dont_Walk =>
                Leave_Dont_Walk;
-               Active (Chart.Dont_Walk) := False;
+               Active_Walkers :=
+                 Chart.Moved
+                   (Active_Walkers,
+                    Chart.Dont_Walk,
+                    Chart.Nowhere);
             when Lights_States.On_The_Road =>
                Leave_On_The_Road;
                Exit_On_The_Road;
@@ -660,325 +581,273 @@ is
       end Leave_Walkers;
       procedure Enter_Blinking
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place
           = (Top => Lights_States.Blinking,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Self.Place'Old.In_Cars)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Blinking or else Active'Old (N)))
+          and then Active_Top = Chart.Blinking
           and then Self.Timers (1) = Ravenchart.Timers.Started (5, 5)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Blinking
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.Top := Lights_States.Blinking;
          Ravenchart.Timers.Arm (Self.Timers (1), 5, 5);
-         Active (Chart.Blinking) := True;
+         Active_Top := Chart.Blinking;
          Self.Data.Cars_See := Crossing_System.Slow;
          Self.Data.Walkers_See := Crossing_System.Dark;
       end Enter_Blinking;
       procedure Enter_Red
       with
         Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Red .. Chart.Yellow =>
-                not Active (N)),
+          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Red or else Active'Old (N)))
+          and then Active_Cars = Chart.Red
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Red) := True;
+         Active_Cars := Chart.Red;
          Self.Data.Cars_See := Crossing_System.Stop;
       end Enter_Red;
       procedure Enter_Stopping
       with
-        Pre =>
-          Active (Chart.Red)
-          and then (for all N in Chart.Stopping .. Chart.Held =>
-                not Active (N)),
+        Pre => Active_Cars = Chart.Red,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Stopping)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Stopping or else Active'Old (N)))
+          and then Active_Cars = Chart.Stopping
           and then Self.Timers (2) = Ravenchart.Timers.Started (20)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Stopping
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Stopping;
          Ravenchart.Timers.Arm (Self.Timers (2), 20);
-         Active (Chart.Stopping) := True;
+         Active_Cars := Chart.Stopping;
       end Enter_Stopping;
       procedure Enter_Held
       with
-        Pre =>
-          Active (Chart.Red)
-          and then (for all N in Chart.Stopping .. Chart.Held =>
-                not Active (N)),
+        Pre => Active_Cars = Chart.Red,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Held)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Held or else Active'Old (N)))
+          and then Active_Cars = Chart.Held
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Held;
-         Active (Chart.Held) := True;
+         Active_Cars := Chart.Held;
          Self.Data.Cars_Stopped := True;
       end Enter_Held;
       procedure Enter_Red_Yellow
       with
         Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Red .. Chart.Yellow =>
-                not Active (N)),
+          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Red_Yellow)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Red_Yellow or else Active'Old (N)))
+          and then Active_Cars = Chart.Red_Yellow
           and then Self.Timers (3) = Ravenchart.Timers.Started (10)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Red_Yellow
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Red_Yellow;
          Ravenchart.Timers.Arm (Self.Timers (3), 10);
-         Active (Chart.Red_Yellow) := True;
+         Active_Cars := Chart.Red_Yellow;
          Self.Data.Cars_See := Crossing_System.Ready;
       end Enter_Red_Yellow;
       procedure Enter_Green
       with
         Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Red .. Chart.Yellow =>
-                not Active (N)),
+          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Green or else Active'Old (N)))
+          and then Active_Cars = Chart.Green
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Green) := True;
+         Active_Cars := Chart.Green;
          Self.Data.Cars_See := Crossing_System.Go;
       end Enter_Green;
       procedure Enter_Least
       with
-        Pre =>
-          Active (Chart.Green)
-          and then (for all N in Chart.Least .. Chart.Longer =>
-                not Active (N)),
+        Pre => Active_Cars = Chart.Green,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Least)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Least or else Active'Old (N)))
+          and then Active_Cars = Chart.Least
           and then Self.Timers (4) = Ravenchart.Timers.Started (100)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Least
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Least;
          Ravenchart.Timers.Arm (Self.Timers (4), 100);
-         Active (Chart.Least) := True;
+         Active_Cars := Chart.Least;
       end Enter_Least;
       procedure Enter_Yellow
       with
         Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Red .. Chart.Yellow =>
-                not Active (N)),
+          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Yellow)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Yellow or else Active'Old (N)))
+          and then Active_Cars = Chart.Yellow
           and then Self.Timers (5) = Ravenchart.Timers.Started (30)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Yellow
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Yellow;
          Ravenchart.Timers.Arm (Self.Timers (5), 30);
-         Active (Chart.Yellow) := True;
+         Active_Cars := Chart.Yellow;
          Self.Data.Cars_See := Crossing_System.Slow;
       end Enter_Yellow;
       procedure Enter_Dont_Walk
       with
         Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Dont_Walk .. Chart.Leaving =>
-                not Active (N)),
+          Active_Walkers = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Dont_Walk or else Active'Old (N)))
+          and then Active_Walkers = Chart.Dont_Walk
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active (Chart.Dont_Walk) := True;
+         Active_Walkers := Chart.Dont_Walk;
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Dont_Walk;
       procedure Enter_Nobody
       with
-        Pre =>
-          Active (Chart.Dont_Walk)
-          and then (for all N in Chart.Nobody .. Chart.Waiting =>
-                not Active (N)),
+        Pre => Active_Walkers = Chart.Dont_Walk,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Nobody,
              In_Cars => Self.Place'Old.In_Cars)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Nobody or else Active'Old (N)))
+          and then Active_Walkers = Chart.Nobody
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Nobody;
-         Active (Chart.Nobody) := True;
+         Active_Walkers := Chart.Nobody;
          Self.Data.Requested := False;
       end Enter_Nobody;
       procedure Enter_Waiting
       with
-        Pre =>
-          Active (Chart.Dont_Walk)
-          and then (for all N in Chart.Nobody .. Chart.Waiting =>
-                not Active (N)),
+        Pre => Active_Walkers = Chart.Dont_Walk,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Waiting,
              In_Cars => Self.Place'Old.In_Cars)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Waiting or else Active'Old (N)))
+          and then Active_Walkers = Chart.Waiting
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Waiting;
-         Active (Chart.Waiting) := True;
+         Active_Walkers := Chart.Waiting;
          Self.Data.Requested := True;
       end Enter_Waiting;
       procedure Enter_On_The_Road
       with
         Pre =>
-          Active (Chart.Working)
-          and then (for all N in Chart.Dont_Walk .. Chart.Leaving =>
-                not Active (N)),
+          Active_Walkers = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.On_The_Road or else Active'Old (N)))
+          and then Active_Walkers = Chart.On_The_Road
           and then Self.Timers (7) = Ravenchart.Timers.Started (100)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.On_The_Road
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
-         Active (Chart.On_The_Road) := True;
+         Active_Walkers := Chart.On_The_Road;
          Self.Data.Road_Free := False;
       end Enter_On_The_Road;
       procedure Enter_Walking
       with
-        Pre =>
-          Active (Chart.On_The_Road)
-          and then (for all N in Chart.Walking .. Chart.Leaving =>
-                not Active (N)),
+        Pre => Active_Walkers = Chart.On_The_Road,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Walking,
              In_Cars => Self.Place'Old.In_Cars)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Walking or else Active'Old (N)))
+          and then Active_Walkers = Chart.Walking
           and then Self.Timers (6) = Ravenchart.Timers.Started (60)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Walking
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Walking;
          Ravenchart.Timers.Arm (Self.Timers (6), 60);
-         Active (Chart.Walking) := True;
+         Active_Walkers := Chart.Walking;
          Self.Data.Walkers_See := Crossing_System.Walk;
       end Enter_Walking;
       procedure Enter_Leaving
       with
-        Pre =>
-          Active (Chart.On_The_Road)
-          and then (for all N in Chart.Walking .. Chart.Leaving =>
-                not Active (N)),
+        Pre => Active_Walkers = Chart.On_The_Road,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Leaving,
              In_Cars => Self.Place'Old.In_Cars)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Leaving or else Active'Old (N)))
+          and then Active_Walkers = Chart.Leaving
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Leaving;
-         Active (Chart.Leaving) := True;
+         Active_Walkers := Chart.Leaving;
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Leaving;
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Blinking;
             Self.Started := True;
+            Enter_Blinking;
          when Stopped =>
             Exit_Stopping;
             Enter_Held;
          when Get_Ready =>
             Exit_Held;
-            Active (Chart.Red) := False;
+            Active_Cars :=
+              Chart.Moved (Active_Cars, Chart.Red, Chart.Nowhere);
             Enter_Red_Yellow;
          when Long_Enough =>
             Exit_Least;
+            Active_Cars :=
+              Chart.Moved (Active_Cars, Chart.Green, Chart.Longer);
             Self.Place.In_Cars := Lights_States.Longer;
-            Active (Chart.Longer) := True;
          when Slow_Down =>
-            Active (Chart.Longer) := False;
-            Active (Chart.Green) := False;
+            Active_Cars :=
+              Chart.Moved (Active_Cars, Chart.Longer, Chart.Nowhere);
             Enter_Yellow;
          when Start =>
             Exit_Red_Yellow;
@@ -989,11 +858,12 @@ is
             Enter_Red;
             Enter_Stopping;
          when Ask =>
-            Active (Chart.Nobody) := False;
+            Active_Walkers :=
+              Chart.Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
             Enter_Waiting;
          when Walk =>
-            Active (Chart.Waiting) := False;
-            Active (Chart.Dont_Walk) := False;
+            Active_Walkers :=
+              Chart.Moved (Active_Walkers, Chart.Waiting, Chart.Nowhere);
             Enter_On_The_Road;
             Enter_Walking;
          when Last_Call =>
@@ -1006,10 +876,11 @@ is
             Enter_Nobody;
          when Into_Service =>
             Exit_Blinking;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Nowhere, Chart.Working);
             Self.Place.Top := Lights_States.Working;
             Self.Place.In_Cars := Lights_States.Stopping;
             Self.Place.In_Walkers := Lights_States.Nobody;
-            Active (Chart.Working) := True;
             Enter_Red;
             Enter_Stopping;
             Enter_Dont_Walk;
@@ -1017,7 +888,8 @@ is
          when Out_Of_Service =>
             Leave_Cars;
             Leave_Walkers;
-            Active (Chart.Working) := False;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Working, Chart.Nowhere);
             Enter_Blinking;
          when Blink =>
             Self.Data.Cars_See :=
@@ -1025,7 +897,10 @@ is
                   then Crossing_System.Dark
                else Crossing_System.Slow);
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Place));
+      pragma Assert
+        (Active_Cars = Chart.Innermost_Cars (Self.Place)
+         and then Active_Walkers = Chart.Innermost_Walkers (Self.Place)
+         and then Active_Top = Chart.Innermost_Top (Self.Place));
    end Fire;
 
    procedure Step

@@ -65,112 +65,6 @@ is
           Ins,
           Item);
 
-   function In_Giving
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (case Infusion_States.Giving'(Place.Top) is
-        when Infusion_States.Loading =>
-           (if Now = Conditions and then Data.Given >= Ins.Loading
-               then Loaded
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Loading
-            elsif Now = Expiry_Of_Beat
-               then Beat
-            elsif Now = Conditions and then Data.Given >= Data.Volume
-               then Enough
-            elsif Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.Maintaining =>
-           (if Now = On_New_Portion and then Item.Value_Portion > 0
-               then Change
-            elsif Now = Expiry_Of_Beat
-               then Beat
-            elsif Now = Conditions and then Data.Given >= Data.Volume
-               then Enough
-            elsif Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None))
-   with
-     Pre => Place.Top in Infusion_States.Giving,
-     Post =>
-       Is_Top_Selection
-         (In_Giving'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
-   function In_Running
-     (Place : Infusion_States.Configuration;
-      Now   : Occurrence;
-      Past  : Memory;
-      Data  : Variables;
-      Ins   : Inputs;
-      Item  : Event)
-     return Selection is
-     (case Infusion_States.Running'(Place.Top) is
-        when Infusion_States.Filling =>
-           (if Now = Completion_Of_Filling
-               then Filled_Up
-            elsif Now = On_New_Portion
-               then Defer_New_Portion_In_Filling
-            elsif Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None),
-        when Infusion_States.Giving =>
-           In_Giving (Place, Now, Past, Data, Ins, Item),
-        when Infusion_States.All_Given =>
-           (if Now = Completion_Of_Running
-               then Finished
-            elsif Now = On_Stop
-               then Stop
-            elsif Now = On_Sensor_Lost
-               then Lost
-            elsif Now = Conditions
-               and then Ins.Line.Value /= Infusion_System.Clear
-               then Trouble
-            else None))
-   with
-     Pre => Place.Top in Infusion_States.Running,
-     Post =>
-       Is_Top_Selection
-         (In_Running'Result,
-          Place,
-          Now,
-          Past,
-          Data,
-          Ins,
-          Item);
-
    function In_Where_It_Was
      (Place : Infusion_States.Configuration;
       Now   : Occurrence;
@@ -212,8 +106,68 @@ is
       Item  : Event)
      return Selection is
      (case Infusion_States.Infusing'(Place.Top) is
-        when Infusion_States.Running =>
-           In_Running (Place, Now, Past, Data, Ins, Item),
+        when Infusion_States.Filling =>
+           (if Now = Completion_Of_Filling
+               then Filled_Up
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Filling
+            elsif Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
+        when Infusion_States.Loading =>
+           (if Now = Conditions and then Data.Given >= Ins.Loading
+               then Loaded
+            elsif Now = On_New_Portion
+               then Defer_New_Portion_In_Loading
+            elsif Now = Expiry_Of_Beat
+               then Beat
+            elsif Now = Conditions and then Data.Given >= Data.Volume
+               then Enough
+            elsif Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
+        when Infusion_States.Maintaining =>
+           (if Now = On_New_Portion and then Item.Value_Portion > 0
+               then Change
+            elsif Now = Expiry_Of_Beat
+               then Beat
+            elsif Now = Conditions and then Data.Given >= Data.Volume
+               then Enough
+            elsif Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
+        when Infusion_States.All_Given =>
+           (if Now = Completion_Of_Running
+               then Finished
+            elsif Now = On_Stop
+               then Stop
+            elsif Now = On_Sensor_Lost
+               then Lost
+            elsif Now = Conditions
+               and then Ins.Line.Value /= Infusion_System.Clear
+               then Trouble
+            else None),
         when Infusion_States.Trickling =>
            (if Now = On_Stop
                then Stop
@@ -389,60 +343,55 @@ is
    with Ghost
    is
       type Node is
-        (Self_Test,
+        (Nowhere,
          Turning,
          Motor_Good,
          Listening,
          Sensor_Good,
+         Self_Test,
          Programming,
-         Infusing,
-         Running,
          Filling,
-         Giving,
          Loading,
          Maintaining,
          All_Given,
          Trickling,
-         Alarm,
+         Where_It_Was,
          Sounding,
-         Silent);
+         Silent,
+         May_Go_On,
+         Infusing,
+         Running,
+         Giving,
+         Alarm);
 
-      type Node_Set is array (Node) of Boolean;
-
-      function Active_In
+      function Innermost_Motor
         (Place : Infusion_States.Configuration)
-        return Node_Set is
-        ((Self_Test => Place.Top = Infusion_States.Self_Test,
-          Turning =>
-            Place.Top = Infusion_States.Self_Test
-            and then Place.In_Motor = Infusion_States.Turning,
-          Motor_Good =>
-            Place.Top = Infusion_States.Self_Test
-            and then Place.In_Motor = Infusion_States.Motor_Good,
-          Listening =>
-            Place.Top = Infusion_States.Self_Test
-            and then Place.In_Sensor = Infusion_States.Listening,
-          Sensor_Good =>
-            Place.Top = Infusion_States.Self_Test
-            and then Place.In_Sensor = Infusion_States.Sensor_Good,
-          Programming => Place.Top = Infusion_States.Programming,
-          Infusing => Place.Top in Infusion_States.Infusing,
-          Running => Place.Top in Infusion_States.Running,
-          Filling => Place.Top = Infusion_States.Filling,
-          Giving => Place.Top in Infusion_States.Giving,
-          Loading => Place.Top = Infusion_States.Loading,
-          Maintaining => Place.Top = Infusion_States.Maintaining,
-          All_Given => Place.Top = Infusion_States.All_Given,
-          Trickling => Place.Top = Infusion_States.Trickling,
-          Alarm => Place.Top in Infusion_States.Alarm,
-          Sounding => Place.Top = Infusion_States.Sounding,
-          Silent => Place.Top = Infusion_States.Silent));
+        return Node is
+        (if Place.Top = Infusion_States.Self_Test
+            then Node'Val
+                 (Infusion_States.Motor_Leaf'Pos (Place.In_Motor) + 1)
+         else Nowhere);
 
-      function Holder (I : Positive) return Node is
-        (case I is
-           when 1 => Self_Test,
-           when 2 => Giving,
-           when others => Silent);
+      function Innermost_Sensor
+        (Place : Infusion_States.Configuration)
+        return Node is
+        (if Place.Top = Infusion_States.Self_Test
+            then Node'Val
+                 (Infusion_States.Sensor_Leaf'Pos (Place.In_Sensor) + 3)
+         else Nowhere);
+
+      function Innermost_Top
+        (Place : Infusion_States.Configuration)
+        return Node is
+        (Node'Val (Infusion_States.Leaf'Pos (Place.Top) + 5));
+
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Notice_Turning
@@ -597,29 +546,35 @@ is
              and then Self.Lost = Self.Lost'Old)
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active_Motor : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Place)
-         else (others => False))
+            then Chart.Innermost_Motor (Self.Place)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
+      Active_Sensor : Chart.Node :=
+        (if Self.Started
+            then Chart.Innermost_Sensor (Self.Place)
+         else Chart.Nowhere)
+      with Ghost;
+      Active_Top : Chart.Node :=
+        (if Self.Started
+            then Chart.Innermost_Top (Self.Place)
+         else Chart.Nowhere)
+      with Ghost;
       Past : constant Memory := Self.Past;
       Kept : constant Deferrals.List := Self.Deferred with Ghost;
       procedure Exit_Self_Test
       with
         Pre =>
-          Active (Chart.Self_Test)
-          and then (for all N in Chart.Turning .. Chart.Sensor_Good =>
-                not Active (N)),
+          Active_Top = Chart.Self_Test
+          and then Active_Motor = Chart.Nowhere
+          and then Active_Sensor = Chart.Nowhere,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Self_Test and then Active'Old (N)))
+          and then Active_Top = Chart.Nowhere
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Self_Test
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
@@ -628,15 +583,14 @@ is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Self.Completed_Self_Test := False;
-         Active (Chart.Self_Test) := False;
+         Active_Top := Chart.Nowhere;
       end Exit_Self_Test;
       procedure Exit_Turning
       with
-        Pre => Active (Chart.Turning),
+        Pre => Active_Motor = Chart.Turning,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Turning and then Active'Old (N)))
+          and then Active_Motor = Chart.Nowhere
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -646,18 +600,14 @@ is
       begin
          Self.Data.Speed := 0;
          Self.Completed_Turning := False;
-         Active (Chart.Turning) := False;
+         Active_Motor := Chart.Nowhere;
       end Exit_Turning;
       procedure Exit_Infusing
       with
-        Pre =>
-          Active (Chart.Infusing)
-          and then (for all N in Chart.Running .. Chart.Trickling =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Infusing,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Infusing and then Active'Old (N)))
+          and then Active_Top = Chart.Nowhere
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -666,18 +616,14 @@ is
       is
       begin
          Self.Data.Speed := 0;
-         Active (Chart.Infusing) := False;
+         Active_Top := Chart.Nowhere;
       end Exit_Infusing;
       procedure Exit_Running
       with
-        Pre =>
-          Active (Chart.Running)
-          and then (for all N in Chart.Filling .. Chart.All_Given =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Running and then Active'Old (N)))
+          and then Active_Top = Chart.Infusing
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -686,15 +632,14 @@ is
       is
       begin
          Self.Completed_Running := False;
-         Active (Chart.Running) := False;
+         Active_Top := Chart.Infusing;
       end Exit_Running;
       procedure Exit_Filling
       with
-        Pre => Active (Chart.Filling),
+        Pre => Active_Top = Chart.Filling,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Filling and then Active'Old (N)))
+          and then Active_Top = Chart.Running
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Filling,
@@ -707,22 +652,17 @@ is
          Self.Completed_Filling := False;
          Self.Past.Last_In_Infusing := Infusion_States.Filling;
          Self.Past.Known_In_Infusing := True;
-         Active (Chart.Filling) := False;
+         Active_Top := Chart.Running;
       end Exit_Filling;
       procedure Exit_Giving
       with
-        Pre =>
-          Active (Chart.Giving)
-          and then (for all N in Chart.Loading .. Chart.Maintaining =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Giving,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Giving and then Active'Old (N)))
+          and then Active_Top = Chart.Running
           and then Self.Timers (2) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Giving
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
@@ -730,15 +670,14 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active (Chart.Giving) := False;
+         Active_Top := Chart.Running;
       end Exit_Giving;
       procedure Exit_Loading
       with
-        Pre => Active (Chart.Loading),
+        Pre => Active_Top = Chart.Loading,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Loading and then Active'Old (N)))
+          and then Active_Top = Chart.Giving
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Loading,
@@ -750,16 +689,14 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Loading;
          Self.Past.Known_In_Infusing := True;
-         Active (Chart.Loading) := False;
+         Active_Top := Chart.Giving;
       end Exit_Loading;
       procedure Exit_Maintaining
       with
-        Pre => Active (Chart.Maintaining),
+        Pre => Active_Top = Chart.Maintaining,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N /= Chart.Maintaining and then Active'Old (N)))
+          and then Active_Top = Chart.Giving
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Maintaining,
@@ -771,15 +708,14 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Maintaining;
          Self.Past.Known_In_Infusing := True;
-         Active (Chart.Maintaining) := False;
+         Active_Top := Chart.Giving;
       end Exit_Maintaining;
       procedure Exit_All_Given
       with
-        Pre => Active (Chart.All_Given),
+        Pre => Active_Top = Chart.All_Given,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.All_Given and then Active'Old (N)))
+          and then Active_Top = Chart.Running
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.All_Given,
@@ -791,15 +727,14 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.All_Given;
          Self.Past.Known_In_Infusing := True;
-         Active (Chart.All_Given) := False;
+         Active_Top := Chart.Running;
       end Exit_All_Given;
       procedure Exit_Trickling
       with
-        Pre => Active (Chart.Trickling),
+        Pre => Active_Top = Chart.Trickling,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Trickling and then Active'Old (N)))
+          and then Active_Top = Chart.Infusing
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Trickling,
@@ -811,18 +746,14 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Trickling;
          Self.Past.Known_In_Infusing := True;
-         Active (Chart.Trickling) := False;
+         Active_Top := Chart.Infusing;
       end Exit_Trickling;
       procedure Exit_Alarm
       with
-        Pre =>
-          Active (Chart.Alarm)
-          and then (for all N in Chart.Sounding .. Chart.Silent =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Alarm,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Alarm and then Active'Old (N)))
+          and then Active_Top = Chart.Nowhere
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -831,19 +762,17 @@ is
       is
       begin
          Self.Data.Buzzer := False;
-         Active (Chart.Alarm) := False;
+         Active_Top := Chart.Nowhere;
       end Exit_Alarm;
       procedure Exit_Silent
       with
-        Pre => Active (Chart.Silent),
+        Pre => Active_Top = Chart.Silent,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Silent and then Active'Old (N)))
+          and then Active_Top = Chart.Alarm
           and then Self.Timers (3) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Silent
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
@@ -851,26 +780,22 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active (Chart.Silent) := False;
+         Active_Top := Chart.Alarm;
       end Exit_Silent;
       procedure Leave_Alarm
       with
         Pre =>
           Self.Place.Top in Infusion_States.Alarm
-          and then (for all N in Chart.Sounding .. Chart.Silent =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Sounding .. Chart.Silent
-                   and then Active'Old (N)))
+          and then Active_Top = Chart.Alarm
+          and then Self.Timers (3)
+            = (if Self.Place.Top = Infusion_States.Silent
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (3))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Sounding .. Chart.Silent
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
@@ -880,7 +805,8 @@ is
       begin
          case Infusion_States.Alarm'(Self.Place.Top) is
             when Infusion_States.Sounding =>
-               Active (Chart.Sounding) := False;
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Sounding, Chart.Alarm);
             when Infusion_States.Silent =>
                Exit_Silent;
          end case;
@@ -889,14 +815,10 @@ is
       with
         Pre =>
           Self.Place.Top in Infusion_States.Giving
-          and then (for all N in Chart.Loading .. Chart.Maintaining =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Loading .. Chart.Maintaining
-                   and then Active'Old (N)))
+          and then Active_Top = Chart.Giving
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
@@ -916,20 +838,16 @@ is
       with
         Pre =>
           Self.Place.Top in Infusion_States.Running
-          and then (for all N in Chart.Filling .. Chart.All_Given =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Filling .. Chart.All_Given
-                   and then Active'Old (N)))
+          and then Active_Top = Chart.Running
+          and then Self.Timers (2)
+            = (if Self.Place.Top in Infusion_States.Giving
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (2))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Filling .. Chart.All_Given
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
@@ -951,20 +869,16 @@ is
       with
         Pre =>
           Self.Place.Top in Infusion_States.Infusing
-          and then (for all N in Chart.Running .. Chart.Trickling =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Running .. Chart.Trickling
-                   and then Active'Old (N)))
+          and then Active_Top = Chart.Infusing
+          and then Self.Timers (2)
+            = (if Self.Place.Top in Infusion_States.Giving
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (2))
           and then (for all I in Self.Timers'Range =>
-                Self.Timers (I)
-                = (if Chart.Holder (I) in Chart.Running .. Chart.Trickling
-                      and then Active'Old (Chart.Holder (I))
-                      then Ravenchart.Timers.Stopped
-                   else Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
           and then Self.Started = Self.Started'Old
@@ -979,21 +893,21 @@ is
             when Infusion_States.Trickling =>
                Exit_Trickling;
             when Infusion_States.Where_It_Was =>
-               null;
+               Active_Top :=
+                 Chart.Moved
+                   (Active_Top,
+                    Chart.Where_It_Was,
+                    Chart.Infusing);
          end case;
       end Leave_Infusing;
       procedure Leave_Motor
       with
         Pre =>
           Self.Place.Top = Infusion_States.Self_Test
-          and then (for all N in Chart.Turning .. Chart.Motor_Good =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Turning .. Chart.Motor_Good
-                   and then Active'Old (N)))
+          and then Active_Motor = Chart.Nowhere
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
@@ -1006,21 +920,18 @@ is
             when Infusion_States.Turning =>
                Exit_Turning;
             when Infusion_States.Motor_Good =>
-               Active (Chart.Motor_Good) := False;
+               Active_Motor :=
+                 Chart.Moved (Active_Motor, Chart.Motor_Good, Chart.Nowhere);
          end case;
       end Leave_Motor;
       procedure Leave_Sensor
       with
         Pre =>
           Self.Place.Top = Infusion_States.Self_Test
-          and then (for all N in Chart.Listening .. Chart.Sensor_Good =>
-                Active (N) = Chart.Active_In (Self.Place) (N)),
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place),
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.Listening .. Chart.Sensor_Good
-                   and then Active'Old (N)))
+          and then Active_Sensor = Chart.Nowhere
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
@@ -1031,25 +942,31 @@ is
       begin
          case Self.Place.In_Sensor is
             when Infusion_States.Listening =>
-               Active (Chart.Listening) := False;
+               Active_Sensor :=
+                 Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
             when Infusion_States.Sensor_Good =>
-               Active (Chart.Sensor_Good) := False;
+               Active_Sensor :=
+                 Chart.Moved
+                   (Active_Sensor,
+                    Chart.Sensor_Good,
+                    Chart.Nowhere);
          end case;
       end Leave_Sensor;
       procedure Enter_Self_Test
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre =>
+          Active_Top = Chart.Nowhere
+          and then Active_Motor = Chart.Nowhere
+          and then Active_Sensor = Chart.Nowhere,
         Post =>
           Self.Place
           = (Top => Infusion_States.Self_Test,
              In_Sensor => Infusion_States.Listening,
              In_Motor => Infusion_States.Turning)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Self_Test or else Active'Old (N)))
+          and then Active_Top = Chart.Self_Test
           and then Self.Timers (1) = Ravenchart.Timers.Started (100)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Self_Test
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
@@ -1060,22 +977,19 @@ is
          Self.Place.In_Motor := Infusion_States.Turning;
          Self.Place.In_Sensor := Infusion_States.Listening;
          Ravenchart.Timers.Arm (Self.Timers (1), 100);
-         Active (Chart.Self_Test) := True;
+         Active_Top := Chart.Self_Test;
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Self_Test;
       procedure Enter_Turning
       with
         Pre =>
-          Active (Chart.Self_Test)
-          and then (for all N in Chart.Turning .. Chart.Motor_Good =>
-                not Active (N)),
+          Active_Motor = Chart.Nowhere and then Active_Top = Chart.Self_Test,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Infusion_States.Turning)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Turning or else Active'Old (N)))
+          and then Active_Motor = Chart.Turning
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1086,22 +1000,19 @@ is
          Self.Place.In_Motor := Infusion_States.Turning;
          Self.Visits_Turning := Ravenchart.Next (Self.Visits_Turning);
          Self.Done_In.Turning := False;
-         Active (Chart.Turning) := True;
+         Active_Motor := Chart.Turning;
          Self.Data.Speed := 10;
       end Enter_Turning;
       procedure Enter_Motor_Good
       with
         Pre =>
-          Active (Chart.Self_Test)
-          and then (for all N in Chart.Turning .. Chart.Motor_Good =>
-                not Active (N)),
+          Active_Motor = Chart.Nowhere and then Active_Top = Chart.Self_Test,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Infusion_States.Motor_Good)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Motor_Good or else Active'Old (N)))
+          and then Active_Motor = Chart.Motor_Good
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1110,7 +1021,7 @@ is
       is
       begin
          Self.Place.In_Motor := Infusion_States.Motor_Good;
-         Active (Chart.Motor_Good) := True;
+         Active_Motor := Chart.Motor_Good;
          if Self.Place.In_Sensor = Infusion_States.Sensor_Good then
             Self.Completed_Self_Test := True;
          end if;
@@ -1118,16 +1029,14 @@ is
       procedure Enter_Sensor_Good
       with
         Pre =>
-          Active (Chart.Self_Test)
-          and then (for all N in Chart.Listening .. Chart.Sensor_Good =>
-                not Active (N)),
+          Active_Sensor = Chart.Nowhere
+          and then Active_Top = Chart.Self_Test,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Sensor => Infusion_States.Sensor_Good,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Sensor_Good or else Active'Old (N)))
+          and then Active_Sensor = Chart.Sensor_Good
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1136,21 +1045,20 @@ is
       is
       begin
          Self.Place.In_Sensor := Infusion_States.Sensor_Good;
-         Active (Chart.Sensor_Good) := True;
+         Active_Sensor := Chart.Sensor_Good;
          if Self.Place.In_Motor = Infusion_States.Motor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Sensor_Good;
       procedure Enter_Programming
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place
           = (Top => Infusion_States.Programming,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Programming or else Active'Old (N)))
+          and then Active_Top = Chart.Programming
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1159,16 +1067,15 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Programming;
-         Active (Chart.Programming) := True;
+         Active_Top := Chart.Programming;
          Self.Data.Lamp := Infusion_System.Dark;
       end Enter_Programming;
       procedure Enter_Infusing
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Infusing or else Active'Old (N)))
+          and then Active_Top = Chart.Infusing
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1176,22 +1083,18 @@ is
           and then Self.Lost = Self.Lost'Old
       is
       begin
-         Active (Chart.Infusing) := True;
+         Active_Top := Chart.Infusing;
          Self.Data.Lamp := Infusion_System.Steady;
       end Enter_Infusing;
       procedure Enter_Filling
       with
-        Pre =>
-          Active (Chart.Running)
-          and then (for all N in Chart.Filling .. Chart.All_Given =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place
           = (Top => Infusion_States.Filling,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Filling or else Active'Old (N)))
+          and then Active_Top = Chart.Filling
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1202,23 +1105,18 @@ is
          Self.Place.Top := Infusion_States.Filling;
          Self.Visits_Filling := Ravenchart.Next (Self.Visits_Filling);
          Self.Done_In.Filling := False;
-         Active (Chart.Filling) := True;
+         Active_Top := Chart.Filling;
          Self.Data.Speed := 100;
       end Enter_Filling;
       procedure Enter_Giving
       with
-        Pre =>
-          Active (Chart.Running)
-          and then (for all N in Chart.Filling .. Chart.All_Given =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Giving or else Active'Old (N)))
+          and then Active_Top = Chart.Giving
           and then Self.Timers (2) = Ravenchart.Timers.Started (20, 20)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Giving
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
@@ -1226,21 +1124,17 @@ is
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (2), 20, 20);
-         Active (Chart.Giving) := True;
+         Active_Top := Chart.Giving;
       end Enter_Giving;
       procedure Enter_Loading
       with
-        Pre =>
-          Active (Chart.Giving)
-          and then (for all N in Chart.Loading .. Chart.Maintaining =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Giving,
         Post =>
           Self.Place
           = (Top => Infusion_States.Loading,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Loading or else Active'Old (N)))
+          and then Active_Top = Chart.Loading
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1249,23 +1143,19 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Loading;
-         Active (Chart.Loading) := True;
+         Active_Top := Chart.Loading;
          Self.Data.Speed :=
            Infusion_System.Unit_Ul'Min (2 * Self.Data.Portion, 500);
       end Enter_Loading;
       procedure Enter_Maintaining
       with
-        Pre =>
-          Active (Chart.Giving)
-          and then (for all N in Chart.Loading .. Chart.Maintaining =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Giving,
         Post =>
           Self.Place
           = (Top => Infusion_States.Maintaining,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Maintaining or else Active'Old (N)))
+          and then Active_Top = Chart.Maintaining
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1274,22 +1164,18 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Maintaining;
-         Active (Chart.Maintaining) := True;
+         Active_Top := Chart.Maintaining;
          Self.Data.Speed := Self.Data.Portion;
       end Enter_Maintaining;
       procedure Enter_All_Given
       with
-        Pre =>
-          Active (Chart.Running)
-          and then (for all N in Chart.Filling .. Chart.All_Given =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place
           = (Top => Infusion_States.All_Given,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.All_Given or else Active'Old (N)))
+          and then Active_Top = Chart.All_Given
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1298,22 +1184,18 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.All_Given;
-         Active (Chart.All_Given) := True;
+         Active_Top := Chart.All_Given;
          Self.Completed_Running := True;
       end Enter_All_Given;
       procedure Enter_Trickling
       with
-        Pre =>
-          Active (Chart.Infusing)
-          and then (for all N in Chart.Running .. Chart.Trickling =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Infusing,
         Post =>
           Self.Place
           = (Top => Infusion_States.Trickling,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Trickling or else Active'Old (N)))
+          and then Active_Top = Chart.Trickling
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1322,16 +1204,15 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Trickling;
-         Active (Chart.Trickling) := True;
+         Active_Top := Chart.Trickling;
          Self.Data.Speed := Ins.Trickle;
       end Enter_Trickling;
       procedure Enter_Alarm
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place = Self.Place'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Alarm or else Active'Old (N)))
+          and then Active_Top = Chart.Alarm
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1339,22 +1220,18 @@ is
           and then Self.Lost = Self.Lost'Old
       is
       begin
-         Active (Chart.Alarm) := True;
+         Active_Top := Chart.Alarm;
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Alarm;
       procedure Enter_Sounding
       with
-        Pre =>
-          Active (Chart.Alarm)
-          and then (for all N in Chart.Sounding .. Chart.Silent =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Alarm,
         Post =>
           Self.Place
           = (Top => Infusion_States.Sounding,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Sounding or else Active'Old (N)))
+          and then Active_Top = Chart.Sounding
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1363,26 +1240,21 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Sounding;
-         Active (Chart.Sounding) := True;
+         Active_Top := Chart.Sounding;
          Self.Data.Buzzer := True;
       end Enter_Sounding;
       procedure Enter_Silent
       with
-        Pre =>
-          Active (Chart.Alarm)
-          and then (for all N in Chart.Sounding .. Chart.Silent =>
-                not Active (N)),
+        Pre => Active_Top = Chart.Alarm,
         Post =>
           Self.Place
           = (Top => Infusion_States.Silent,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Silent or else Active'Old (N)))
+          and then Active_Top = Chart.Silent
           and then Self.Timers (3) = Ravenchart.Timers.Started (600)
           and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Silent
-                    then Self.Timers (I) = Self.Timers'Old (I)))
+                (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
@@ -1391,61 +1263,24 @@ is
       begin
          Self.Place.Top := Infusion_States.Silent;
          Ravenchart.Timers.Arm (Self.Timers (3), 600);
-         Active (Chart.Silent) := True;
+         Active_Top := Chart.Silent;
          Self.Data.Buzzer := False;
       end Enter_Silent;
-      procedure Enter_Where_It_Was
-      with
-        Pre =>
-          Active (Chart.Infusing)
-          and then (for all N in Chart.Running .. Chart.Trickling =>
-                not Active (N)),
-        Post =>
-          Self.Place
-          = (Top => Infusion_States.Where_It_Was,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
-          and then Active = Active'Old
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Self.Place.Top := Infusion_States.Where_It_Was;
-      end Enter_Where_It_Was;
-      procedure Enter_May_Go_On
-      with
-        Pre => (for all N in Chart.Node => not Active (N)),
-        Post =>
-          Self.Place
-          = (Top => Infusion_States.May_Go_On,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
-          and then Active = Active'Old
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Past = Self.Past'Old
-          and then Self.Started = Self.Started'Old
-          and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
-          and then Self.Lost = Self.Lost'Old
-      is
-      begin
-         Self.Place.Top := Infusion_States.May_Go_On;
-      end Enter_May_Go_On;
    begin
       case Chosen is
          when Initial_Entry =>
+            Self.Started := True;
             Enter_Self_Test;
             Enter_Turning;
+            Active_Sensor :=
+              Chart.Moved (Active_Sensor, Chart.Nowhere, Chart.Listening);
             Self.Place.In_Sensor := Infusion_States.Listening;
-            Active (Chart.Listening) := True;
-            Self.Started := True;
          when Turned =>
             Exit_Turning;
             Enter_Motor_Good;
          when Heard =>
-            Active (Chart.Listening) := False;
+            Active_Sensor :=
+              Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
             Enter_Sensor_Good;
          when Loaded =>
             Exit_Loading;
@@ -1453,10 +1288,9 @@ is
          when Change =>
             Exit_Maintaining;
             pragma Assert
-              ((for all N in Chart.Node =>
-                   Active (N)
-                   = (N not in Chart.Loading .. Chart.Maintaining
-                      and then Before (N))));
+              (Active_Top = Chart.Giving
+               and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+               and then Active_Sensor = Chart.Innermost_Sensor (Self.Place));
             Self.Data.Portion := Item.Value_Portion;
             Enter_Maintaining;
          when Defer_New_Portion_In_Loading =>
@@ -1489,40 +1323,65 @@ is
             Exit_Running;
             Enter_Trickling;
          when Hush =>
-            Active (Chart.Sounding) := False;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Sounding, Chart.Alarm);
             Enter_Silent;
          when Remind =>
             Exit_Silent;
             Enter_Sounding;
          when Restore_Where_It_Was =>
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Where_It_Was, Chart.Infusing);
             if Past.Known_In_Infusing then
                case Past.Last_In_Infusing is
                   when Infusion_States.Filling =>
-                     Active (Chart.Running) := True;
+                     Active_Top :=
+                       Chart.Moved
+                         (Active_Top,
+                          Chart.Infusing,
+                          Chart.Running);
                      Enter_Filling;
                   when Infusion_States.Loading =>
-                     Active (Chart.Running) := True;
+                     Active_Top :=
+                       Chart.Moved
+                         (Active_Top,
+                          Chart.Infusing,
+                          Chart.Running);
                      Enter_Giving;
                      Enter_Loading;
                   when Infusion_States.Maintaining =>
-                     Active (Chart.Running) := True;
+                     Active_Top :=
+                       Chart.Moved
+                         (Active_Top,
+                          Chart.Infusing,
+                          Chart.Running);
                      Enter_Giving;
                      Enter_Maintaining;
                   when Infusion_States.All_Given =>
-                     Active (Chart.Running) := True;
+                     Active_Top :=
+                       Chart.Moved
+                         (Active_Top,
+                          Chart.Infusing,
+                          Chart.Running);
                      Enter_Filling;
                   when Infusion_States.Trickling =>
                      Enter_Trickling;
                   when Infusion_States.Where_It_Was =>
-                     Active (Chart.Running) := True;
+                     Active_Top :=
+                       Chart.Moved
+                         (Active_Top,
+                          Chart.Infusing,
+                          Chart.Running);
                      Enter_Filling;
                end case;
             else
-               Active (Chart.Running) := True;
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
                Enter_Filling;
             end if;
          when Default_Of_Where_It_Was =>
-            Active (Chart.Running) := True;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Where_It_Was, Chart.Running);
             Enter_Filling;
          when Ready =>
             Leave_Motor;
@@ -1535,18 +1394,24 @@ is
             Exit_Self_Test;
             Enter_Self_Test;
             Enter_Turning;
+            Active_Sensor :=
+              Chart.Moved (Active_Sensor, Chart.Nowhere, Chart.Listening);
             Self.Place.In_Sensor := Infusion_States.Listening;
-            Active (Chart.Listening) := True;
          when Order_Portion =>
             Self.Data.Portion := Item.Value_Portion;
          when Order_Volume =>
             Self.Data.Volume := Item.Value_Volume;
          when Start =>
-            Active (Chart.Programming) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Programming, Chart.Nowhere);
+            pragma Assert
+              (Active_Top = Chart.Nowhere
+               and then Active_Motor = Chart.Nowhere
+               and then Active_Sensor = Chart.Nowhere);
             Self.Data.Given := 0;
             Enter_Infusing;
-            Active (Chart.Running) := True;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
             Enter_Filling;
          when Stop =>
             Leave_Infusing;
@@ -1565,7 +1430,9 @@ is
          when Resume =>
             Leave_Alarm;
             Exit_Alarm;
-            Enter_May_Go_On;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Nowhere, Chart.May_Go_On);
+            Self.Place.Top := Infusion_States.May_Go_On;
          when Give_Up =>
             Leave_Alarm;
             Exit_Alarm;
@@ -1589,13 +1456,22 @@ is
                Deferrals.Append (Self.Deferred, Item);
             end if;
          when Go_On =>
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
             Enter_Infusing;
-            Enter_Where_It_Was;
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.Infusing, Chart.Where_It_Was);
+            Self.Place.Top := Infusion_States.Where_It_Was;
          when Not_Yet =>
+            Active_Top :=
+              Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
             Enter_Alarm;
             Enter_Sounding;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Place));
+      pragma Assert
+        (Active_Motor = Chart.Innermost_Motor (Self.Place)
+         and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+         and then Active_Top = Chart.Innermost_Top (Self.Place));
    end Fire;
 
    procedure Step

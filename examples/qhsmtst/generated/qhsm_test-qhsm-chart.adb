@@ -10,33 +10,9 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function In_S1_Init (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = Passing
-         then S1_Init
-      elsif Now = On_A
-         then S1_A
-      elsif Now = On_B
-         then S1_B
-      elsif Now = On_C
-         then S1_C
-      elsif Now = On_D and then not Data.Foo
-         then S1_D
-      elsif Now = On_F
-         then S1_F
-      elsif Now = On_I
-         then S1_I
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
-      else None)
-   with
-     Post =>
-       Is_Selection (In_S1_Init'Result, Chart_States.S1_Init, Now, Data);
-
-   function In_S1
-     (Leaf : Chart_States.S1;
-      Now : Occurrence;
+   function Select_Transition
+     (Leaf : Chart_States.Leaf;
+      Now  : Occurrence;
       Data : Variables)
      return Selection is
      (case Leaf is
@@ -64,42 +40,26 @@ is
             elsif Now = On_I and then Data.Foo
                then S_I
             else None),
-        when Chart_States.S1_Init => In_S1_Init (Now, Data))
-   with Post => Is_Selection (In_S1'Result, Leaf, Now, Data);
-
-   function In_S21_Init
-     (Now : Occurrence;
-      Data : Variables)
-     return Selection is
-     (if Now = Passing
-         then S21_Init
-      elsif Now = On_A
-         then S21_A
-      elsif Now = On_B
-         then S21_B
-      elsif Now = On_G
-         then S21_G
-      elsif Now = On_C
-         then S2_C
-      elsif Now = On_F
-         then S2_F
-      elsif Now = On_I and then not Data.Foo
-         then S2_I
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
-      else None)
-   with
-     Post =>
-       Is_Selection (In_S21_Init'Result, Chart_States.S21_Init, Now, Data);
-
-   function In_S21
-     (Leaf : Chart_States.S21;
-      Now  : Occurrence;
-      Data : Variables)
-     return Selection is
-     (case Leaf is
+        when Chart_States.S1_Init =>
+           (if Now = Passing
+               then S1_Init
+            elsif Now = On_A
+               then S1_A
+            elsif Now = On_B
+               then S1_B
+            elsif Now = On_C
+               then S1_C
+            elsif Now = On_D and then not Data.Foo
+               then S1_D
+            elsif Now = On_F
+               then S1_F
+            elsif Now = On_I
+               then S1_I
+            elsif Now = On_E
+               then S_E
+            elsif Now = On_I and then Data.Foo
+               then S_I
+            else None),
         when Chart_States.S211 =>
            (if Now = On_D
                then S211_D
@@ -122,47 +82,34 @@ is
             elsif Now = On_I and then Data.Foo
                then S_I
             else None),
-        when Chart_States.S21_Init => In_S21_Init (Now, Data))
-   with Post => Is_Selection (In_S21'Result, Leaf, Now, Data);
-
-   function In_S2
-     (Leaf : Chart_States.S2;
-      Now : Occurrence;
-      Data : Variables)
-     return Selection is
-     (case Leaf is
-        when Chart_States.S21 => In_S21 (Leaf, Now, Data))
-   with Post => Is_Selection (In_S2'Result, Leaf, Now, Data);
-
-   function In_S_Init (Now : Occurrence; Data : Variables) return Selection is
-     (if Now = Passing
-         then S_Init
-      elsif Now = On_E
-         then S_E
-      elsif Now = On_I and then Data.Foo
-         then S_I
-      else None)
-   with
-     Post => Is_Selection (In_S_Init'Result, Chart_States.S_Init, Now, Data);
-
-   function In_S
-     (Leaf : Chart_States.S;
-      Now : Occurrence;
-      Data : Variables)
-     return Selection is
-     (case Leaf is
-        when Chart_States.S1 => In_S1 (Leaf, Now, Data),
-        when Chart_States.S2 => In_S2 (Leaf, Now, Data),
-        when Chart_States.S_Init => In_S_Init (Now, Data))
-   with Post => Is_Selection (In_S'Result, Leaf, Now, Data);
-
-   function Select_Transition
-     (Leaf : Chart_States.Leaf;
-      Now  : Occurrence;
-      Data : Variables)
-     return Selection is
-     (case Leaf is
-        when Chart_States.S => In_S (Leaf, Now, Data))
+        when Chart_States.S21_Init =>
+           (if Now = Passing
+               then S21_Init
+            elsif Now = On_A
+               then S21_A
+            elsif Now = On_B
+               then S21_B
+            elsif Now = On_G
+               then S21_G
+            elsif Now = On_C
+               then S2_C
+            elsif Now = On_F
+               then S2_F
+            elsif Now = On_I and then not Data.Foo
+               then S2_I
+            elsif Now = On_E
+               then S_E
+            elsif Now = On_I and then Data.Foo
+               then S_I
+            else None),
+        when Chart_States.S_Init =>
+           (if Now = Passing
+               then S_Init
+            elsif Now = On_E
+               then S_E
+            elsif Now = On_I and then Data.Foo
+               then S_I
+            else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Data);
 
    function Select_Segment
@@ -183,17 +130,28 @@ is
    package Chart
    with Ghost
    is
-      type Node is (S, S1, S11, S2, S21, S211);
+      type Node is
+        (Nowhere,
+         S11,
+         S1_Init,
+         S211,
+         S21_Init,
+         S_Init,
+         S,
+         S1,
+         S2,
+         S21);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Chart_States.Leaf) return Node is
+        (Node'Val (Chart_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Chart_States.Leaf) return Node_Set is
-        ((S => Leaf in Chart_States.S,
-          S1 => Leaf in Chart_States.S1,
-          S11 => Leaf = Chart_States.S11,
-          S2 => Leaf in Chart_States.S2,
-          S21 => Leaf in Chart_States.S21,
-          S211 => Leaf = Chart_States.S211));
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -215,267 +173,187 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
       procedure Leave_S21
       with
         Pre =>
           Self.Leaf in Chart_States.S21
-          and then (for all N in Chart.S211 .. Chart.S211 =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.S211 .. Chart.S211 and then Active'Old (N)))
+          and then Active = Chart.S21
           and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S21'(Self.Leaf) is
             when Chart_States.S211 =>
-               Active (Chart.S211) := False;
+               Active := Chart.Moved (Active, Chart.S211, Chart.S21);
             when Chart_States.S21_Init =>
-               null;
+               Active := Chart.Moved (Active, Chart.S21_Init, Chart.S21);
          end case;
       end Leave_S21;
       procedure Leave_S2
       with
         Pre =>
           Self.Leaf in Chart_States.S2
-          and then (for all N in Chart.S21 .. Chart.S211 =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.S21 .. Chart.S211 and then Active'Old (N)))
+          and then Active = Chart.S2
           and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S2'(Self.Leaf) is
             when Chart_States.S21 =>
                Leave_S21;
-               Active (Chart.S21) := False;
+               Active := Chart.Moved (Active, Chart.S21, Chart.S2);
          end case;
       end Leave_S2;
       procedure Leave_S1
       with
         Pre =>
           Self.Leaf in Chart_States.S1
-          and then (for all N in Chart.S11 .. Chart.S11 =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.S11 .. Chart.S11 and then Active'Old (N)))
+          and then Active = Chart.S1
           and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S1'(Self.Leaf) is
             when Chart_States.S11 =>
-               Active (Chart.S11) := False;
+               Active := Chart.Moved (Active, Chart.S11, Chart.S1);
             when Chart_States.S1_Init =>
-               null;
+               Active := Chart.Moved (Active, Chart.S1_Init, Chart.S1);
          end case;
       end Leave_S1;
       procedure Leave_S
       with
         Pre =>
           Self.Leaf in Chart_States.S
-          and then (for all N in Chart.S1 .. Chart.S211 =>
-                Active (N) = Chart.Active_In (Self.Leaf) (N)),
+          and then Active = Chart.Innermost (Self.Leaf),
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N)
-                = (N not in Chart.S1 .. Chart.S211 and then Active'Old (N)))
+          and then Active = Chart.S
           and then Self.Started = Self.Started'Old
       is
       begin
          case Chart_States.S'(Self.Leaf) is
             when Chart_States.S1 =>
                Leave_S1;
-               Active (Chart.S1) := False;
+               Active := Chart.Moved (Active, Chart.S1, Chart.S);
             when Chart_States.S2 =>
                Leave_S2;
-               Active (Chart.S2) := False;
+               Active := Chart.Moved (Active, Chart.S2, Chart.S);
             when Chart_States.S_Init =>
-               null;
+               Active := Chart.Moved (Active, Chart.S_Init, Chart.S);
          end case;
       end Leave_S;
-      procedure Enter_S_Init
-      with
-        Pre =>
-          Active (Chart.S)
-          and then (for all N in Chart.S1 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Chart_States.S_Init
-          and then Active = Active'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Chart_States.S_Init;
-      end Enter_S_Init;
-      procedure Enter_S1_Init
-      with
-        Pre =>
-          Active (Chart.S1)
-          and then (for all N in Chart.S11 .. Chart.S11 => not Active (N)),
-        Post =>
-          Self.Leaf = Chart_States.S1_Init
-          and then Active = Active'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Chart_States.S1_Init;
-      end Enter_S1_Init;
-      procedure Enter_S21_Init
-      with
-        Pre =>
-          Active (Chart.S21)
-          and then (for all N in Chart.S211 .. Chart.S211 => not Active (N)),
-        Post =>
-          Self.Leaf = Chart_States.S21_Init
-          and then Active = Active'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         Self.Leaf := Chart_States.S21_Init;
-      end Enter_S21_Init;
    begin
       case Chosen is
          when Initial_Entry =>
-            Self.Data.Foo := False;
-            Active (Chart.S) := True;
-            Active (Chart.S2) := True;
-            Self.Data.Defaulted := True;
-            Active (Chart.S21) := True;
-            Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
             Self.Started := True;
-         when S211_D =>
-            Active (Chart.S211) := False;
-            Enter_S21_Init;
-         when S211_H =>
-            Active (Chart.S211) := False;
-            Active (Chart.S21) := False;
-            Active (Chart.S2) := False;
-            Enter_S_Init;
-         when S21_Init =>
-            Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
-         when S11_D =>
-            Active (Chart.S11) := False;
-            pragma Assert
-              ((for all N in Chart.Node =>
-                   Active (N)
-                   = (N not in Chart.S11 .. Chart.S11 and then Before (N))));
             Self.Data.Foo := False;
-            Enter_S1_Init;
-         when S11_G =>
-            Active (Chart.S11) := False;
-            Active (Chart.S1) := False;
-            Active (Chart.S2) := True;
-            Active (Chart.S21) := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.S2);
+            Self.Data.Defaulted := True;
+            Active := Chart.Moved (Active, Chart.S2, Chart.S211);
             Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
+         when S211_D =>
+            Active := Chart.Moved (Active, Chart.S211, Chart.S21_Init);
+            Self.Leaf := Chart_States.S21_Init;
+         when S211_H =>
+            Active := Chart.Moved (Active, Chart.S211, Chart.S_Init);
+            Self.Leaf := Chart_States.S_Init;
+         when S21_Init =>
+            Active := Chart.Moved (Active, Chart.S21_Init, Chart.S211);
+            Self.Leaf := Chart_States.S211;
+         when S11_D =>
+            Active := Chart.Moved (Active, Chart.S11, Chart.S1);
+            pragma Assert (Active = Chart.S1);
+            Self.Data.Foo := False;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S1_Init);
+            Self.Leaf := Chart_States.S1_Init;
+         when S11_G =>
+            Active := Chart.Moved (Active, Chart.S11, Chart.S211);
+            Self.Leaf := Chart_States.S211;
          when S11_H =>
-            Active (Chart.S11) := False;
-            Active (Chart.S1) := False;
-            Enter_S_Init;
+            Active := Chart.Moved (Active, Chart.S11, Chart.S_Init);
+            Self.Leaf := Chart_States.S_Init;
          when S21_A =>
             Leave_S21;
-            Active (Chart.S21) := False;
-            Active (Chart.S21) := True;
+            Active := Chart.Moved (Active, Chart.S21, Chart.S21);
             Self.Data.Defaulted := True;
+            Active := Chart.Moved (Active, Chart.S21, Chart.S211);
             Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
          when S21_B =>
             Leave_S21;
+            Active := Chart.Moved (Active, Chart.S21, Chart.S211);
             Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
          when S21_G =>
             Leave_S21;
-            Active (Chart.S21) := False;
-            Active (Chart.S2) := False;
-            Active (Chart.S1) := True;
+            Active := Chart.Moved (Active, Chart.S21, Chart.S1);
             Self.Data.Defaulted := True;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S1_Init =>
+            Active := Chart.Moved (Active, Chart.S1_Init, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S1_A =>
             Leave_S1;
-            Active (Chart.S1) := False;
-            Active (Chart.S1) := True;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S1);
             Self.Data.Defaulted := True;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S1_B =>
             Leave_S1;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S1_C =>
             Leave_S1;
-            Active (Chart.S1) := False;
-            Active (Chart.S2) := True;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S2);
             Self.Data.Defaulted := True;
-            Active (Chart.S21) := True;
+            Active := Chart.Moved (Active, Chart.S2, Chart.S211);
             Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
          when S1_D =>
             Leave_S1;
-            Active (Chart.S1) := False;
-            pragma Assert
-              ((for all N in Chart.Node =>
-                   Active (N)
-                   = (N not in Chart.S1 .. Chart.S211 and then Before (N))));
+            Active := Chart.Moved (Active, Chart.S1, Chart.S);
+            pragma Assert (Active = Chart.S);
             Self.Data.Foo := True;
-            Enter_S_Init;
+            Active := Chart.Moved (Active, Chart.S, Chart.S_Init);
+            Self.Leaf := Chart_States.S_Init;
          when S1_F =>
             Leave_S1;
-            Active (Chart.S1) := False;
-            Active (Chart.S2) := True;
-            Active (Chart.S21) := True;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S211);
             Self.Leaf := Chart_States.S211;
-            Active (Chart.S211) := True;
          when S1_I =>
             null;
          when S2_C =>
             Leave_S2;
-            Active (Chart.S2) := False;
-            Active (Chart.S1) := True;
+            Active := Chart.Moved (Active, Chart.S2, Chart.S1);
             Self.Data.Defaulted := True;
+            Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S2_F =>
             Leave_S2;
-            Active (Chart.S2) := False;
-            Active (Chart.S1) := True;
+            Active := Chart.Moved (Active, Chart.S2, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S2_I =>
             Self.Data.Foo := True;
          when S_Init =>
-            Active (Chart.S1) := True;
+            Active := Chart.Moved (Active, Chart.S_Init, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S_E =>
             Leave_S;
-            Active (Chart.S1) := True;
+            Active := Chart.Moved (Active, Chart.S, Chart.S11);
             Self.Leaf := Chart_States.S11;
-            Active (Chart.S11) := True;
          when S_I =>
             Self.Data.Foo := False;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

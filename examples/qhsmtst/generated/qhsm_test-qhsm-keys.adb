@@ -22,12 +22,18 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Listening);
+      type Node is (Nowhere, Listening);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Keys_States.Leaf) return Node is
+        (Node'Val (Keys_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Keys_States.Leaf) return Node_Set is
-        ((Listening => Leaf = Keys_States.Listening));
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -53,19 +59,17 @@ is
        Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
    begin
       case Chosen is
          when Initial_Entry =>
-            Self.Leaf := Keys_States.Listening;
-            Active (Chart.Listening) := True;
             Self.Started := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Listening);
+            Self.Leaf := Keys_States.Listening;
          when Pressed =>
             if Item.Value_Key = Qhsm_Test.Key_A then
                Event_Lists.Append
@@ -113,7 +117,7 @@ is
                   Qhsm.Event'(Name => Qhsm.I, others => <>));
             end if;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

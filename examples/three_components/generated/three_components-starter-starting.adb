@@ -19,17 +19,18 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Before, After_Start);
+      type Node is (Nowhere, Before, After_Start);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Starting_States.Leaf) return Node is
+        (Node'Val (Starting_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Starting_States.Leaf) return Node_Set is
-        ((Before => Leaf = Starting_States.Before,
-          After_Start => Leaf = Starting_States.After_Start));
-
-      function Holder (I : Positive) return Node is
-        (case I is
-           when others => Before);
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -75,69 +76,62 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Before
       with
-        Pre => Active (Chart.Before),
+        Pre => Active = Chart.Before,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Before and then Active'Old (N)))
+          and then Active = Chart.Nowhere
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Before
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active (Chart.Before) := False;
+         Active := Chart.Nowhere;
       end Exit_Before;
       procedure Enter_Before
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Starting_States.Before
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Before or else Active'Old (N)))
+          and then Active = Chart.Before
           and then Self.Timers (1) = Ravenchart.Timers.Started (2)
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Before
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Starting_States.Before;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active (Chart.Before) := True;
+         Active := Chart.Before;
       end Enter_Before;
    begin
       case Chosen is
          when Initial_Entry =>
-            Enter_Before;
             Self.Started := True;
+            Enter_Before;
          when Start =>
             Exit_Before;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := 1;
             Box.Token_Out_Sent := True;
+            Active :=
+              Chart.Moved (Active, Chart.Nowhere, Chart.After_Start);
             Self.Leaf := Starting_States.After_Start;
-            Active (Chart.After_Start) := True;
          when Again =>
-            Active (Chart.After_Start) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active :=
+              Chart.Moved (Active, Chart.After_Start, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Token_In.Value;
             Box.Token_Out_Sent := True;
+            Active :=
+              Chart.Moved (Active, Chart.Nowhere, Chart.After_Start);
             Self.Leaf := Starting_States.After_Start;
-            Active (Chart.After_Start) := True;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

@@ -19,13 +19,18 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Empty, Holding);
+      type Node is (Nowhere, Empty, Holding);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Handling_States.Leaf) return Node is
+        (Node'Val (Handling_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Handling_States.Leaf) return Node_Set is
-        ((Empty => Leaf = Handling_States.Empty,
-          Holding => Leaf = Handling_States.Holding));
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is
@@ -50,32 +55,29 @@ is
      Post => Self.Started and then Self.Leaf = Target (Chosen)
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
    begin
       case Chosen is
          when Initial_Entry =>
-            Self.Leaf := Handling_States.Empty;
-            Active (Chart.Empty) := True;
             Self.Started := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Empty);
+            Self.Leaf := Handling_States.Empty;
          when Take =>
-            Active (Chart.Empty) := False;
+            Active := Chart.Moved (Active, Chart.Empty, Chart.Holding);
             Self.Leaf := Handling_States.Holding;
-            Active (Chart.Holding) := True;
          when Pass_On =>
-            Active (Chart.Holding) := False;
-            pragma Assert ((for all N in Chart.Node => not Active (N)));
+            Active := Chart.Moved (Active, Chart.Holding, Chart.Nowhere);
+            pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Held;
             Box.Token_Out_Sent := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Empty);
             Self.Leaf := Handling_States.Empty;
-            Active (Chart.Empty) := True;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

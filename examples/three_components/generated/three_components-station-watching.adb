@@ -19,17 +19,18 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Quiet, Busy);
+      type Node is (Nowhere, Quiet, Busy);
 
-      type Node_Set is array (Node) of Boolean;
+      function Innermost (Leaf : Watching_States.Leaf) return Node is
+        (Node'Val (Watching_States.Leaf'Pos (Leaf) + 1));
 
-      function Active_In (Leaf : Watching_States.Leaf) return Node_Set is
-        ((Quiet => Leaf = Watching_States.Quiet,
-          Busy => Leaf = Watching_States.Busy));
-
-      function Holder (I : Positive) return Node is
-        (case I is
-           when others => Busy);
+      function Moved
+        (Active_Node : Node;
+         From_Node : Node;
+         To_Node : Node)
+        return Node is
+        (To_Node)
+      with Pre => Active_Node = From_Node;
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -71,63 +72,53 @@ is
               Self.Timers'Old (1))
    is
       use type Chart.Node;
-      use type Chart.Node_Set;
-      Before : constant Chart.Node_Set :=
+      Active : Chart.Node :=
         (if Self.Started
-            then Chart.Active_In (Self.Leaf)
-         else (others => False))
+            then Chart.Innermost (Self.Leaf)
+         else Chart.Nowhere)
       with Ghost;
-      Active : Chart.Node_Set := Before with Ghost;
       procedure Exit_Busy
       with
-        Pre => Active (Chart.Busy),
+        Pre => Active = Chart.Busy,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then (for all N in Chart.Node =>
-                Active (N) = (N /= Chart.Busy and then Active'Old (N)))
+          and then Active = Chart.Nowhere
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Busy
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active (Chart.Busy) := False;
+         Active := Chart.Nowhere;
       end Exit_Busy;
       procedure Enter_Busy
       with
-        Pre => (for all N in Chart.Node => not Active (N)),
+        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Watching_States.Busy
-          and then (for all N in Chart.Node =>
-                Active (N) = (N = Chart.Busy or else Active'Old (N)))
+          and then Active = Chart.Busy
           and then Self.Timers (1) = Ravenchart.Timers.Started (2)
-          and then (for all I in Self.Timers'Range =>
-                (if Chart.Holder (I) /= Chart.Busy
-                    then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Watching_States.Busy;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active (Chart.Busy) := True;
+         Active := Chart.Busy;
       end Enter_Busy;
    begin
       case Chosen is
          when Initial_Entry =>
-            Self.Leaf := Watching_States.Quiet;
-            Active (Chart.Quiet) := True;
             Self.Started := True;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Quiet);
+            Self.Leaf := Watching_States.Quiet;
          when Seen =>
-            Active (Chart.Quiet) := False;
+            Active := Chart.Moved (Active, Chart.Quiet, Chart.Nowhere);
             Enter_Busy;
          when Calm =>
             Exit_Busy;
+            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Quiet);
             Self.Leaf := Watching_States.Quiet;
-            Active (Chart.Quiet) := True;
       end case;
-      pragma Assert (Active = Chart.Active_In (Self.Leaf));
+      pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;
 
    procedure Step

@@ -1,4 +1,4 @@
-"""Exits, effects and entries of one region, with the ghost set that proves their order.
+"""Exits, effects and entries of one region, with the ghost that proves their order.
 
 A state may be exited only when it is active and nothing inside it is; entered
 only when its parent is active and nothing in its own region is; an effect runs
@@ -11,7 +11,6 @@ from __future__ import annotations
 from ...statechart import PseudoKind
 from ...terms import Flow
 from ..ada import (
-    FALSE,
     NULL,
     TRUE,
     Aggregate,
@@ -19,11 +18,8 @@ from ..ada import (
     Aspect,
     Assign,
     Case,
-    Chain,
     Decl,
     Do,
-    Expr,
-    ForAll,
     If,
     IfExpr,
     Object,
@@ -43,11 +39,12 @@ from ..ada import (
 )
 from ..naming import ada_case
 from ..terms import certain_sends, emit_flow
-from .compound import TOP, Effect, Firing, Kind, Place, Step
+from .compound import Effect, Firing, Kind, Place, Step
 from .history import Restoring
 from .lasting import Lasting, terminates
 from .moving import Moving
-from .nodes import NODES, Nodes
+from .nodes import NODES, Nodes, joined
+from .places import flat
 from .shape import START, RegionShape, behaviour_names
 
 
@@ -65,18 +62,14 @@ class Moves:
 
     def chart(self) -> Package:
         """The ghost package of all states."""
-        return self.nodes.chart(self.lasting.ghosts())
-
-    def active_in(self, holder: str) -> Expr:
-        """The states that a configuration stands for."""
-        return call("Chart.Active_In", Ref(holder))
+        return self.nodes.chart()
 
     # --- Fire
 
     def fire(self) -> Subprogram:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
         shape = self.shape
-        start = (START, (Assign("Self.Started", TRUE), *self._agreeing(self._steps(shape.start))))
+        start = (START, (Assign("Self.Started", TRUE), *joined(self._steps(shape.start))))
         rows = [(ada_case(f.name), self._row(f)) for f in shape.firings]
         ready = IfExpr(
             ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
@@ -84,10 +77,7 @@ class Moves:
         )
         moved = equal(Ref(self.held), shape.target("Chosen"))
         done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"))
-        before = IfExpr(
-            ((Ref("Self.Started"), self.active_in(self.held)),),
-            Aggregate((Arg("others", FALSE),)),
-        )
+        agreed = self.nodes.agreed(self.held)
         ghost = (Aspect("Ghost"),)
         past: tuple[Decl, ...] = ()
         if self.shape.memories:
@@ -102,13 +92,11 @@ class Moves:
             aspects=(Aspect("Pre", ready), Aspect("Post", done)),
             declarations=(
                 UseType(NODES),
-                UseType("Chart.Node_Set"),
-                Object("Before", "Chart.Node_Set", before, constant=True, aspects=ghost),
-                Object("Active", "Chart.Node_Set", Ref("Before"), aspects=ghost),
+                *self.nodes.variables(Ref("Self.Started"), self.held),
                 *past,
                 *procedures,
             ),
-            body=(Case(Ref("Chosen"), (start, *rows)),),
+            body=(Case(Ref("Chosen"), (start, *rows)), Pragma("Assert", (agreed,))),
         )
 
     def fire_params(self) -> tuple[Param, ...]:
@@ -156,26 +144,14 @@ class Moves:
         claim = (self._claim(firing.domain),) if effect else ()
         if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
-            return self._agreeing((*out, *claim, *effect, *entered, *self._stop(firing)))
+            return joined((*out, *claim, *effect, *entered, *self._stop(firing)))
         if firing.kind is Kind.RESTORE:
             pseudo = self.region.pseudostate(firing.sources[0])
             assert pseudo is not None
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
             restored = Restoring(self.shape, self._steps).statements(firing.domain, deep)
-            return self._agreeing((*out, *restored))
-        return self._agreeing((*out, *claim, *effect, *self._steps(firing.entries)))
-
-    def _agreeing(self, moves: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-        """Moves that end with active states that agree with the configuration.
-
-        It is claimed of each firing by itself: of all together, after the case, it is
-        too much to prove for a large chart. Where the last move is to enter a leaf by a
-        procedure, that one's contract says it.
-        """
-        if self.moving.agrees_after(moves[-1]):
-            return moves
-        agreed = equal(Ref("Active"), self.active_in(self.held))
-        return (*moves, Pragma("Assert", (agreed,)))
+            return joined((*out, *restored))
+        return joined((*out, *claim, *effect, *self._steps(firing.entries)))
 
     def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
         """The region stops: nothing is active any more, and nothing more is left."""
@@ -187,7 +163,7 @@ class Moves:
         if self.shape.timers:
             stopped = Aggregate((Arg("others", Ref("Ravenchart.Timers.Stopped")),))
             stops.append(Assign("Self.Timers", stopped))
-        return (*stops, Assign("Active", Aggregate((Arg("others", FALSE),))))
+        return (*stops, *self.nodes.stopped(goal))
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
         return tuple(
@@ -222,9 +198,11 @@ class Moves:
         if not path:
             return (self.moving.leave(firing.domain),)
         states = [v for v in path if self.region.pseudostate(v) is None]
-        split = next((i for i, v in enumerate(states) if self._splits(v, firing)), len(states) - 1)
-        outer = states[: split + 1]
+        split = next((i for i, v in enumerate(states, 1) if self._splits(v, firing)), None)
+        outer = states[:split]
         found: list[Stmt] = []
+        if split is None and len(states) < len(path):
+            found += self.moving.exit(firing.sources[0])
         if outer and (outer[-1] == firing.sources[0] or self._splits(outer[-1], firing)):
             nested = self.region.state(outer[-1]).regions
             found += [self.moving.leave(Place(outer[-1], r.name)) for r in nested]
@@ -236,11 +214,10 @@ class Moves:
 
     def _claim(self, domain: Place) -> Pragma:
         """Everything in the region that holds the transition has been left, nothing else."""
-        nodes = self.nodes.inside(domain)
-        if domain == TOP:
-            return Pragma("Assert", (self.nodes.none_in(nodes),))
-        kept = both(Chain("not in", (Ref("N"), Ref(nodes))), Ref("Before (N)"))
-        return Pragma("Assert", (ForAll("N", NODES, equal(Ref("Active (N)"), kept)),))
+        inside = [self.shape.lane_of(domain), *self.nodes.lanes_inside(domain)]
+        others = [lane for lane in self.shape.lanes if lane not in inside]
+        kept = flat([self.nodes.agreed(self.held, others)]) if others else []
+        return Pragma("Assert", (both(*self.nodes.empty(domain), *kept),))
 
     def _steps(self, steps: tuple[Step, ...]) -> tuple[Stmt, ...]:
         found: list[Stmt] = []

@@ -211,15 +211,6 @@ class Lasting:
         """The numbers of a state's time-outs."""
         return [i for i, t in enumerate(self.shape.timers, 1) if t.source == state]
 
-    def ghosts(self) -> tuple[Decl, ...]:
-        """The state of each time-out, among the ghosts of the chart."""
-        if not self.shape.timers:
-            return ()
-        rows = [(str(i), Ref(ada_case(t.source))) for i, t in enumerate(self.shape.timers, 1)]
-        last = rows.pop()
-        holder = CaseExpr(Ref("I"), (*rows, ("others", last[1])))
-        return (Subprogram("Holder", (Param("I", "in", "Positive"),), "Node", expression=holder),)
-
     def remembered(self, leaf: str) -> list[tuple[Memory, bool]]:
         """The memories that the exit of a leaf changes; False: there is nothing to remember."""
         if not self.shape.is_literal(leaf):
@@ -235,9 +226,8 @@ class Lasting:
 
     def exited(self, state: str) -> list[Expr]:
         """After the exit of a state its time-outs are stopped and its leaf is remembered."""
-        stopped = [(i, Ref(_STOPPED)) for i in self.timed(state)]
         return [
-            *self._times(state, stopped),
+            *self._times([(i, Ref(_STOPPED)) for i in self.timed(state)]),
             *self._memory(self.remembered(state), state),
             *self._kept(),
         ]
@@ -245,21 +235,17 @@ class Lasting:
     def entered(self, vertex: str) -> list[Expr]:
         """After the entry of a state its time-outs run."""
         started = [(i, _fresh(self.shape, i)) for i in self.timed(vertex)]
-        return [*self._times(vertex, started), *self._memory([], vertex), *self._kept()]
+        return [*self._times(started), *self._memory([], vertex), *self._kept()]
 
-    def left(self, place: Place, nodes: str) -> list[Expr]:
+    def left(self, place: Place) -> list[Expr]:
         """After all in a region was left, the time-outs of what was active are stopped."""
-        facts: list[Expr] = []
-        inside = [
-            t.source for t in self.shape.timers if place in self.shape.compounds.places(t.source)
-        ]
-        if inside:
-            at = Ref("Chart.Holder (I)")
-            was = both(Chain("in", (at, Ref(nodes))), Ref("Active'Old (Chart.Holder (I))"))
-            each = IfExpr(((was, Ref(_STOPPED)),), Ref("Self.Timers'Old (I)"))
-            facts.append(self._each_timer(equal(Ref("Self.Timers (I)"), each)))
-        else:
-            facts += self._times("", [])
+        held = f"Self.{self.shape.place}"
+        values: list[tuple[int, Expr]] = []
+        for i, timed in enumerate(self.shape.timers, 1):
+            if place in self.shape.compounds.places(timed.source):
+                was = ((self.shape.in_state(held, timed.source), Ref(_STOPPED)),)
+                values.append((i, IfExpr(was, Ref(f"Self.Timers'Old ({i})"))))
+        facts = self._times(values)
         if self.shape.memories:
             facts.append(self._recalled(_inside(place)))
         return facts + self._kept()
@@ -312,20 +298,19 @@ class Lasting:
         same = both(equal(kept, before), equal(Ref("Self.Lost"), Ref("Self.Lost'Old")))
         return [IfExpr(added, same)]
 
-    def _each_timer(self, fact: Expr) -> Expr:
-        return ForAll("I", "Self.Timers'Range", fact)
-
-    def _times(self, state: str, values: Sequence[tuple[int, Expr]]) -> list[Expr]:
+    def _times(self, values: Sequence[tuple[int, Expr]]) -> list[Expr]:
+        """These time-outs are so; all others are as they were."""
         if not self.shape.timers:
             return []
         if not values:
             return [equal(Ref("Self.Timers"), Ref("Self.Timers'Old"))]
-        others = Chain("/=", (Ref("Chart.Holder (I)"), Ref(f"Chart.{ada_case(state)}")))
-        same = equal(Ref("Self.Timers (I)"), Ref("Self.Timers'Old (I)"))
-        return [
-            *(equal(Ref(f"Self.Timers ({i})"), value) for i, value in values),
-            self._each_timer(IfExpr(((others, same),), None)),
-        ]
+        facts: list[Expr] = [equal(Ref(f"Self.Timers ({i})"), value) for i, value in values]
+        if len(values) < len(self.shape.timers):
+            numbers = " | ".join(str(i) for i, _ in values)
+            others = Chain("not in" if len(values) > 1 else "/=", (Ref("I"), Ref(numbers)))
+            same = equal(Ref("Self.Timers (I)"), Ref("Self.Timers'Old (I)"))
+            facts.append(ForAll("I", "Self.Timers'Range", IfExpr(((others, same),), None)))
+        return facts
 
     def _memory(self, changed: list[tuple[Memory, bool]], leaf: str) -> list[Expr]:
         if not self.shape.memories:

@@ -1,7 +1,7 @@
 """Exits and entries of one region: a procedure for each state where one does something.
 
-A state without actions, time-outs or history is exited and entered in the set of active
-states alone: a ghost, for which there is no code. When that is done is seen by the
+A state without actions, time-outs or history is exited and entered in the ghost of the
+active states alone, for which there is no code. When that is done is seen by the
 preconditions of the procedures and by what is claimed before an effect.
 """
 
@@ -10,16 +10,13 @@ from __future__ import annotations
 from ...statechart import After, Every
 from ..ada import (
     FALSE,
-    NULL,
     TRUE,
     Aspect,
     Assign,
     Case,
-    Chain,
     Decl,
     Do,
     Expr,
-    ForAll,
     If,
     Ref,
     Stmt,
@@ -35,13 +32,9 @@ from ..naming import ada_case
 from ..terms import emit_flow
 from .compound import Enter, Place
 from .lasting import Lasting
-from .nodes import NODES, Nodes
+from .nodes import Nodes, joined
 from .places import flat
 from .shape import RegionShape
-
-
-def _node(state: str) -> str:
-    return f"Chart.{ada_case(state)}"
 
 
 def _leave_name(place: Place) -> str:
@@ -63,25 +56,30 @@ class Moving:
         self._left: set[Place] = set()
 
     def exit(self, state: str) -> tuple[Stmt, ...]:
-        """The exit of one state."""
+        """The exit of one state, or of a pseudostate that is passed."""
+        if self.region.pseudostate(state) is not None:
+            return (self.nodes.exit(state),)
         if state in self._exited or self._work_of_exit(state):
             self._exited.add(state)
             return (Do(f"Exit_{ada_case(state)}"),)
-        return (*self._noted(state, "exit"), Assign(f"Active ({_node(state)})", FALSE))
+        return (*self._noted(state, "exit"), self.nodes.exit(state))
 
     def enter(self, vertex: str) -> tuple[Stmt, ...]:
-        """The entry of one state or pseudostate."""
-        passed = self.region.pseudostate(vertex) is not None
-        if passed or vertex in self._entered or any(self._work_of_entry(vertex)):
+        """The entry of one state, or of a pseudostate that is passed."""
+        if self.region.pseudostate(vertex) is not None:
+            return (self.nodes.enter(vertex), *self._place(vertex))
+        if vertex in self._entered or any(self._work_of_entry(vertex)):
             self._entered.add(vertex)
             return (Do(f"Enter_{ada_case(vertex)}"),)
-        enter = Assign(f"Active ({_node(vertex)})", TRUE)
-        return (*self._place(vertex), enter, *self._noted(vertex, "entry"))
+        return (self.nodes.enter(vertex), *self._place(vertex), *self._noted(vertex, "entry"))
 
-    def agrees_after(self, move: Stmt) -> bool:
-        """Is it the entry of a leaf whose contract says that all active states are right?"""
-        last = filter(self.nodes.is_last, self._entered)
-        return any(move == Do(f"Enter_{ada_case(vertex)}") for vertex in last)
+    def _gone(self, state: str) -> Assign:
+        variable, value = self.nodes.exited(state)
+        return Assign(variable.text, value)
+
+    def _come(self, state: str) -> Assign:
+        variable, value = self.nodes.entered(state)
+        return Assign(variable.text, value)
 
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
@@ -101,16 +99,14 @@ class Moving:
         exits = [self._exit(s.name) for s in states if s.name in self._exited]
         places = [Place(s.name, r.name) for s in reversed(states) for r in s.regions]
         leavings = [self._leaving(p) for p in places if p in self._left]
-        vertices = [s.name for s in states] + [p.name for p in self.region.pseudostates]
-        entries = [self._entry(v) for v in vertices if v in self._entered]
+        entries = [self._entry(s.name) for s in states if s.name in self._entered]
         return (*exits, *leavings, *entries)
 
     def _kept(self) -> Expr:
         return equal(Ref(self.held), Ref(f"{self.held}'Old"))
 
     def _exit(self, state: str) -> Subprogram:
-        left = both(Chain("/=", (Ref("N"), Ref(_node(state)))), Ref("Active'Old (N)"))
-        after = ForAll("N", NODES, equal(Ref("Active (N)"), left))
+        after = equal(*self.nodes.exited(state))
         ready = self.nodes.ready_to_exit(state)
         return Subprogram(
             f"Exit_{ada_case(state)}",
@@ -121,7 +117,7 @@ class Moving:
             body=(
                 *self._noted(state, "exit"),
                 *self._work_of_exit(state),
-                Assign(f"Active ({_node(state)})", FALSE),
+                self._gone(state),
             ),
         )
 
@@ -153,26 +149,16 @@ class Moving:
         if leaves:
             moved = equal(Ref(self.held), self.shape.configuration(leaves, f"{self.held}'Old"))
         ready = both(*flat(self.nodes.ready_to_enter(vertex)))
-        if self.region.pseudostate(vertex) is not None:
-            active: Expr = equal(Ref("Active"), Ref("Active'Old"))
-            body = self._place(vertex)
-        else:
-            node = _node(vertex)
-            joined = Chain("or else", (equal(Ref("N"), Ref(node)), Ref("Active'Old (N)")))
-            active = ForAll("N", NODES, equal(Ref("Active (N)"), joined))
-            first, then = self._work_of_entry(vertex)
-            here = self._place(vertex)
-            noted = self._noted(vertex, "entry")
-            body = (*here, *first, Assign(f"Active ({node})", TRUE), *noted, *then)
-        if self.nodes.is_last(vertex):
-            active = equal(Ref("Active"), call("Chart.Active_In", Ref(self.held)))
+        active = equal(*self.nodes.entered(vertex))
+        first, then = self._work_of_entry(vertex)
+        noted = self._noted(vertex, "entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
             aspects=(
                 Aspect("Pre", ready),
                 Aspect("Post", both(moved, active, *self.lasting.entered(vertex))),
             ),
-            body=body,
+            body=(*self._place(vertex), *first, self._come(vertex), *noted, *then),
         )
 
     def _place(self, vertex: str) -> tuple[Stmt, ...]:
@@ -239,23 +225,20 @@ class Moving:
         rows: list[tuple[str, tuple[Stmt, ...]]] = []
         for child in self.region.children(place.owner, place.region):
             inner = [Do(_leave_name(Place(child.name, r.name))) for r in child.regions]
-            rows.append((shape.literal(child.name), (*inner, *self.exit(child.name))))
-        rows += [(shape.literal(p), (NULL,)) for p in shape.compounds.passed(place)]
+            rows.append((shape.literal(child.name), joined((*inner, *self.exit(child.name)))))
+        rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
         lane = shape.lane_of(place)
         leaf = shape.at(self.held, lane)
         if not self.region.state(place.owner).is_orthogonal:
             leaf = f"{shape.literal(place.owner)}'({leaf})"
-        nodes = self.nodes.inside(place)
-        agrees = ForAll(
-            "N", nodes, equal(Ref("Active (N)"), Ref(f"Chart.Active_In ({self.held}) (N)"))
-        )
-        gone = both(Chain("not in", (Ref("N"), Ref(nodes))), Ref("Active'Old (N)"))
-        after = ForAll("N", NODES, equal(Ref("Active (N)"), gone))
+        agrees = self.nodes.agreed(self.held, [lane, *self.nodes.lanes_inside(place)])
         return Subprogram(
             _leave_name(place),
             aspects=(
                 Aspect("Pre", both(*flat([shape.in_state(self.held, place.owner), agrees]))),
-                Aspect("Post", both(self._kept(), after, *self.lasting.left(place, nodes))),
+                Aspect(
+                    "Post", both(self._kept(), *self.nodes.empty(place), *self.lasting.left(place))
+                ),
             ),
             body=(Case(Ref(leaf), tuple(rows)),),
         )

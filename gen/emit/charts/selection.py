@@ -36,7 +36,6 @@ from .compound import PASSED, TOP, Firing, Kind, Place
 from .places import flat
 from .shape import HELD, PASSING, RegionShape, plain_args
 
-
 FEW = 8
 """Up to so many leaves are selected for by the function of the state around them."""
 
@@ -100,7 +99,8 @@ def _of_place(shape: RegionShape, lane: Lane, place: Place) -> list[Decl]:
     few = whole or sum(map(shape.is_literal, children)) <= FEW
     for child in literals if whole else (*children, *passed):
         name = f"In_{ada_case(child)}"
-        if few and child not in passed and shape.is_literal(child):
+        passing = shape.region.pseudostate(child) is not None
+        if few and not passing and shape.is_literal(child):
             rows.append((shape.literal(child), _in_leaf(shape, lane, child)))
         elif shape.is_literal(child):
             items.append(_of_leaf(shape, lane, child))
