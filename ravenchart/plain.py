@@ -43,10 +43,7 @@ def run(path: Path, *, as_json: bool, export: str | None) -> bool:
     """Analyse and print; whether every deadline is met, or the export was printed."""
     system = read(path)
     if export is not None:
-        try:
-            print(FORMATS[export](system.network, system.chains, path.stem), end="")
-        except Unfit as unfit:
-            raise Refused(f"{path}: error: {unfit}") from None
+        print(exported(system, export, path, path.stem), end="")
         return True
     try:
         result = analyse(system)
@@ -57,6 +54,14 @@ def run(path: Path, *, as_json: bool, export: str | None) -> bool:
     else:
         show(result, Console(highlight=False))
     return result.met
+
+
+def exported(system: PlainSystem, tool: str, path: Path, title: str) -> str:
+    """The system of a file, for that tool; `Refused` with what the tool cannot express."""
+    try:
+        return FORMATS[tool](system.network, system.chains, title)
+    except Unfit as unfit:
+        raise Refused(f"{path}: error: {unfit}") from None
 
 
 def show(result: PlainResult, out: Console) -> None:
