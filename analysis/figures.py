@@ -5,6 +5,7 @@ Times are whole ns. A response without a bound is null, with the reason.
 
 from __future__ import annotations
 
+from . import advice
 from .plain.build import PlainSystem
 from .plain.results import DETAILED, Json, PlainResult, everything, latency_figures
 from .timing import Analysis
@@ -57,5 +58,6 @@ def figures(analysis: Analysis) -> Json:
             }
             for item in system.objects
         ],
+        "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

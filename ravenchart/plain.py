@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from analysis import advice
 from analysis.core.holistic import Holistic
 from analysis.core.responses import Response
 from analysis.exchange import FORMATS, Unfit
@@ -50,7 +51,8 @@ def run(path: Path, *, as_json: bool, export: str | None) -> bool:
     except ValueError as fault:
         raise Refused(f"{path}: error: {fault}") from None
     if as_json:
-        print(json.dumps(everything(result), indent=1))
+        changes = {"changes": advice.figures(_advice(result))}
+        print(json.dumps(everything(result) | changes, indent=1))
     else:
         show(result, Console(highlight=False))
     return result.met
@@ -92,6 +94,13 @@ def show(result: PlainResult, out: Console) -> None:
             f"age {_shown(latency.age)}",
             markup=False,
         )
+    for line in advice.lines(_advice(result)):
+        out.print(line, markup=False)
+
+
+def _advice(result: PlainResult) -> advice.Advice | None:
+    """What to change so that deadlines are met; limits of chains are not looked at."""
+    return advice.of_network(result.system.network, result.scaling, met=result.found.met)
 
 
 def _miss(name: str, found: Holistic) -> str:

@@ -152,7 +152,7 @@ def remarks(network: Network, chains: Iterable[Chain]) -> Iterator[str]:
         if task.frame_count > 1:
             yield f"Of table {task.name} every row counts in every job."
     for name in in_queues(network):
-        yield f"{name} shares a first-in first-out queue: it comes with jitter up to its turn there."
+        yield f"{name} shares a first-in first-out queue: its turn there is jitter."
     for chain in chains:
         yield f"Left out: chain {chain.name}, through {', '.join(s.name for s in chain.steps)}."
 

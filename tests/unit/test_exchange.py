@@ -258,7 +258,7 @@ def on_bus(bus: Bus, *frames: Frame) -> Network:
                 *(replace(FRAME, name=n, rank=k, cost=600, queue="q") for k, n in enumerate("ab")),
             ),
             "",
-            "a has no bound in its queue",
+            "a has no bound in its queue, so there is none",
         ),
         (Network((replace(TASK, period=2**60),)), "mast", "104 days"),
         (Network((TASK,), sections=(Section("o", "main", 5),)), "mast", "no task uses o"),

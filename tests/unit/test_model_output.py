@@ -14,7 +14,7 @@ from gen.load import load
 from ravenchart.__main__ import OK, main
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-MODELS = sorted(EXAMPLES.glob("*/model.yaml"))
+MODELS = [EXAMPLES / name / "model.yaml" for name in ("cartesian_robot", "three_components")]
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda path: path.parent.name)

@@ -320,6 +320,23 @@ def test_the_command_fails_with_what_is_wrong(
     assert "must be UTF-8" in capsys.readouterr().err
 
 
+def test_what_to_change_is_told_and_is_in_the_json(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "late.csv"
+    file.write_text(
+        "task,priority,period_ms,cost_us\nfast,1,2,400\nslow,2,10,1700\n", encoding="utf-8"
+    )
+    assert main(["analyse", str(file)]) == 1
+    text = capsys.readouterr().out
+    assert "one of these is enough:\n  priorities of the core in this order: fast, slow\n" in text
+    assert max(map(len, text.splitlines())) <= 80
+    assert main(["analyse", str(file), "--json"]) == 1
+    first, second, *_ = json.loads(capsys.readouterr().out)["changes"]
+    assert (first["change"], first["order"]) == ("order", ["fast", "slow"])
+    assert (second["of"], second["factor"]) == ("slow", "941/1000")
+
+
 def test_every_column_is_described() -> None:
     page = (HERE.parents[1] / "docs" / "plain-files.md").read_text(encoding="utf-8")
     for kind, columns in KINDS.items():
