@@ -17,7 +17,7 @@ from analysis.figures import figures
 from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
 
-from . import draw, observed, plain, proving, simulate, steps
+from . import allocate, draw, observed, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -81,6 +81,15 @@ def _parser() -> argparse.ArgumentParser:
     output = analyse.add_mutually_exclusive_group()
     output.add_argument("--json", action="store_true", help="print everything as JSON")
     output.add_argument("--export", choices=plain.EXPORTS, help="print the system for that tool")
+    allocation = command(
+        "allocate", _allocate, "put the periodic rows of a model into processors anew, and check"
+    )
+    allocation.add_argument(
+        "--strategy", choices=tuple(allocate.STRATEGIES), required=True,
+        help="a processor for each period; for each instance where rates fit; as few as do; "
+        "as much slack as there is",
+    )  # fmt: skip
+    allocation.add_argument("--yaml", action="store_true", help="print it for the model")
     run = command("run", _run, "build and run the controller on this machine")
     run.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
     run.add_argument(
@@ -195,6 +204,16 @@ def _analyse(options: argparse.Namespace) -> int:
     if options.observed is not None:
         good = observed.within_budgets(checked, options.observed) and good
     return OK if good else WRONG
+
+
+def _allocate(options: argparse.Namespace) -> int:
+    checked = _checked(options, deadlines=False)
+    proposal = allocate.propose(checked.analysis, options.strategy)
+    if options.yaml:
+        print(allocate.yaml(proposal), end="")
+    else:
+        allocate.show(proposal)
+    return OK if proposal.analysis.schedulable else WRONG
 
 
 def _run(options: argparse.Namespace) -> int:
