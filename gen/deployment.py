@@ -277,10 +277,17 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         _slot(text, form.item_at("activities", index), form, site)
         for index, text in enumerate(form.activities)
     ]
-    misses = [
-        event_at(text, form.item_at("on_deadline_miss", index), site)
-        for index, text in enumerate(form.on_deadline_miss or ())
-    ]
+    misses, overruns = (
+        tuple(
+            found
+            for index, text in enumerate(given or ())
+            if (found := event_at(text, form.item_at(key, index), site)) is not None
+        )
+        for key, given in (
+            ("on_deadline_miss", form.on_deadline_miss),
+            ("on_overrun", form.on_overrun),
+        )
+    )
     sound = tuple(slot for slot in slots if slot is not None)
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
@@ -305,7 +312,8 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         stack_bytes=form.stack,
         released_by=None if bus is None else bus.name,
         slots=sound,
-        on_deadline_miss=tuple(miss for miss in misses if miss is not None),
+        on_deadline_miss=misses,
+        on_overrun=overruns,
     )
 
 

@@ -251,7 +251,7 @@ class _Sharing:
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
                 yield self.runs(instance.name, "ports")
         for processor in self.system.processors:
-            if any(one == instance.name and e in named for one, e in processor.on_deadline_miss):
+            if any(one == instance.name and e in named for one, e in processor.raises):
                 yield processor.name
         if any(one == instance.name and e in named for one, e in self.system.shutdown.raises):
             yield MAIN

@@ -362,6 +362,13 @@ class Processor:
     slots: tuple[Slot, ...]
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
+    on_overrun: tuple[tuple[str, str], ...] = ()
+    """(instance, event) raised when a row used more than its budget; empty: nobody looks."""
+
+    @property
+    def raises(self) -> tuple[tuple[str, str], ...]:
+        """(instance, event) that the processor itself may raise."""
+        return (*self.on_deadline_miss, *self.on_overrun)
 
     @property
     def cycle(self) -> int:

@@ -489,6 +489,11 @@ class ProcessorForm(Element):
     on_deadline_miss: list[OwnedReference] | None = optional(
         "`instance.Event`s raised when a release completes after the deadline."
     )
+    on_overrun: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when an activity used more processor time than its `wcet`; each "
+        "one is then compared with it as it ends.",
+        min_length=1,
+    )
 
 
 class ShutdownForm(Element):

@@ -115,6 +115,9 @@ def _processor(rows: Sequence[tuple[Processor, Slot]], taken: Sequence[str]) -> 
         on_deadline_miss=tuple(
             dict.fromkeys(miss for processor, _ in rows for miss in processor.on_deadline_miss)
         ),
+        on_overrun=tuple(
+            dict.fromkeys(over for processor, _ in rows for over in processor.on_overrun)
+        ),
     )
 
 
@@ -181,7 +184,11 @@ def yaml(proposal: Proposal) -> str:
             "    activities:",
             *(f"      - {slot.element}" for slot in one.slots),
         ]
-        if one.on_deadline_miss:
-            lines.append("    on_deadline_miss:")
-            lines += [f"      - {instance}.{event}" for instance, event in one.on_deadline_miss]
+        for key, events in (
+            ("on_deadline_miss", one.on_deadline_miss),
+            ("on_overrun", one.on_overrun),
+        ):
+            if events:
+                lines.append(f"    {key}:")
+                lines += [f"      - {instance}.{event}" for instance, event in events]
     return "\n".join(lines) + "\n"
