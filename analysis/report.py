@@ -276,7 +276,8 @@ def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
     messages = []
     for sent in analysis.frames(bus):
         message = analysis.messages[sent.frame.name]
-        bits = frame_length(message).nominal
+        length = frame_length(message, bus)
+        bits = length.nominal + length.data
         row = _item(analysis, sent.frame.name)
         delivery = analysis.deliveries.get(message.element)
         messages.append(row | {"message": message, "bits": bits, "delivery": delivery})

@@ -71,8 +71,11 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
     return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick)
 
 
-def bus_of(name: str, form: BusForm) -> Bus:
+def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
     """A bus."""
+    if form.data_rate is not None and form.data_rate < form.bit_rate:
+        message = f"the data rate of {name} is below its bit rate"
+        findings.error("RV-0613", form.at("data_rate"), message, hint="leave it out, or raise it")
     return Bus(
         name,
         form.origin,
@@ -81,6 +84,7 @@ def bus_of(name: str, form: BusForm) -> Bus:
         form.transmit_depth,
         Ns(form.driver_wcet),
         None if form.errors is None else BusErrors(Ns(form.errors.period), form.errors.burst),
+        form.data_rate,
     )
 
 
@@ -209,7 +213,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     if bus is None or broken or gone or period is None:
         return None
     type_ = (source or sound[0])[1].type
-    signals = signals_of(type_)
+    signals, fd = signals_of(type_), form.format == "fd"
     return Message(
         name=name,
         origin=form.origin,
@@ -218,11 +222,12 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         extended=form.extended,
         type=type_,
         signals=signals,
-        length=length_of(signals),
+        length=length_of(signals, fd=fd),
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
         period=period,
         deadline=None if form.deadline is None else Ns(form.deadline),
+        fd=fd,
     )
 
 

@@ -226,6 +226,8 @@ class Bus:
     transmit_depth: int
     driver_wcet: Ns
     errors: BusErrors | None = None
+    data_rate: int | None = None
+    """In bit/s, of the data of CAN FD frames; None: that of the rest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,12 +293,14 @@ class Message:
     type: Type
     signals: tuple[Signal, ...]
     length: int
-    """Data length in bytes, 1 .. 8."""
+    """Data length in bytes, 1 .. 8; of a CAN FD frame one of its sizes, up to 64."""
     source: End | None
     targets: tuple[End, ...]
     period: Ns
     deadline: Ns | None = None
     """From the event that leads to it; None: the period."""
+    fd: bool = False
+    """A CAN FD frame, which switches to the bus's data rate where there is one."""
 
     @property
     def element(self) -> str:

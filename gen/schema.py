@@ -15,6 +15,7 @@ from pydantic import Field as PydanticField
 from .schema_base import (
     BitRate,
     Constant,
+    DataRate,
     Element,
     ExpressionText,
     Name,
@@ -421,6 +422,10 @@ class BusForm(Element):
     receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
     transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
+    data_rate: DataRate | None = optional(
+        "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
+        "do not switch unless given."
+    )
 
 
 class InstanceForm(Element):
@@ -444,6 +449,11 @@ class MessageForm(Element):
     bus: Reference = key("The bus.")
     id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
     extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
+    format: Literal["classic", "fd"] = PydanticField(
+        default="classic",
+        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64: analysed, "
+        "not generated yet.",
+    )
     from_: OwnedReference | None = optional(
         "`instance.port` that sends; without it the sender is outside the system.", alias="from"
     )
