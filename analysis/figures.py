@@ -27,7 +27,11 @@ def figures(analysis: Analysis) -> Json:
         "load": {
             name: f"{share.numerator}/{share.denominator}"
             for name, share in (
-                *((node.name, analysis.utilisation(node.name)) for node in system.nodes),
+                *(
+                    (core, analysis.utilisation(core))
+                    for n in system.nodes
+                    for core in n.core_names
+                ),
                 *((bus.name, analysis.bus_load(bus)) for bus in system.buses),
             )
         },

@@ -44,7 +44,7 @@ def network_of(system: System) -> Network:
             for user in item.users
             if item.section
         ),
-        platforms={node.name: _platform(node) for node in system.nodes},
+        platforms={core: _platform(node) for node in system.nodes for core in node.core_names},
         ceilings={item.element: item.ceiling for item in system.objects},
     )
 
@@ -61,7 +61,7 @@ def _task(task: model.Task, system: System) -> Task:
         deadline=task.deadline,
         cost=0 if rows else task.budget,
         jitter=task.jitter,
-        core=task.node,
+        core=system.node(task.node).core_name(task.core),
         rows=rows,
         timed=task.timed and system.node(task.node).tick is not None,
         sporadic=task.sporadic,

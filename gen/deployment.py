@@ -68,7 +68,7 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
                 f"{shown(tick.period)}"
             )
             findings.error("RV-0703", form.tick.at("wcet"), message)
-    return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick)
+    return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick, form.cores)
 
 
 def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
@@ -301,6 +301,11 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         return None
     if form.lost("period") or form.lost("released_by"):
         return None
+    if form.core > node.cores:
+        message = f"{name} is on core {form.core}, and {node.name} has {node.cores}"
+        hint = f"give the node `cores: {form.core}`, or the processor another core"
+        findings.error("RV-0710", form.at("core"), message, hint=hint)
+        return None
     if form.deadline is not None and form.deadline > period and whole:
         message = f"the deadline of {name} is longer than its period"
         findings.error("RV-0703", form.at("deadline"), message)
@@ -319,6 +324,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         slots=sound,
         on_deadline_miss=misses,
         on_overrun=overruns,
+        core=form.core,
     )
 
 

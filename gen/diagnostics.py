@@ -140,6 +140,8 @@ CODES: Mapping[str, str] = {
     "RV-0707": "A processor's table holds an activity of an instance on another node.",
     "RV-0708": "A processor's offset is not shorter than its period.",
     "RV-0709": "A critical section is longer than what executes it.",
+    "RV-0710": "A processor is on a core that its node does not have.",
+    "RV-0711": "A protected object is used on several cores.",
     "RV-0801": "A section without which there is no system is missing or empty.",
     "RV-0802": "Distribution over several nodes or buses is not there yet.",
     "RV-0803": "Something that the system has once is given twice.",

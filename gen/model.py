@@ -189,7 +189,7 @@ class Tick:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A processor core with its platform figures, all worst cases in ns."""
+    """One processor core or several alike, with platform figures, all worst cases in ns."""
 
     name: str
     origin: Origin
@@ -204,6 +204,18 @@ class Node:
     """Work above all tasks that makes one job ready."""
     tick: Tick | None = None
     """What makes timed releases late by up to its period; None: a timer that is exact."""
+    cores: int = 1
+
+    @property
+    def core_names(self) -> tuple[str, ...]:
+        """The cores by name: that of the node where there is one, ``node.1`` and on otherwise."""
+        if self.cores == 1:
+            return (self.name,)
+        return tuple(f"{self.name}.{number}" for number in range(1, self.cores + 1))
+
+    def core_name(self, number: int) -> str:
+        """The name of the core with that number, from 1."""
+        return self.core_names[number - 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -368,6 +380,8 @@ class Processor:
     """(instance, event) raised when a release completes after its deadline."""
     on_overrun: tuple[tuple[str, str], ...] = ()
     """(instance, event) raised when a row used more than its budget; empty: nobody looks."""
+    core: int = 1
+    """The core of the node that it runs on."""
 
     @property
     def raises(self) -> tuple[tuple[str, str], ...]:
@@ -408,6 +422,7 @@ class Task:
     released_by: str | None = None
     sporadic: bool = False
     timed: bool = False
+    core: int = 1
 
 
 @dataclass(frozen=True, slots=True)

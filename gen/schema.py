@@ -387,7 +387,7 @@ class TickForm(Element):
 
 
 class NodeForm(Element):
-    """A processor core and its platform figures, all of them worst cases."""
+    """A processor core, or several alike, and its platform figures, all of them worst cases."""
 
     context_switch: Span = key("Time of one context switch.")
     critical_section: Span = key("Longest time inside any protected operation.")
@@ -402,6 +402,12 @@ class NodeForm(Element):
     )
     tick: TickForm | None = optional(
         "The timer's periodic interrupt, where it has one; exact time-outs unless given."
+    )
+    cores: int = PydanticField(
+        default=1,
+        ge=1,
+        le=64,
+        description="How many cores; with several the model is analysed, not generated yet.",
     )
 
 
@@ -480,6 +486,9 @@ class ProcessorForm(Element):
 
     node: Reference = key("The node it runs on.")
     released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
+    core: int = PydanticField(
+        default=1, ge=1, description="The core of the node that runs it, counted from 1."
+    )
     period: PositiveSpan | None = optional(
         "Shortest period in the table unless given; the least separation of a sporadic processor, "
         "which needs it."

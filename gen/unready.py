@@ -13,6 +13,10 @@ UNREADY = "RV-0804"
 
 def unready(system: System) -> Iterator[Diagnostic]:
     """An error for each element that has no code yet."""
+    for node in system.nodes:
+        if node.cores > 1:
+            text = f"{node.name} has {node.cores} cores: several are analysed, not generated yet"
+            yield error(UNREADY, node.origin, text, hint="put all processors on one core")
     for message in system.messages:
         if message.fd:
             text = f"{message.name} is a CAN FD frame: CAN FD is analysed, not generated yet"

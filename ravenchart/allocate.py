@@ -36,7 +36,7 @@ STRATEGIES = {
 """The strategies by the word that chooses one."""
 
 URGENT = "urgent"
-"""The object that stands for all of them while searching: every activity uses some."""
+"""The object that stands for all of a core while searching: every activity uses some."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +62,16 @@ def propose(analysis: Analysis, strategy: str) -> Proposal:
             slot.timing.wcet,
             slot.timing.deadline,
             slot.owner,
-            processor.node,
+            _core(system, processor),
         )
         for processor, slot in home.values()
     ]
     sections = [
-        Section(URGENT, slot.element, system.node(processor.node).critical_section)
+        Section(
+            f"{URGENT} {_core(system, processor)}",
+            slot.element,
+            system.node(processor.node).critical_section,
+        )
         for processor, slot in home.values()
         if system.node(processor.node).critical_section
     ]
@@ -85,6 +89,10 @@ def propose(analysis: Analysis, strategy: str) -> Proposal:
     told = replace(system, processors=tuple(_unranked(p) for p in (*kept, *made)))
     other = completed(told)
     return Proposal(other, analyse(other), tuple(processor.name for processor in kept))
+
+
+def _core(system: System, processor: Processor) -> str:
+    return system.node(processor.node).core_name(processor.core)
 
 
 def _as_found(task: Task, analysis: Analysis) -> Task:
@@ -172,6 +180,8 @@ def yaml(proposal: Proposal) -> str:
     lines = [f"# {verdict_line(proposal.analysis)}", "processors:"]
     for one in proposal.system.processors:
         lines += [f"  {one.name}:", f"    node: {one.node}"]
+        if one.core > 1:
+            lines.append(f"    core: {one.core}")
         if one.released_by is not None:
             lines.append(f"    released_by: {one.released_by}")
         lines.append(f"    period: {duration(one.period)}")
