@@ -76,7 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     analyse.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
     analyse.add_argument(
         "--observed", type=Path, metavar="FILE",
-        help="hold the execution times in the trace of a run against the budgets",
+        help="hold execution times against budgets: those of a run (trace) or, for CSV and JSON, of a file",
     )  # fmt: skip
     output = analyse.add_mutually_exclusive_group()
     output.add_argument("--json", action="store_true", help="print everything as JSON")
@@ -180,12 +180,11 @@ def _analyse(options: argparse.Namespace) -> int:
     if printed and (options.html is not None or options.observed is not None):
         raise Refused("ravenchart: error: --json and --export go without --html and --observed")
     if options.model.suffix.lower() in plain.ENDINGS:
-        if options.html is not None or options.observed is not None:
-            raise Refused(
-                f"{options.model}: error: --html and --observed are for models: "
-                "a plain file has no program whose trace could be read"
-            )
-        met = plain.run(options.model, as_json=options.json, export=options.export)
+        if options.html is not None:
+            raise Refused(f"{options.model}: error: --html is for models")
+        met = plain.run(
+            options.model, as_json=options.json, export=options.export, seen=options.observed
+        )
         return OK if met else WRONG
     checked = _checked(options, deadlines=False)
     if options.export is not None:

@@ -67,7 +67,7 @@ def test_a_trace_that_says_nothing_is_refused(
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["a.csv", "--observed", "x"], "--html and --observed are for models: a plain file has no"),
+        (["a.csv", "--html", "x"], "--html is for models"),
         ([str(MODEL), "--json", "--html", "x"], "--json and --export go without --html and"),
     ],
 )

@@ -337,6 +337,39 @@ def test_what_to_change_is_told_and_is_in_the_json(
     assert (second["of"], second["factor"]) == ("slow", "941/1000")
 
 
+TABLE = """\
+task,priority,period_ms,cost_us
+a,1,10,5
+
+row,task,cost_us,every
+r,a,20,1
+s,a,30,2
+"""
+
+
+@pytest.mark.parametrize(
+    ("seen", "status", "told"),
+    [
+        ("task,cost_us\na,55\n", 0, "a: 55 us, within its budget of 55 us"),
+        ("task,cost_us\na,54.9999\na,55.0001\n", 1, "a: 55.1 us, ABOVE its budget of 55 us"),
+        ("row,task,cost_ns\ns,a,30001\n", 1, "a.s: 30.1 us, ABOVE its budget of 30 us"),
+        ("row,task,cost_us\ns,a,30\n", 0, "a.r: not executed in this run"),
+        ("task,cost_us\nb,1\n", 1, "seen.csv:2: error: there is no task b"),
+        ("core,tick_us\nb,1\n", 1, "error: core is none of task, row, message"),
+        ("task,cost\na,1\n", 1, "must say its unit"),
+        ("", 1, "no execution time was observed"),
+    ],
+)
+def test_observed_times_are_held_against_budgets(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], seen: str, status: int, told: str
+) -> None:
+    model, times = tmp_path / "a.csv", tmp_path / "seen.csv"
+    model.write_text(TABLE, encoding="utf-8")
+    times.write_text(seen, encoding="utf-8")
+    assert main(["analyse", str(model), "--observed", str(times)]) == status
+    assert told in "".join(capsys.readouterr())
+
+
 def test_every_column_is_described() -> None:
     page = (HERE.parents[1] / "docs" / "plain-files.md").read_text(encoding="utf-8")
     for kind, columns in KINDS.items():
