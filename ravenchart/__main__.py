@@ -76,7 +76,8 @@ def _parser() -> argparse.ArgumentParser:
     analyse.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
     analyse.add_argument(
         "--observed", type=Path, metavar="FILE",
-        help="hold execution times against budgets: those of a run (trace) or, for CSV and JSON, of a file",
+        help="hold the execution times in the trace of a run, or of a plain file in a plain file, "
+        "against the budgets",
     )  # fmt: skip
     output = analyse.add_mutually_exclusive_group()
     output.add_argument("--json", action="store_true", help="print everything as JSON")
