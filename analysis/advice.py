@@ -7,14 +7,14 @@ these say what can be changed, `core.changes` how much of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from .core import changes, holistic
 from .core.changes import Change, Kind, Met, Part
 from .core.holistic import Network
-from .core.sensitivity import NetworkScaling, scaled_network
+from .core.sensitivity import NetworkScaling, network_scaling, scaled_network
 from .timing import Analysis
 from .units import microseconds, percent
 
@@ -29,6 +29,9 @@ TRIED = 24
 
 SHOWN = 12
 """Changes that are told."""
+
+WEIGHED = 6
+"""Parts of most load of which it is told what they are worth where nothing is enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +49,17 @@ class Choices:
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """The changes, best first, and whether they are for ``room`` or to meet deadlines."""
+    """The changes, best first, and whether they are for ``room`` or to meet deadlines.
+
+    Where none is enough, ``relief`` tells what each of some parts is worth, most first: the
+    factor of all execution times with which deadlines are met without that part.
+    """
 
     network: Network
     choices: Choices
     room: bool
     changes: tuple[Change, ...]
+    relief: tuple[tuple[str, Fraction], ...] = ()
 
 
 def of_model(analysis: Analysis) -> Advice | None:
@@ -116,7 +124,25 @@ def advice(
     late = None if scaling is None else scaling.binding
     if late in choices.order and late not in tasks and late is not None:
         found += changes.moved(network, late, aim)
-    return Advice(network, choices, met, changes.ranked(found))
+    relief: list[tuple[str, Fraction]] = []
+    if not any(change.enough for change in found):
+        relief = _relief(network, {name: choices.costs[name] for name in costs[:WEIGHED]}, tasks)
+    return Advice(network, choices, met, changes.ranked(found), tuple(relief))
+
+
+def _relief(
+    network: Network, costs: Mapping[str, Sequence[Part]], tasks: Collection[str]
+) -> list[tuple[str, Fraction]]:
+    """What meeting all deadlines takes without each part, where that is less than with it."""
+    nearly_none = Fraction(1, changes.STEPS)
+    present = network_scaling(network, tasks, changes.STEPS)
+    found = []
+    for name, members in costs.items():
+        without = changes.shrunk(network, members, nearly_none)
+        scaling = network_scaling(without, tasks, changes.STEPS)
+        if scaling is not None and (present is None or scaling.factor > present.factor):
+            found.append((name, scaling.factor))
+    return sorted(found, key=lambda pair: -pair[1])
 
 
 def _load(network: Network, chosen: Sequence[Part]) -> Fraction:
@@ -141,7 +167,15 @@ def lines(found: Advice | None) -> tuple[str, ...]:
     told += [f"  {_told(change, found)}" for change in enough[:SHOWN]]
     if len(enough) > SHOWN:
         told.append(f"  and {len(enough) - SHOWN} more")
+    told += [f"  {_worth(name, factor)}" for name, factor in found.relief]
     return (*told, *_not_enough(rest))
+
+
+def _worth(name: str, factor: Fraction) -> str:
+    """What a part is worth, in words."""
+    if factor >= 1:
+        return f"without {name}, all else may grow by {float(factor - 1) * 100:.1f} %"
+    return f"without {name}, all else must still shrink by {percent(1 - factor)}"
 
 
 def figures(found: Advice | None) -> list[dict[str, object]]:

@@ -133,6 +133,20 @@ def test_what_to_change_is_said_on_the_terminal_and_in_the_report() -> None:
         assert places == sorted(places)
 
 
+def test_where_nothing_suffices_alone_it_is_told_what_helps_most() -> None:
+    """0.9 + 0.8 + 0.5: without the first 1.3 is left, 1 / 1.3 = 0.769; without the last 1.7."""
+    tasks = [task(n, p, c, 1_000_000) for n, p, c in
+             (("a", 3, 900_000), ("b", 2, 800_000), ("c", 1, 500_000))]  # fmt: skip
+    lines = advice.lines(advice.of_model(analyse(system(tasks))))
+    assert lines[:4] == (
+        "No single change would meet all deadlines.",
+        "  without a, all else must still shrink by 23.2 %",
+        "  without b, all else must still shrink by 28.7 %",
+        "  without c, all else must still shrink by 41.2 %",
+    )
+    assert "However short, not alone: a, b, c." in lines
+
+
 def test_a_tight_system_is_told_what_gives_it_room_and_one_with_room_nothing() -> None:
     tasks = [task("a", 2, 500, 1_000), task("b", 1, 450, 1_000)]
     text = printed(system(tasks))
