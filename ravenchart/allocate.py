@@ -165,9 +165,7 @@ def show(proposal: Proposal, out: Console | None = None) -> None:
             )
     out.print(table)
     out.print("Times in us. Drivers, the host probe and sporadic processors stay as they are;")
-    out.print(
-        "priorities are by deadline. Strategies do not look at limits of chains."
-    )
+    out.print("priorities are by deadline. Strategies do not look at limits of chains.")
     out.print("`--yaml` prints `processors:` to put into the model.")
 
 
