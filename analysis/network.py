@@ -14,7 +14,7 @@ from gen.model import Message, System
 
 from .core.blocking import Section
 from .core.bus import Bus, Errors, Frame
-from .core.frames import Bits, classic_bits, rank
+from .core.frames import Bits, classic_bits, fd_bits, rank
 from .core.holistic import Network
 from .core.platform import Platform
 from .core.tasks import Row, Task
@@ -44,7 +44,7 @@ def network_of(system: System) -> Network:
             for user in item.users
             if item.section
         ),
-        platforms={node.name: _platform(node) for node in system.nodes},
+        platforms={core: _platform(node) for node in system.nodes for core in node.core_names},
         ceilings={item.element: item.ceiling for item in system.objects},
     )
 
@@ -61,7 +61,7 @@ def _task(task: model.Task, system: System) -> Task:
         deadline=task.deadline,
         cost=0 if rows else task.budget,
         jitter=task.jitter,
-        core=task.node,
+        core=system.node(task.node).core_name(task.core),
         rows=rows,
         timed=task.timed and system.node(task.node).tick is not None,
         sporadic=task.sporadic,
@@ -82,13 +82,16 @@ def _frame(message: Message, bus: model.Bus) -> Frame:
         rank=rank(message.identifier, extended=message.extended),
         period=message.period,
         deadline=message.limit,
-        cost=frame_length(message).time(bus.bit_rate),
+        cost=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
         queue="" if message.source is None else f"{bus.name}.transmit",
     )
 
 
-def frame_length(message: Message) -> Bits:
+def frame_length(message: Message, bus: model.Bus) -> Bits:
     """The longest frame of a message, to the beginning of the next frame."""
+    if message.fd:
+        switched = bus.data_rate is not None
+        return fd_bits(message.length, extended=message.extended, switched=switched)
     return classic_bits(message.length, extended=message.extended)
 
 

@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from gen.model import Bus
 
-from . import plots, units
+from . import advice, plots, units
 from .core.responses import Response
 from .core.tasks import plain
 from .critical import schedule
@@ -196,6 +196,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "good": analysis.schedulable,
         "growth": growth_line(analysis),
         "binding": binding_lines(analysis),
+        "advice": advice.lines(advice.of_model(analysis)),
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],
@@ -275,7 +276,8 @@ def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
     messages = []
     for sent in analysis.frames(bus):
         message = analysis.messages[sent.frame.name]
-        bits = frame_length(message).nominal
+        length = frame_length(message, bus)
+        bits = length.nominal + length.data
         row = _item(analysis, sent.frame.name)
         delivery = analysis.deliveries.get(message.element)
         messages.append(row | {"message": message, "bits": bits, "delivery": delivery})

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from . import advice
 from .timing import Analysis, Verdict
 from .units import microseconds
 from .words import WORDS, load_lines, verdict_line
@@ -39,6 +40,8 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
     if analysis.limited:
         out.print(_chains(analysis))
     out.print(Text(LEGEND, style="dim"))
+    for line in advice.lines(advice.of_model(analysis)):
+        out.print(Text(line))
 
 
 def _new_table(name: str, *columns: str) -> Table:

@@ -130,10 +130,10 @@ class Analysis:
         """Buses whose messages and errors may need more than all of their time."""
         return tuple(bus for bus in self.system.buses if self.bus_load(bus) > 1)
 
-    def utilisation(self, node: str) -> Fraction:
-        """Share of one node's core that its tasks and overheads may need together."""
-        order = tuple(task for task in self.network.tasks if task.core == node)
-        return Level(order, len(order), self.network.platforms[node]).load
+    def utilisation(self, core: str) -> Fraction:
+        """Share of one core that its tasks and overheads may need together."""
+        order = tuple(task for task in self.network.tasks if task.core == core)
+        return Level(order, len(order), self.network.platforms[core]).load
 
     def bus_load(self, bus: Bus) -> Fraction:
         """Share of a bus that messages and errors need, at their longest and most frequent."""

@@ -52,7 +52,11 @@ def verdict_line(analysis: Analysis) -> str:
 def load_lines(analysis: Analysis) -> tuple[str, ...]:
     """The load of each core and bus, how far the budgets may grow, and what limits them."""
     system = analysis.system
-    lines = [f"{n.name}: core load {percent(analysis.utilisation(n.name))}" for n in system.nodes]
+    lines = [
+        f"{core}: core load {percent(analysis.utilisation(core))}"
+        for node in system.nodes
+        for core in node.core_names
+    ]
     lines += [
         f"{bus.name}: bus load {percent(analysis.bus_load(bus))}, every frame at its longest"
         for bus in system.buses

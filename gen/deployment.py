@@ -68,11 +68,14 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
                 f"{shown(tick.period)}"
             )
             findings.error("RV-0703", form.tick.at("wcet"), message)
-    return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick)
+    return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick, form.cores)
 
 
-def bus_of(name: str, form: BusForm) -> Bus:
+def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
     """A bus."""
+    if form.data_rate is not None and form.data_rate < form.bit_rate:
+        message = f"the data rate of {name} is below its bit rate"
+        findings.error("RV-0613", form.at("data_rate"), message, hint="leave it out, or raise it")
     return Bus(
         name,
         form.origin,
@@ -81,6 +84,7 @@ def bus_of(name: str, form: BusForm) -> Bus:
         form.transmit_depth,
         Ns(form.driver_wcet),
         None if form.errors is None else BusErrors(Ns(form.errors.period), form.errors.burst),
+        form.data_rate,
     )
 
 
@@ -209,7 +213,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     if bus is None or broken or gone or period is None:
         return None
     type_ = (source or sound[0])[1].type
-    signals = signals_of(type_)
+    signals, fd = signals_of(type_), form.format == "fd"
     return Message(
         name=name,
         origin=form.origin,
@@ -218,11 +222,12 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         extended=form.extended,
         type=type_,
         signals=signals,
-        length=length_of(signals),
+        length=length_of(signals, fd=fd),
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
         period=period,
         deadline=None if form.deadline is None else Ns(form.deadline),
+        fd=fd,
     )
 
 
@@ -277,10 +282,17 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         _slot(text, form.item_at("activities", index), form, site)
         for index, text in enumerate(form.activities)
     ]
-    misses = [
-        event_at(text, form.item_at("on_deadline_miss", index), site)
-        for index, text in enumerate(form.on_deadline_miss or ())
-    ]
+    misses, overruns = (
+        tuple(
+            found
+            for index, text in enumerate(given or ())
+            if (found := event_at(text, form.item_at(key, index), site)) is not None
+        )
+        for key, given in (
+            ("on_deadline_miss", form.on_deadline_miss),
+            ("on_overrun", form.on_overrun),
+        )
+    )
     sound = tuple(slot for slot in slots if slot is not None)
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
@@ -288,6 +300,11 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     if node is None or period is None or (form.released_by is not None and bus is None):
         return None
     if form.lost("period") or form.lost("released_by"):
+        return None
+    if form.core > node.cores:
+        message = f"{name} is on core {form.core}, and {node.name} has {node.cores}"
+        hint = f"give the node `cores: {form.core}`, or the processor another core"
+        findings.error("RV-0710", form.at("core"), message, hint=hint)
         return None
     if form.deadline is not None and form.deadline > period and whole:
         message = f"the deadline of {name} is longer than its period"
@@ -305,7 +322,9 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         stack_bytes=form.stack,
         released_by=None if bus is None else bus.name,
         slots=sound,
-        on_deadline_miss=tuple(miss for miss in misses if miss is not None),
+        on_deadline_miss=misses,
+        on_overrun=overruns,
+        core=form.core,
     )
 
 

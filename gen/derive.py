@@ -109,6 +109,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
             slots=processor.slots,
             sporadic=processor.released_by is not None,
             timed=True,
+            core=processor.core,
         )
         for processor in system.processors
     ]
@@ -128,6 +129,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                 budget=bus.driver_wcet,
                 priority=top + 1,
                 released_by=releaser,
+                core=driver_core(system, bus),
             )
             for way, releaser in ways
         ]
@@ -147,6 +149,18 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                 )
             )
     return tuple(tasks)
+
+
+def driver_core(system: System, bus: Bus) -> int:
+    """The core of a bus's driver: that of its reception, or else of what sends first."""
+    for processor in system.processors:
+        if processor.released_by == bus.name:
+            return processor.core
+    for message in system.messages:
+        if message.bus == bus.name:
+            for row in sending_rows(system, message):
+                return system.processor_of(row).core
+    return 1
 
 
 def sender_of(system: System, message: Message) -> str | None:
@@ -251,7 +265,7 @@ class _Sharing:
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
                 yield self.runs(instance.name, "ports")
         for processor in self.system.processors:
-            if any(one == instance.name and e in named for one, e in processor.on_deadline_miss):
+            if any(one == instance.name and e in named for one, e in processor.raises):
                 yield processor.name
         if any(one == instance.name and e in named for one, e in self.system.shutdown.raises):
             yield MAIN
@@ -297,10 +311,13 @@ def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...
         objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
     for processor in system.processors:
         objects.append(sharing.made(f"{processor.name}.monitor", [processor.name]))
-    everyone = [*(processor.name for processor in system.processors), MAIN]
-    objects.append(sharing.made("health", everyone))
-    if any(node.trace_depth for node in system.nodes):
-        objects.append(sharing.made("trace", everyone))
+    kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
+    for core in sorted({1, *(processor.core for processor in system.processors)}):
+        here = [processor.name for processor in system.processors if processor.core == core]
+        for name in kept:
+            #  The main program runs on the first core, and looks at the others' at the end.
+            own, users = (name, [*here, MAIN]) if core == 1 else (f"{name}_{core}", here)
+            objects.append(sharing.made(own, users))
     for node in system.nodes:
         if node.probe is not None:
             element = f"{node.name}.{PROBE}"

@@ -19,6 +19,7 @@ from .model import System
 from .names import Findings
 from .resolve import resolve
 from .rules import violations
+from .rules_cores import shared_across_cores
 from .schema import ModelFile
 from .terms import Origin
 from .tree import grow, lines_of
@@ -145,6 +146,7 @@ def load(path: Path, read: Reader = read_file) -> Loaded:
         findings.items.extend(violations(resolved))
         if not any(item.is_error for item in findings.items):
             system = completed(resolved.system)
+            findings.items.extend(shared_across_cores(system))
             findings.items.extend(clashes(system))
             if any(item.is_error for item in findings.items):
                 system = None

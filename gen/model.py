@@ -189,7 +189,7 @@ class Tick:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A processor core with its platform figures, all worst cases in ns."""
+    """One processor core or several alike, with platform figures, all worst cases in ns."""
 
     name: str
     origin: Origin
@@ -204,6 +204,18 @@ class Node:
     """Work above all tasks that makes one job ready."""
     tick: Tick | None = None
     """What makes timed releases late by up to its period; None: a timer that is exact."""
+    cores: int = 1
+
+    @property
+    def core_names(self) -> tuple[str, ...]:
+        """The cores by name: that of the node where there is one, ``node.1`` and on otherwise."""
+        if self.cores == 1:
+            return (self.name,)
+        return tuple(f"{self.name}.{number}" for number in range(1, self.cores + 1))
+
+    def core_name(self, number: int) -> str:
+        """The name of the core with that number, from 1."""
+        return self.core_names[number - 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,6 +238,8 @@ class Bus:
     transmit_depth: int
     driver_wcet: Ns
     errors: BusErrors | None = None
+    data_rate: int | None = None
+    """In bit/s, of the data of CAN FD frames; None: that of the rest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,12 +305,14 @@ class Message:
     type: Type
     signals: tuple[Signal, ...]
     length: int
-    """Data length in bytes, 1 .. 8."""
+    """Data length in bytes, 1 .. 8; of a CAN FD frame one of its sizes, up to 64."""
     source: End | None
     targets: tuple[End, ...]
     period: Ns
     deadline: Ns | None = None
     """From the event that leads to it; None: the period."""
+    fd: bool = False
+    """A CAN FD frame, which switches to the bus's data rate where there is one."""
 
     @property
     def element(self) -> str:
@@ -362,6 +378,15 @@ class Processor:
     slots: tuple[Slot, ...]
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
+    on_overrun: tuple[tuple[str, str], ...] = ()
+    """(instance, event) raised when a row used more than its budget; empty: nobody looks."""
+    core: int = 1
+    """The core of the node that it runs on."""
+
+    @property
+    def raises(self) -> tuple[tuple[str, str], ...]:
+        """(instance, event) that the processor itself may raise."""
+        return (*self.on_deadline_miss, *self.on_overrun)
 
     @property
     def cycle(self) -> int:
@@ -397,6 +422,7 @@ class Task:
     released_by: str | None = None
     sporadic: bool = False
     timed: bool = False
+    core: int = 1
 
 
 @dataclass(frozen=True, slots=True)

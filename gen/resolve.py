@@ -231,7 +231,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         lambda key, form: parts_of(key, form, types, literals, name, findings),
     )
     nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
-    buses = sections.named("buses", "bus", bus_of)
+    buses = sections.named("buses", "bus", lambda name, form: bus_of(name, form, findings))
     instances = sections.scope("instances", "instance")
     site = Site(nodes, buses, parts, instances, findings)
     sections.fill("instances", instances, lambda key, form: instance_of(key, form, site))

@@ -15,7 +15,7 @@ from .model import Bus, Component, Direction, Instance, Message, Processor, Slot
 from .quantities import shown
 from .resolve import Resolved
 from .rules_components import COMPONENT_RULES
-from .signals import FRAME_BITS, bits_of
+from .signals import bits_of, room_of
 from .terms import EnumerationType, Origin
 
 Rule = Callable[[Resolved], Iterator[Diagnostic]]
@@ -171,15 +171,14 @@ def identifiers_are_unique(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def payloads_fit(resolved: Resolved) -> Iterator[Diagnostic]:
-    """The signals of a message fit a CAN frame."""
+    """The signals of a message fit its CAN frame."""
     for item in resolved.system.messages:
         bits = bits_of(item.signals)
-        if bits > FRAME_BITS:
+        room = room_of(fd=item.fd)
+        if bits > room:
             widths = ", ".join(f"{one.field or item.name} {one.width}" for one in item.signals)
             shortened = widths if len(widths) <= 200 else widths[:197] + "..."
-            message = (
-                f"{item.name} needs {bits} bits for {item.type.name}, and a frame has {FRAME_BITS}"
-            )
+            message = f"{item.name} needs {bits} bits for {item.type.name}, and a frame has {room}"
             hint = f"narrow its ranges or split it; bits by field: {shortened}"
             notes = [(item.type.origin, f"{item.type.name} is declared here")]
             yield error("RV-0610", item.origin, message, notes=notes, hint=hint)

@@ -90,7 +90,7 @@ def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iter
     raised = {e for item in component.runnables() for e in item.raises}
     raised |= {e for p in component.ports for e in (p.on_arrival, p.on_stale, p.on_overflow) if e}
     raised |= {region.on_overflow for region in component.regions if region.on_overflow}
-    outside = [pair for processor in system.processors for pair in processor.on_deadline_miss]
+    outside = [pair for processor in system.processors for pair in processor.raises]
     raised |= {e for owner, e in (*outside, *system.shutdown.raises) if owner in instances}
     used = {event for region in component.regions for event in region.events()}
     for event in component.events:

@@ -15,6 +15,7 @@ from pydantic import Field as PydanticField
 from .schema_base import (
     BitRate,
     Constant,
+    DataRate,
     Element,
     ExpressionText,
     Name,
@@ -386,7 +387,7 @@ class TickForm(Element):
 
 
 class NodeForm(Element):
-    """A processor core and its platform figures, all of them worst cases."""
+    """A processor core, or several alike, and its platform figures, all of them worst cases."""
 
     context_switch: Span = key("Time of one context switch.")
     critical_section: Span = key("Longest time inside any protected operation.")
@@ -401,6 +402,12 @@ class NodeForm(Element):
     )
     tick: TickForm | None = optional(
         "The timer's periodic interrupt, where it has one; exact time-outs unless given."
+    )
+    cores: int = PydanticField(
+        default=1,
+        ge=1,
+        le=64,
+        description="How many cores; with several the model is analysed, not generated yet.",
     )
 
 
@@ -421,6 +428,10 @@ class BusForm(Element):
     receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
     transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
+    data_rate: DataRate | None = optional(
+        "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
+        "do not switch unless given."
+    )
 
 
 class InstanceForm(Element):
@@ -444,6 +455,11 @@ class MessageForm(Element):
     bus: Reference = key("The bus.")
     id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
     extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
+    format: Literal["classic", "fd"] = PydanticField(
+        default="classic",
+        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64: analysed, "
+        "not generated yet.",
+    )
     from_: OwnedReference | None = optional(
         "`instance.port` that sends; without it the sender is outside the system.", alias="from"
     )
@@ -470,6 +486,9 @@ class ProcessorForm(Element):
 
     node: Reference = key("The node it runs on.")
     released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
+    core: int = PydanticField(
+        default=1, ge=1, description="The core of the node that runs it, counted from 1."
+    )
     period: PositiveSpan | None = optional(
         "Shortest period in the table unless given; the least separation of a sporadic processor, "
         "which needs it."
@@ -488,6 +507,11 @@ class ProcessorForm(Element):
     )
     on_deadline_miss: list[OwnedReference] | None = optional(
         "`instance.Event`s raised when a release completes after the deadline."
+    )
+    on_overrun: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when an activity used more processor time than its `wcet`; each "
+        "one is then compared with it as it ends.",
+        min_length=1,
     )
 
 

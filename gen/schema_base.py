@@ -83,6 +83,13 @@ def _bit_rate(value: object) -> object:
     return parsed
 
 
+def _data_rate(value: object) -> object:
+    parsed = quantity(value, BITS_PER_SECOND) if isinstance(value, str) else None
+    if parsed is None or not 10_000 <= parsed <= 10_000_000:
+        raise _coded("RV-0207", "must be a bit rate such as `2 Mbit/s`, 10 kbit/s to 10 Mbit/s")
+    return parsed
+
+
 Name = Annotated[
     str,
     AfterValidator(_name),
@@ -106,11 +113,9 @@ PositiveSpan = Annotated[int, BeforeValidator(_positive), WithJsonSchema(_durati
 StackSize = Annotated[
     int, BeforeValidator(_stack), WithJsonSchema({"type": "string", "pattern": pattern(BYTES)})
 ]
-BitRate = Annotated[
-    int,
-    BeforeValidator(_bit_rate),
-    WithJsonSchema({"type": "string", "pattern": pattern(BITS_PER_SECOND)}),
-]
+_bit_rate_schema = {"type": "string", "pattern": pattern(BITS_PER_SECOND)}
+BitRate = Annotated[int, BeforeValidator(_bit_rate), WithJsonSchema(_bit_rate_schema)]
+DataRate = Annotated[int, BeforeValidator(_data_rate), WithJsonSchema(_bit_rate_schema)]
 
 
 def _scalar(value: object) -> int | bool | str:

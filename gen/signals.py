@@ -12,6 +12,9 @@ from .terms import IntegerType, RecordType, ScalarType, Type
 FRAME_BITS = 64
 """Payload of a classic CAN frame, in bits."""
 
+FD_SIZES = (*range(1, 9), 12, 16, 20, 24, 32, 48, 64)
+"""Bytes that a CAN FD frame can carry, 0 apart."""
+
 
 def width_of(type_: ScalarType) -> int:
     """Bits that hold every value of the type, at least 1."""
@@ -41,6 +44,12 @@ def bits_of(signals: tuple[Signal, ...]) -> int:
     return signals[-1].start + signals[-1].width
 
 
-def length_of(signals: tuple[Signal, ...]) -> int:
-    """Bytes that the signals take together, at least 1."""
-    return max(1, -(-bits_of(signals) // 8))
+def length_of(signals: tuple[Signal, ...], *, fd: bool = False) -> int:
+    """Bytes of the frame that carries the signals, at least 1; of CAN FD the next size it has."""
+    length = max(1, -(-bits_of(signals) // 8))
+    return next((size for size in FD_SIZES if size >= length), length) if fd else length
+
+
+def room_of(*, fd: bool) -> int:
+    """Payload of a frame at most, in bits."""
+    return 8 * FD_SIZES[-1] if fd else FRAME_BITS

@@ -7,14 +7,17 @@ itself is wrong or a program it needs is missing.
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from analysis import report
+from analysis.figures import figures
+from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
 
-from . import draw, observed, plain, proving, simulate, steps
+from . import allocate, draw, observed, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -73,12 +76,21 @@ def _parser() -> argparse.ArgumentParser:
     analyse.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
     analyse.add_argument(
         "--observed", type=Path, metavar="FILE",
-        help="hold the execution times in the trace of a run against the budgets",
+        help="hold the execution times in the trace of a run, or of a plain file in a plain file, "
+        "against the budgets",
     )  # fmt: skip
-    analyse.add_argument("--json", action="store_true", help="of a CSV or JSON file: all as JSON")
-    analyse.add_argument(
-        "--export", choices=plain.EXPORTS, help="of a CSV or JSON file: print it for that tool"
+    output = analyse.add_mutually_exclusive_group()
+    output.add_argument("--json", action="store_true", help="print everything as JSON")
+    output.add_argument("--export", choices=plain.EXPORTS, help="print the system for that tool")
+    allocation = command(
+        "allocate", _allocate, "put the periodic rows of a model into processors anew, and check"
     )
+    allocation.add_argument(
+        "--strategy", choices=tuple(allocate.STRATEGIES), required=True,
+        help="a processor for each period; for each instance where rates fit; as few as do; "
+        "as much slack as there is",
+    )  # fmt: skip
+    allocation.add_argument("--yaml", action="store_true", help="print it for the model")
     run = command("run", _run, "build and run the controller on this machine")
     run.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
     run.add_argument(
@@ -165,14 +177,25 @@ def _prove(options: argparse.Namespace) -> int:
 
 
 def _analyse(options: argparse.Namespace) -> int:
+    printed = options.json or options.export is not None
+    if printed and (options.html is not None or options.observed is not None):
+        raise Refused("ravenchart: error: --json and --export go without --html and --observed")
     if options.model.suffix.lower() in plain.ENDINGS:
-        if options.html is not None or options.observed is not None:
-            raise Refused(f"{options.model}: error: --html and --observed are for models")
-        met = plain.run(options.model, as_json=options.json, export=options.export)
+        if options.html is not None:
+            raise Refused(f"{options.model}: error: --html is for models")
+        met = plain.run(
+            options.model, as_json=options.json, export=options.export, seen=options.observed
+        )
         return OK if met else WRONG
-    if options.json or options.export is not None:
-        raise Refused(f"{options.model}: error: --json and --export are for CSV and JSON files")
     checked = _checked(options, deadlines=False)
+    if options.export is not None:
+        chains = tuple(latency.chain for _, latency in checked.analysis.limited)
+        system = PlainSystem(checked.analysis.network, chains)
+        print(plain.exported(system, options.export, options.model, checked.system.name), end="")
+        return OK
+    if options.json:
+        print(json.dumps(figures(checked.analysis), indent=1))
+        return OK if checked.analysis.schedulable else WRONG
     show_table(checked.analysis)
     if options.html is not None:
         options.html.write_text(report.render(checked.analysis), encoding="utf-8")
@@ -181,6 +204,16 @@ def _analyse(options: argparse.Namespace) -> int:
     if options.observed is not None:
         good = observed.within_budgets(checked, options.observed) and good
     return OK if good else WRONG
+
+
+def _allocate(options: argparse.Namespace) -> int:
+    checked = _checked(options, deadlines=False)
+    proposal = allocate.propose(checked.analysis, options.strategy)
+    if options.yaml:
+        print(allocate.yaml(proposal), end="")
+    else:
+        allocate.show(proposal)
+    return OK if proposal.analysis.schedulable else WRONG
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from analysis.observed import TraceError, read_map, read_trace
-from analysis.report import executions
+from analysis.report import Execution, executions
 from analysis.units import microseconds
 
 from .steps import Checked, Refused
@@ -30,11 +31,16 @@ def within_budgets(checked: Checked, path: Path) -> bool:
     rows = executions(checked.analysis, seen)
     if not rows:
         raise Refused(f"{path}: error: no activity of {checked.system.name} was executed")
+    every = {slot.element for processor in checked.system.processors for slot in processor.slots}
+    return tell(rows, every)
+
+
+def tell(rows: Sequence[Execution], every: Collection[str]) -> bool:
+    """Print what was seen of each of ``rows``, and which of ``every`` was not; none is above."""
     for row in rows:
         longest, budget = microseconds(row.observed), microseconds(row.claimed)
         word = "ABOVE" if row.exceeded else "within"
         print(f"{row.row}: {longest} us, {word} its budget of {budget} us")
-    unseen = {slot.element for processor in checked.system.processors for slot in processor.slots}
-    for name in sorted(unseen - {row.row for row in rows}):
+    for name in sorted(set(every) - {row.row for row in rows}):
         print(f"{name}: not executed in this run")
     return not any(row.exceeded for row in rows)

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
+from analysis import advice
 from analysis.core.holistic import Holistic
 from analysis.core.responses import Response
 from analysis.exchange import FORMATS, Unfit
 from analysis.plain.build import PlainSystem, load
+from analysis.plain.observed import budgets, observed
 from analysis.plain.results import PlainResult, analyse, everything, loads
+from analysis.report import Execution
 from analysis.units import duration, percent
 
+from .observed import tell
 from .steps import Refused
 
 EXPORTS = tuple(FORMATS)
@@ -29,34 +34,58 @@ SHOWN = 50
 
 def read(path: Path) -> PlainSystem:
     """The system in a file; `Refused` with everything that is wrong with it."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise Refused(f"{path}: error: the file must be UTF-8 text") from None
-    found = load(text, str(path))
+    found = load(_text(path), str(path))
     if isinstance(found, PlainSystem):
         return found
     raise Refused("\n".join(map(str, found[:SHOWN])))
 
 
-def run(path: Path, *, as_json: bool, export: str | None) -> bool:
-    """Analyse and print; whether every deadline is met, or the export was printed."""
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise Refused(f"{path}: error: the file must be UTF-8 text") from None
+
+
+def run(path: Path, *, as_json: bool, export: str | None, seen: Path | None) -> bool:
+    """Analyse and print; whether every deadline is met, or the export was printed.
+
+    With ``seen``, a file of observed times, whether these are within their budgets too.
+    """
     system = read(path)
     if export is not None:
-        try:
-            print(FORMATS[export](system.network, system.chains, path.stem), end="")
-        except Unfit as unfit:
-            raise Refused(f"{path}: error: {unfit}") from None
+        print(exported(system, export, path, path.stem), end="")
         return True
     try:
         result = analyse(system)
     except ValueError as fault:
         raise Refused(f"{path}: error: {fault}") from None
     if as_json:
-        print(json.dumps(everything(result), indent=1))
+        changes = {"changes": advice.figures(_advice(result))}
+        print(json.dumps(everything(result) | changes, indent=1))
     else:
         show(result, Console(highlight=False))
-    return result.met
+    within = seen is None or _within_budgets(seen, system)
+    return within and result.met
+
+
+def _within_budgets(path: Path, system: PlainSystem) -> bool:
+    """Print what was observed beside the budgets, nearest to them first."""
+    found = observed(_text(path), str(path), system.network)
+    if not isinstance(found, dict):
+        raise Refused("\n".join(map(str, found[:SHOWN])))
+    known = budgets(system.network)
+    rows = [Execution(name, time, known[name]) for name, time in found.items()]
+    rows.sort(key=lambda row: -Fraction(row.observed, row.claimed))
+    return tell(rows, known)
+
+
+def exported(system: PlainSystem, tool: str, path: Path, title: str) -> str:
+    """The system of a file, for that tool; `Refused` with what the tool cannot express."""
+    try:
+        return FORMATS[tool](system.network, system.chains, title)
+    except Unfit as unfit:
+        raise Refused(f"{path}: error: {unfit}") from None
 
 
 def show(result: PlainResult, out: Console) -> None:
@@ -87,6 +116,13 @@ def show(result: PlainResult, out: Console) -> None:
             f"age {_shown(latency.age)}",
             markup=False,
         )
+    for line in advice.lines(_advice(result)):
+        out.print(line, markup=False)
+
+
+def _advice(result: PlainResult) -> advice.Advice | None:
+    """What to change so that deadlines are met; limits of chains are not looked at."""
+    return advice.of_network(result.system.network, result.scaling, met=result.found.met)
 
 
 def _miss(name: str, found: Holistic) -> str:

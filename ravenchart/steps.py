@@ -20,6 +20,7 @@ from gen.emit.naming import ada_case
 from gen.generate import generate, user_units
 from gen.load import Loaded, load
 from gen.model import System
+from gen.unready import unready
 
 from . import toolchain
 from .toolchain import ROOT
@@ -111,8 +112,12 @@ def write_program(checked: Checked) -> Written:
     """Write generated/ beside the model; user/ is never touched.
 
     Files are replaced only when their bytes differ, so that builds stay
-    incremental; files of the last generation that are no longer made go.
+    incremental; files of the last generation that are no longer made go. `Refused` for
+    what can be analysed only.
     """
+    gaps = [render(diagnostic, {}) for diagnostic in unready(checked.system)]
+    if gaps:
+        raise Refused("\n".join(gaps))
     folder = checked.folder / "generated"
     folder.mkdir(parents=True, exist_ok=True)
     files = generate(checked.system, claims(checked))

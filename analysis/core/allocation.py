@@ -16,8 +16,8 @@ phases at which least is executed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
 
@@ -109,10 +109,15 @@ def allocate(
     strategy: Strategy,
     sections: Sequence[Section] = (),
     platforms: Mapping[str, Platform] | None = None,
+    above: Sequence[Task] = (),
+    *,
+    whole: bool = False,
 ) -> Allocation:
     """The activities put together by that strategy, and the analysis of the result.
 
-    ``sections`` name activities as users. The result may miss deadlines: see
+    ``sections`` name activities as users. Tasks ``above`` are more urgent than all tables,
+    in their own order. With ``whole`` a job must end by the shortest deadline of its table,
+    and all rows begin with the first release. The result may miss deadlines: see
     `Allocation.met`. ValueError for a name given twice, and as the analysis.
     """
     distinct("activities", [activity.name for activity in activities])
@@ -126,8 +131,17 @@ def allocate(
         else:
             names = {activity.name for activity in here}
             mine = [section for section in sections if section.user in names]
-            tables += _searched(here, strategy, mine, platforms or {})
-    return checked(tables, sections, platforms)
+            urgent = [task for task in above if task.core == core]
+
+            def check(
+                some: Sequence[Table],
+                mine: Sequence[Section] = mine,
+                urgent: Sequence[Task] = urgent,
+            ) -> Allocation:
+                return checked(some, mine, platforms, urgent, whole=whole)
+
+            tables += _searched(here, strategy, check)
+    return checked(tables, sections, platforms, above, whole=whole)
 
 
 def by_period(activities: Sequence[Activity]) -> list[Table]:
@@ -157,19 +171,34 @@ def checked(
     tables: Sequence[Table],
     sections: Sequence[Section] = (),
     platforms: Mapping[str, Platform] | None = None,
+    above: Sequence[Task] = (),
+    *,
+    whole: bool = False,
 ) -> Allocation:
     """The analysis of tables, each in order of deadlines; ValueError for one that is impossible."""
+    if whole:
+        tables = [tuple(_hurried(table)) for table in tables]
     ordered = tuple(tuple(sorted(table, key=lambda a: a.deadline)) for table in tables)
     urgent = sorted(ordered, key=lambda table: -table[0].deadline)
     level = {table[0].name: number for number, table in enumerate(urgent, 1)}
-    tasks = tuple(_task(table, level[table[0].name]) for table in ordered)
+    tasks = tuple(_task(table, level[table[0].name], phased=not whole) for table in ordered)
+    rank = sorted({task.priority for task in above})
+    lifted = [replace(task, priority=len(tasks) + 1 + rank.index(task.priority)) for task in above]
     home = {activity.name: table[0].name for table in ordered for activity in table}
     held = [Section(s.resource, home.get(s.user, s.user), s.length) for s in sections]
-    return Allocation(ordered, tasks, analyse(tasks, held, platforms))
+    responses = analyse((*tasks, *lifted), held, platforms)
+    return Allocation(ordered, tasks, responses[: len(tasks)])
 
 
-def _task(table: Table, priority: int) -> Task:
-    """The task that executes a table; its phases level what a job costs."""
+def _hurried(table: Table) -> Iterator[Activity]:
+    """The activities, each with the deadline by which the last must be done."""
+    first = min(activity.deadline for activity in table)
+    for activity in table:
+        yield replace(activity, deadline=first)
+
+
+def _task(table: Table, priority: int, *, phased: bool) -> Task:
+    """The task that executes a table; where it is ``phased`` its phases level what a job costs."""
     period = min(activity.period for activity in table)
     for activity in table:
         if activity.period % period:
@@ -182,7 +211,8 @@ def _task(table: Table, priority: int) -> Task:
     phases: dict[str, int] = {}
     for activity in sorted(table, key=lambda activity: (activity.period, -activity.cost)):
         every = activity.period // period
-        phase = min(range(min(every, count)), key=lambda k: max(costs[k::every]))
+        choice = range(min(every, count)) if phased else range(1)
+        phase = min(choice, key=lambda k: max(costs[k::every]))
         phases[activity.name] = phase
         for k in range(phase, count, every):
             costs[k] += activity.cost
@@ -213,8 +243,7 @@ def _rank(tables: Sequence[Table], strategy: Strategy, found: Allocation) -> Ran
 def _searched(
     activities: Sequence[Activity],
     strategy: Strategy,
-    sections: Sequence[Section],
-    platforms: Mapping[str, Platform],
+    check: Callable[[Sequence[Table]], Allocation],
 ) -> list[Table]:
     """The best tables of one core that moves of single activities and tables lead to."""
     alone: list[Table] = [(activity,) for activity in activities]
@@ -222,13 +251,13 @@ def _searched(
     best: tuple[Rank, list[Table]] | None = None
     for start in (alone, by_locality(activities), by_period(activities)):
         now = start
-        rank = _rank(now, strategy, checked(now, sections, platforms))
+        rank = _rank(now, strategy, check(now))
         better = True
         while better and left > 0:
             better = False
             for other in _neighbours(now):
                 left -= 1
-                found = _rank(other, strategy, checked(other, sections, platforms))
+                found = _rank(other, strategy, check(other))
                 if found > rank:
                     now, rank, better = other, found, True
                     break

@@ -80,7 +80,7 @@ def network_scaling(
     """
 
     def failing(count: int) -> str | None:
-        found = holistic.analyse(_scaled_network(network, Fraction(count, steps), names))
+        found = holistic.analyse(scaled_network(network, Fraction(count, steps), names))
         missed = [name for name in found.responses if not found.meets(name)]
         return max(missed, key=lambda name: _lateness(found, name), default=None)
 
@@ -90,7 +90,7 @@ def network_scaling(
     return NetworkScaling(Fraction(last, steps), failing(last + 1))
 
 
-def _scaled_network(network: Network, factor: Fraction, names: Collection[str] | None) -> Network:
+def scaled_network(network: Network, factor: Fraction, names: Collection[str] | None) -> Network:
     """The network with the times of those named, or all, multiplied and rounded up."""
 
     def chosen(name: str) -> bool:

@@ -19,7 +19,7 @@ from analysis.core.chains import Chain
 from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
-from .shapes import Unfit, dense, names, no_queues_or_errors, spelled_out, urgency
+from .shapes import Unfit, dense, names, no_errors, remarks, spelled_out, unqueued, urgency
 
 LARGEST = 2**31 - 1
 """Cheddar's largest integer."""
@@ -49,14 +49,16 @@ class _Item:
 
 def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     """The model of ``network``; Cheddar has nothing for ``chains``, nor a name for the whole."""
-    del chains, title
-    no_queues_or_errors(network, "Cheddar")
-    network = spelled_out(network)
+    del title
+    no_errors(network, "Cheddar")
+    given = network
+    network = spelled_out(unqueued(network))
     items = tuple(_items(network))
     places = dict.fromkeys(item.place for item in items)
     unit = _unit(items)
     root = Xml.Element("cheddar")
-    root.append(Xml.Comment(f" One unit of time is {unit} ns. "))
+    for line in (f"One unit of time is {unit} ns.", *remarks(given, chains)):
+        root.append(Xml.Comment(f" {line.replace('--', '- -')} "))
     numbers = iter(range(1, 3 * len(places) + len(items) + 1))
     cores = Xml.SubElement(root, "core_units")
     ids = {}

@@ -1,7 +1,8 @@
 """MAST models (1.7), for `mast_analysis holistic`. The unit of time is the nanosecond.
 
 What MAST does not have is put so that its bounds are no smaller: a table of rows becomes
-their sum, a frame counts in time rather than bits. Its rule for CAN has no additional bit
+their sum, a frame counts in time rather than bits, a frame of a first-in first-out queue
+has jitter. Its rule for CAN has no additional bit
 in which a frame still takes part in arbitration, so its bounds can be a frame smaller there.
 """
 
@@ -16,7 +17,19 @@ from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
 from .mast_text import Attributes, Object, Value, printed
-from .shapes import Tree, Unfit, dense, exact, names, no_queues_or_errors, trees, urgency
+from .shapes import (
+    Tree,
+    background,
+    dense,
+    exact,
+    names,
+    no_errors,
+    remarks,
+    spelled_out,
+    trees,
+    unqueued,
+    urgency,
+)
 
 INTERRUPT = 32_767
 """The priority of what makes jobs ready: above those of all tasks."""
@@ -27,16 +40,33 @@ KEYWORDS = ("model", "processing_resource", "scheduler", "scheduling_server", "s
 
 def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     """The model of ``network``; ``chains`` that sample are not part of what MAST analyses."""
-    del chains
     exact(network)
-    no_queues_or_errors(network, "MAST")
+    no_errors(network, "MAST")
+    head = ["Times in ns.", *remarks(network, chains)]
+    if any(network.frames.values()):
+        head.append("MAST counts no frame that is queued in the last bit before a transmission:")
+        head.append("its bounds on a bus can be a frame smaller.")
+    network = background(unqueued(network))
+    if _linked_releases(network):
+        network = spelled_out(network)
     writer = _Writer(network)
     name = names([title], KEYWORDS)[title]
-    head = Object(
+    model = Object(
         "Model",
         _attributes(Model_Name=name, Model_Date="2000-01-01", System_PiP_Behaviour="Strict"),
     )
-    return "-- Times in ns.\n\n" + printed((head, *writer.objects()))
+    comments = "".join(f"-- {line}\n" for line in head)
+    return f"{comments}\n" + printed((model, *writer.objects()))
+
+
+def _linked_releases(network: Network) -> bool:
+    """A release costs time, and is no event of its own: a tick or another task makes it."""
+    return any(
+        task.core in network.platforms
+        and network.platforms[task.core].release > 0
+        and (task.name in network.released_by or task.timed)
+        for task in network.tasks
+    )
 
 
 def _attributes(**pairs: Value | int | None) -> Attributes:
@@ -57,11 +87,6 @@ class _Writer:
         self.network = network
         items = network.items()
         self.trees = trees(network, "MAST")
-        for section in network.sections:
-            if section.user not in items:
-                raise Unfit(
-                    f"MAST needs a task: {section.user} uses {section.resource} and is none"
-                )
         self.cores = list(dict.fromkeys(task.core for task in network.tasks))
         self.item = names(items, KEYWORDS)
         self.place = names([*self.cores, *network.buses], KEYWORDS)
@@ -300,10 +325,6 @@ class _Writer:
         for task in self.network.tasks:
             if self._release(task):
                 name = f"{self.item[task.name]}_release"
-                if task.name in self.network.released_by or task.timed:
-                    raise Unfit(
-                        f"MAST cannot charge the release of {task.name}: add it to the cost"
-                    )
                 handler = _attributes(
                     Type="Activity",
                     Input_Event=f"{name}_event",

@@ -15,7 +15,7 @@ from analysis.core.chains import Chain, Hop
 from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
-from .shapes import Unfit, dense, names, no_queues_or_errors, spelled_out, trees
+from .shapes import Unfit, dense, names, no_errors, remarks, spelled_out, trees, unqueued
 
 TAKEN = (*keyword.kwlist, "analysis", "blocked", "blocking", "int", "model", "options", "print",
          "results", "schedulers", "sorted", "str", "sum", "system", "task")  # fmt: skip
@@ -55,14 +55,25 @@ if __name__ == "__main__":
 
 def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     """The script for ``network``, with the sampling ``chains`` as effect chains of tasks."""
-    no_queues_or_errors(network, "pyCPA")
+    no_errors(network, "pyCPA")
     for name, bus in network.buses.items():
         if bus.unknown:
             raise Unfit(f"pyCPA needs every message: leave out the unknown ones of bus {name}")
-    network = spelled_out(network)
+    given = network
+    network = spelled_out(unqueued(network))
     trees(network, "pyCPA")
-    lines = [*_lines(network), *_effect_chains(network, chains)]
+    sampling = [chain for chain in chains if _samples(chain, network)]
+    others = [chain for chain in chains if chain not in sampling]
+    head = [f"#  {line}" for line in remarks(given, others)]
+    lines = [*head, *_lines(network), *_effect_chains(network, sampling)]
     return HEAD.format(title=names([title])[title]) + "\n".join(lines) + "\n\n" + TAIL
+
+
+def _samples(chain: Chain, network: Network) -> bool:
+    """Every step is a task, and all after the first sample."""
+    tasks = {task.name for task in network.tasks}
+    sampled = all(step.hop is Hop.SAMPLED for step in chain.steps[1:])
+    return sampled and all(step.name in tasks for step in chain.steps)
 
 
 def _lines(network: Network) -> Iterator[str]:
@@ -102,12 +113,8 @@ def _task(name: str, place: str, item: Task | Frame, level: int) -> str:
 
 
 def _effect_chains(network: Network, chains: Sequence[Chain]) -> Iterator[str]:
-    """Chains whose every step is a task that samples."""
+    """The chains as effect chains."""
     items = names(network.items(), TAKEN)
-    tasks = {task.name for task in network.tasks}
     for number, chain in enumerate(chains, 1):
-        steps = chain.steps
-        sampled = all(step.hop is Hop.SAMPLED for step in steps[1:])
-        if sampled and all(step.name in tasks for step in steps):
-            members = ", ".join(items[step.name] for step in steps)
-            yield f'chain_{number} = model.EffectChain("chain_{number}", tasks=[{members}])'
+        members = ", ".join(items[step.name] for step in chain.steps)
+        yield f'chain_{number} = model.EffectChain("chain_{number}", tasks=[{members}])'

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
+from analysis.core import holistic
 from analysis.core.bus import Frame
+from analysis.core.chains import Chain
 from analysis.core.fixed_priority import NO_OVERHEAD
 from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
+HOUR = 3600 * 10**9
+"""The period of what comes hardly ever, in ns."""
+
 EXACT = 2**53
 """Tools that reckon in doubles hold integers up to here."""
+
+
+Item = TypeVar("Item", Task, Frame)
 
 
 class Unfit(Exception):  # noqa: N818
@@ -51,16 +61,100 @@ def exact(network: Network) -> None:
             raise Unfit(f"the times of {name} must be below 2**53 ns, which is 104 days")
 
 
-def no_queues_or_errors(network: Network, tool: str) -> None:
+def no_errors(network: Network, tool: str) -> None:
     """Refuse what only this analysis has."""
-    for bus, frames in network.frames.items():
+    for bus in network.frames:
         if network.buses[bus].errors is not None:
-            raise Unfit(f"{tool} has no errors on a bus: leave out error_period of bus {bus}")
-        for frame in frames:
-            if frame.queue:
-                raise Unfit(
-                    f"{tool} has no first-in first-out queues: message {frame.name} has one"
-                )
+            raise Unfit(f"{tool} has no errors on a bus: leave out those of bus {bus}")
+
+
+def unqueued(network: Network) -> Network:
+    """The same without first-in first-out queues, with bounds that are no smaller.
+
+    A queue of one frame is none. Any other frame of a queue is no longer released by what
+    sends it: it comes with the jitter that it was found to inherit, and with the longest
+    time that it waits in its queue as more of it. To others it is as late as before; for
+    itself it waits for the frames of its queue once more.
+    """
+    cut = set(in_queues(network))
+    if not cut:
+        return _changed(network, lambda item: replace(item, queue=""), lambda item: item)
+    found = holistic.analyse(network)
+
+    def alone(frame: Frame) -> Frame:
+        if frame.name not in cut:
+            return replace(sooner(frame), queue="")
+        bound = found.responses[frame.name].bound
+        if bound is None:
+            raise Unfit(f"{frame.name} has no bound in its queue, so there is none to export")
+        return replace(sooner(frame), queue="", jitter=bound - frame.cost)
+
+    def sooner(item: Item) -> Item:
+        """Its deadline from where the way to it was cut, which is later by the best case."""
+        way = (item.name, *network.releasers(item.name))
+        deadline = item.deadline - next((found.best[name] for name in way if name in cut), 0)
+        if deadline <= 0:
+            raise Unfit(f"the deadline of {item.name} must be above the best case of its chain")
+        return replace(item, deadline=deadline)
+
+    released = {name: by for name, by in network.released_by.items() if name not in cut}
+    return replace(_changed(network, alone, sooner), released_by=released)
+
+
+def _changed(
+    network: Network, frame: Callable[[Frame], Frame], task: Callable[[Task], Task]
+) -> Network:
+    """The network with each frame and task changed."""
+    return replace(
+        network,
+        tasks=tuple(map(task, network.tasks)),
+        frames={bus: tuple(map(frame, frames)) for bus, frames in network.frames.items()},
+    )
+
+
+def in_queues(network: Network) -> list[str]:
+    """The frames that share a first-in first-out queue with others."""
+    found = []
+    for frames in network.frames.values():
+        counts = Counter(frame.queue for frame in frames if frame.queue)
+        found += [frame.name for frame in frames if counts[frame.queue] > 1]
+    return found
+
+
+def background(network: Network) -> Network:
+    """Users of resources that are no tasks as tasks below all, which come once an hour.
+
+    There is one on each core that they can hold up. Nothing waits for them but while they
+    are inside.
+    """
+    cores = {task.name: task.core for task in network.tasks}
+    home = {s.resource: cores[s.user] for s in network.sections if s.user in cores}
+    lowest = min((task.priority for task in network.tasks), default=0) - 1
+    tasks: dict[str, Task] = {}
+    sections = []
+    for section in network.sections:
+        if section.user not in cores:
+            core = home.get(section.resource)
+            if core is None:
+                raise Unfit(f"no task uses {section.resource}: leave it out")
+            name = f"{section.user} on {core}" if core else section.user
+            held = tasks.get(name)
+            cost = section.length + (held.cost if held else 0)
+            tasks[name] = Task(name, lowest, HOUR, HOUR, cost, core=core, sporadic=True)
+            section = replace(section, user=name)
+        sections.append(section)
+    return replace(network, tasks=(*network.tasks, *tasks.values()), sections=tuple(sections))
+
+
+def remarks(network: Network, chains: Iterable[Chain]) -> Iterator[str]:
+    """What an export says in other words than the system does: lines for its head."""
+    for task in network.tasks:
+        if task.frame_count > 1:
+            yield f"Of table {task.name} every row counts in every job."
+    for name in in_queues(network):
+        yield f"{name} shares a first-in first-out queue: its turn there is jitter."
+    for chain in chains:
+        yield f"Left out: chain {chain.name}, through {', '.join(s.name for s in chain.steps)}."
 
 
 def spelled_out(network: Network) -> Network:

@@ -46,17 +46,21 @@ class Column:
 
 
 _TEXT = Column(Form.WORD)
-_NEEDED = Column(Form.WORD, required=True)
+NEEDED = Column(Form.WORD, required=True)
+"""A word that must be given."""
 _COUNT = Column(Form.NUMBER, least=1)
 _FLAG = Column(Form.FLAG)
 _LATE = Column(Form.TIME_UP)
-_LONG = Column(Form.TIME_UP, required=True, least=1)
+LONG = Column(Form.TIME_UP, required=True, least=1)
+"""A time that must be given, rounded up."""
 _PERIOD = Column(Form.TIME_DOWN, required=True, least=1)
 _DEADLINE = Column(Form.TIME_DOWN, least=1)
 _BEST = Column(Form.TIME_DOWN)
 _ANY = -LARGEST
 
-KINDS: Mapping[str, Mapping[str, Column]] = {
+Kinds = Mapping[str, Mapping[str, Column]]
+
+KINDS: Kinds = {
     "core": {
         "context_switch": _LATE,
         "release": _LATE,
@@ -76,12 +80,12 @@ KINDS: Mapping[str, Mapping[str, Column]] = {
         "released_by": _TEXT,
     },
     "row": {
-        "task": _NEEDED,
-        "cost": _LONG,
+        "task": NEEDED,
+        "cost": LONG,
         "every": _COUNT,
         "phase": Column(Form.NUMBER),
     },
-    "section": {"task": _NEEDED, "length": _LONG},
+    "section": {"task": NEEDED, "length": LONG},
     "object": {"ceiling": Column(Form.NUMBER, required=True, least=_ANY)},
     "bus": {
         "bit_rate": Column(Form.NUMBER, required=True, least=1),
@@ -92,7 +96,7 @@ KINDS: Mapping[str, Mapping[str, Column]] = {
         "error_bits": _COUNT,
     },
     "message": {
-        "bus": _NEEDED,
+        "bus": NEEDED,
         "identifier": Column(Form.NUMBER, required=True),
         "extended": _FLAG,
         "fd": _FLAG,
@@ -106,8 +110,8 @@ KINDS: Mapping[str, Mapping[str, Column]] = {
         "released_by": _TEXT,
     },
     "chain": {
-        "step": _NEEDED,
-        "hop": _NEEDED,
+        "step": NEEDED,
+        "hop": NEEDED,
         "takes": _COUNT,
         "reaction_limit": Column(Form.TIME_DOWN, least=1),
         "age_limit": Column(Form.TIME_DOWN, least=1),
@@ -134,14 +138,14 @@ class Values:
         return self.words.get(column, "")
 
 
-def values(entry: Entry, reading: Reading) -> Values | None:
+def values(entry: Entry, reading: Reading, kinds: Kinds = KINDS) -> Values | None:
     """The values of a row; None, and problems, where it cannot be used."""
     before = len(reading.problems)
-    columns = KINDS.get(entry.kind)
+    columns = kinds.get(entry.kind)
     if columns is None:
-        kinds = ", ".join(KINDS)
+        known = ", ".join(kinds)
         reading.complain(
-            entry.line, f"{entry.kind or 'a column without a name'} is none of {kinds}"
+            entry.line, f"{entry.kind or 'a column without a name'} is none of {known}"
         )
         return None
     words: dict[str, str] = {}

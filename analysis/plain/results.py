@@ -81,7 +81,7 @@ def everything(result: PlainResult) -> Json:
             for bus, frames in network.frames.items()
             for response in _of(found.responses, [frame.name for frame in frames])
         ],
-        "chains": [_chain(latency) for latency in result.latencies],
+        "chains": [latency_figures(latency) for latency in result.latencies],
     }
 
 
@@ -162,7 +162,8 @@ def _message(response: FrameResponse, bus: str, found: Holistic, detailed: bool)
     return answer
 
 
-def _chain(latency: Latency) -> Json:
+def latency_figures(latency: Latency) -> Json:
+    """The reaction and age of a chain, hop by hop."""
     chain = latency.chain
     return {
         "chain": chain.name,

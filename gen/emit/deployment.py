@@ -11,11 +11,13 @@ from .ada import (
     Aspect,
     Call,
     Case,
+    Chain,
     Comment,
     Decl,
     Do,
     EnumType,
     Expr,
+    If,
     Instance,
     Object,
     Package,
@@ -30,6 +32,7 @@ from .ada import (
     number,
 )
 from .buses import emit_bus
+from .certificate_terms import name_of
 from .naming import ada_case, priority, processor_package, root_package, row_name
 from .reports import emit_main, emit_reports
 from .trace_calls import element_constant, note, row_number, traced
@@ -142,6 +145,9 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
             Minimum_Separation=Ref(f"{certificate}.{own}_T"),
             Wait=Ref(f"{ada_case(processor.released_by)}.Receiver.Wait"),
         )
+    if processor.on_overrun:
+        shared += arguments(On_Executed=Ref("On_Executed"))
+        items += _budgets(processor)
     items.append(Comment(f"[{processor.name}]"))
     items.append(Instance("Processor", generic, (*args, *shared)))
     withs = {generic, "System", f"{root}.{certificate}"}
@@ -151,10 +157,9 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         withs.add(f"{root}.{ada_case(processor.released_by)}.Receiver")
     context = {f"{root}.Health_Counts", "Ravenchart.Health"}
     context |= {_owner_unit(system, s) for s in processor.slots}
-    context |= {f"{root}.{ada_case(i)}" for i, _ in processor.on_deadline_miss}
+    context |= {f"{root}.{ada_case(i)}" for i, _ in processor.raises}
     context |= {
-        f"{root}.{ada_case(system.instance(i).component.name)}"
-        for i, _ in processor.on_deadline_miss
+        f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in processor.raises
     }
     if traced(system):
         context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
@@ -194,25 +199,47 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
             )
         )
     execute.append(Case(Ref("Item"), tuple(rows)))
-    missed: list[Stmt] = [
-        Do("Health_Counts.Record_Fault", arguments(Ref("Ravenchart.Health.Deadline_Miss"))),
-        *note(
-            system,
-            "Fault",
-            processor.name,
-            "processor",
-            Call(
-                "Ravenchart.Health.Fault_Kind'Pos",
-                arguments(Ref("Ravenchart.Health.Deadline_Miss")),
-            ),
-        ),
-    ]
-    missed += [_offer(system, i, e) for i, e in processor.on_deadline_miss]
-    uses = (UseType("Ravenchart.Element_Id"),) if traced(system) else ()
-    return (
-        *uses,
+    missed = _fault(system, processor, "Deadline_Miss", processor.on_deadline_miss)
+    uses = [UseType("Ravenchart.Element_Id")] if traced(system) else []
+    found: list[Decl] = [
         Subprogram("Execute", (Param("Item", "in", "Row"),), body=tuple(execute)),
-        Subprogram("On_Deadline_Miss", body=tuple(missed)),
+        Subprogram("On_Deadline_Miss", body=missed),
+    ]
+    if processor.on_overrun:
+        uses.append(UseType("Ravenchart.Nanoseconds"))
+        over = Chain(">", (Ref("Used"), Ref("Budgets (Item)")))
+        raised = _fault(system, processor, "Overrun", processor.on_overrun)
+        found.append(Subprogram("On_Executed", _EXECUTED, body=(If(((over, raised),)),)))
+    return (*uses, *found)
+
+
+_EXECUTED = (Param("Item", "in", "Row"), Param("Used", "in", "Ravenchart.Nanoseconds"))
+
+
+def _budgets(processor: Processor) -> list[Decl]:
+    """What each row may use, and what compares it with what it used."""
+    rows = tuple(
+        Arg(row_name(slot), Ref(f"Timing_Certificate.{name_of(slot.element)}_Budget"))
+        for slot in processor.slots
+    )
+    return [
+        Subprogram("On_Executed", _EXECUTED),
+        PlainType("Row_Budgets", "array (Row) of Ravenchart.Nanoseconds"),
+        Comment(f"[{processor.name}.table] the longest that each activity may take"),
+        Object("Budgets", "Row_Budgets", Aggregate(rows), constant=True),
+    ]
+
+
+def _fault(
+    system: System, processor: Processor, kind: str, events: tuple[tuple[str, str], ...]
+) -> tuple[Stmt, ...]:
+    """Count and note a fault of a processor, and raise its events."""
+    fault = Ref(f"Ravenchart.Health.{kind}")
+    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(fault))
+    return (
+        Do("Health_Counts.Record_Fault", arguments(fault)),
+        *note(system, "Fault", processor.name, "processor", position),
+        *(_offer(system, instance, event) for instance, event in events),
     )
 
 

@@ -160,4 +160,18 @@ is
         (Ravenchart.Health.Deadline_Miss);
    end Note_Miss;
 
+   ------------------
+   -- Note_Overrun --
+   ------------------
+
+   procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds) is
+      use type Ravenchart.Nanoseconds;
+      Budgets : constant array (Job) of Ravenchart.Nanoseconds :=
+        (Sense => 100_000, Control => 500_000, Report => 1_000_000);
+   begin
+      if Used > Budgets (Activity) then
+         Instance_Store.Counters.Record_Fault (Ravenchart.Health.Overrun);
+      end if;
+   end Note_Overrun;
+
 end Instance_Tasks;

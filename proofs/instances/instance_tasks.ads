@@ -66,6 +66,10 @@ is
    with Global => (In_Out => Instance_Store.Counters.State);
    --  A deadline was missed.
 
+   procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds)
+   with Global => (In_Out => Instance_Store.Counters.State);
+   --  An activity took so much processor time: it may be too much.
+
    package Cyclic is new Ravenchart.Periodic_Processors
      (Activity_Id      => Job,
       Table_Type       => Job_Table,
@@ -77,7 +81,8 @@ is
       Task_Priority    => System.Default_Priority + 4,
       Stack_Bytes      => 65_536,
       Execute          => Run_Job,
-      On_Deadline_Miss => Note_Miss);
+      On_Deadline_Miss => Note_Miss,
+      On_Executed      => Note_Overrun);
 
    package Served is new Ravenchart.Sporadic_Processors
      (Activity_Id        => Service,

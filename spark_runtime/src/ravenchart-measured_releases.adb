@@ -19,6 +19,7 @@ is
             Execute (Activity);
             Processor_Clocks.Read (After);
             Times (Activity) := (if After > Before then After - Before else 0);
+            On_Executed (Activity, Times (Activity));
          end if;
       end loop;
       Done     := Ada.Real_Time.Clock;

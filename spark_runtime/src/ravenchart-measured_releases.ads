@@ -3,7 +3,8 @@
 --  it.
 --
 --  Guarantees   activities run in the order of Activity_Id; a completion
---               later than Deadline after Due is counted and reported once
+--               later than Deadline after Due is counted and reported once;
+--               what an activity used is told before the next one runs
 --  Tasking      Run by the one task of the processor, Observe by any task up
 --               to Ceiling
 --  Timing       the activities, and two clock readings for each
@@ -24,6 +25,9 @@ generic
    --  Run it once. Always returns, never suspends.
    with procedure On_Deadline_Miss;
    --  Called once for each release that completes after its deadline.
+   with procedure On_Executed
+     (Activity : Activity_Id; Used : Nanoseconds) is null;
+   --  Called after each activity, with the processor time that it used.
 package Ravenchart.Measured_Releases
   with SPARK_Mode
 is

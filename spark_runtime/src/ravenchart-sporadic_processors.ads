@@ -26,6 +26,9 @@ generic
    --  Run one activity once. Always returns, never suspends.
    with procedure On_Deadline_Miss;
    --  Called once for each release that completes after its deadline.
+   with procedure On_Executed
+     (Activity : Activity_Id; Used : Nanoseconds) is null;
+   --  Called after each activity, with the processor time that it used.
 package Ravenchart.Sporadic_Processors
   with SPARK_Mode, Elaborate_Body
 is
@@ -42,7 +45,8 @@ is
       Deadline         => Deadline,
       Ceiling          => Task_Priority,
       Execute          => Execute,
-      On_Deadline_Miss => On_Deadline_Miss);
+      On_Deadline_Miss => On_Deadline_Miss,
+      On_Executed      => On_Executed);
 
    subtype Statistics is Releases.Monitor.Statistics;
    --  Releases, Misses, Worst_Response and Worst_Execution.

@@ -111,6 +111,7 @@ procedure Test_Processors is
    procedure Check_Late is
       Observed : Workload.Late.Statistics;
       Noted    : constant Natural := Workload.Missed_Log.Count;
+      Item     : Workload.Entry_Record;
    begin
       Workload.Late.Observe (Observed);
       Facts.Check
@@ -126,6 +127,12 @@ procedure Test_Processors is
       Facts.Check
         ("the worst response covers the work",
          Observed.Worst_Response >= 35_000_000);
+      Item := Workload.Overrun_Log.Item (1);
+      Facts.Check
+        ("an activity's processor time is told when it ends, and only then",
+         Workload.Overrun_Log.Count = 1
+         and then Item.What = Workload.Each_Release
+         and then Item.Value >= 35);
       Facts.Check
         ("processor time is charged to the activity that used it",
          Observed.Worst_Execution (Workload.Each_Release) >= 35_000_000

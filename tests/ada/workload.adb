@@ -67,6 +67,14 @@ package body Workload is
       Missed_Log.Add ((Each_Release, 0, Ada.Real_Time.Clock));
    end Note_Miss;
 
+   procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds) is
+   begin
+      if Used > 20_000_000 then
+         Overrun_Log.Add
+           ((Activity, Natural (Used / 1_000_000), Ada.Real_Time.Clock));
+      end if;
+   end Note_Overrun;
+
    procedure Ignore_Miss is null;
 
 end Workload;

@@ -44,6 +44,8 @@ package Workload is
 
    Missed_Log : Log;
 
+   Overrun_Log : Log;
+
    procedure Run_Cyclic (Activity : Job);
 
    procedure Run_Late (Activity : Job);
@@ -53,6 +55,9 @@ package Workload is
    procedure Run_Sporadic (Activity : Job);
 
    procedure Note_Miss;
+
+   procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds);
+   --  Used of more than 20 ms, in ms as the value of the entry.
 
    procedure Ignore_Miss;
 
@@ -88,7 +93,8 @@ package Workload is
       Task_Priority    => System.Default_Priority + 3,
       Stack_Bytes      => 65_536,
       Execute          => Run_Late,
-      On_Deadline_Miss => Note_Miss);
+      On_Deadline_Miss => Note_Miss,
+      On_Executed      => Note_Overrun);
 
    package Requests is new Ravenchart.Waiting_Queues
      (Element_Type => Natural,

@@ -11,11 +11,12 @@ from itertools import pairwise
 import pytest
 from rich.console import Console
 
+from analysis import advice
 from analysis.critical import schedule
 from analysis.findings import findings
 from analysis.observed import Observation, read_map, read_trace
 from analysis.report import FrameRow, RunReport, StepRow, compare, executions, render
-from analysis.table import show
+from analysis.table import LEGEND, show
 from analysis.timing import analyse
 from analysis.units import duration, microseconds
 from analysis.words import binding_lines
@@ -114,6 +115,48 @@ def test_what_limits_a_system_is_said_in_a_sentence() -> None:
     assert line == "plan comes first, with 1380 us left: 100.0 % of its time is its own work"
 
 
+def inverted() -> System:
+    """`high` waits for 1.7 ms of `low`, so 0.3 ms are left for its 0.4; the other way both fit."""
+    return system([task("high", 1, 400_000, 2_000_000), task("low", 2, 1_700_000, 10_000_000)])
+
+
+def test_what_to_change_is_said_on_the_terminal_and_in_the_report() -> None:
+    expected = (
+        "To meet all deadlines, one of these is enough:",
+        "priorities of cpu in this order: high, low",
+        "execution time of low less by 5.9 %: 1700 to 1599.7 us",
+        "execution time of high less by 25.0 %: 400 to 300 us",
+        "Not alone with 10 times its period: high, low.",
+    )
+    for text in (printed(inverted()), Page(render(analyse(inverted()))).text):
+        places = [text.index(line) for line in expected]
+        assert places == sorted(places)
+
+
+def test_where_nothing_suffices_alone_it_is_told_what_helps_most() -> None:
+    """0.9 + 0.8 + 0.5: without the first 1.3 is left, 1 / 1.3 = 0.769; without the last 1.7."""
+    tasks = [task(n, p, c, 1_000_000) for n, p, c in
+             (("a", 3, 900_000), ("b", 2, 800_000), ("c", 1, 500_000))]  # fmt: skip
+    lines = advice.lines(advice.of_model(analyse(system(tasks))))
+    assert lines[:4] == (
+        "No single change would meet all deadlines.",
+        "  without a, all else must still shrink by 23.2 %",
+        "  without b, all else must still shrink by 28.7 %",
+        "  without c, all else must still shrink by 41.2 %",
+    )
+    assert "However short, not alone: a, b, c." in lines
+
+
+def test_a_tight_system_is_told_what_gives_it_room_and_one_with_room_nothing() -> None:
+    tasks = [task("a", 2, 500, 1_000), task("b", 1, 450, 1_000)]
+    text = printed(system(tasks))
+    assert "To let all execution times grow by 20.0 %, one of these is enough:" in text
+    assert "execution time of a less by 23.4 %" in text  # 1.2 (383 + 450) <= 1000
+    assert "What to change" in render(analyse(system(tasks)))
+    for some in ([tasks[0]], []):
+        assert advice.of_model(analyse(system(some))) is None
+
+
 @pytest.mark.parametrize("one", [random_system(seed) for seed in range(20)])
 def test_a_critical_instant_takes_exactly_the_window(one: System) -> None:
     for response in analyse(one).responses:
@@ -138,7 +181,7 @@ def printed(one: System, *, terminal: bool = False) -> str:
 def test_the_table_says_the_verdict_first_and_marks_failures_in_words() -> None:
     lines = printed(late()).splitlines()
     assert lines[0] == "Sample: 2 of 4 deadlines may be missed: logger and 1 more"
-    body = lines[lines.index("") + 2 : -2]
+    body = lines[lines.index("") + 2 : lines.index(LEGEND.splitlines()[0])]
     assert [line.split()[0] for line in body] == ["logger", "control", "can_rx", "trajectory"]
     assert [line.split()[-1] for line in body] == ["NONE", "MISS", "ok", "ok"]
 

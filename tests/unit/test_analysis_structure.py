@@ -21,7 +21,7 @@ from tests.support.systems import bus, message, system
     [(0, False, 55), (1, False, 65), (8, False, 135), (0, True, 80), (8, True, 160)],
 )
 def test_frames_are_taken_at_their_longest(length: int, extended: bool, bits: int) -> None:
-    assert frame_length(message("a", length=length, extended=extended)).nominal == bits
+    assert frame_length(message("a", length=length, extended=extended), bus()).nominal == bits
 
 
 def test_the_load_of_a_bus_is_the_sum_of_its_messages() -> None:

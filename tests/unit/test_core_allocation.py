@@ -20,6 +20,7 @@ from analysis.core.allocation import (
 )
 from analysis.core.blocking import Section
 from analysis.core.platform import Platform
+from analysis.core.tasks import Task
 
 
 def names(tables: Sequence[Table]) -> list[list[str]]:
@@ -182,3 +183,22 @@ def test_forty_activities_are_searched_in_seconds() -> None:
     consistent(small, activities)
     if by_rates.met:
         assert len(small.tables) <= len(by_rates.tables)
+
+
+def test_whole_jobs_have_the_shortest_deadline_and_no_phases() -> None:
+    """b comes with every second a, in the first release too, and is done by the deadline of a."""
+    activities = [Activity("a", 100, 20, 60), Activity("b", 200, 30, 200)]
+    found = checked([tuple(activities)], whole=True)
+    assert [(row.every, row.phase) for row in found.tasks[0].rows] == [(1, 0), (2, 0)]
+    assert (found.tasks[0].deadline, found.slack) == (60, Fraction(10, 60))
+    parted = checked([tuple(activities)])
+    assert parted.tasks[0].deadline == 200
+
+
+def test_tasks_above_delay_every_table() -> None:
+    above = [Task("driver", 1, 100, 100, 10), Task("probe", 2, 100, 100, 5)]
+    activities = [Activity("a", 100, 20, 100), Activity("b", 200, 30, 200)]
+    for strategy in Strategy:
+        found = allocate(activities, strategy, above=above)
+        consistent(found, activities)
+        assert min(found.response("a") or 0, found.response("b") or 0) >= 35

@@ -18,7 +18,7 @@ from analysis.core.platform import Platform
 from analysis.core.tasks import Row, Task
 from analysis.exchange import FORMATS, Unfit, cheddar, mast, pycpa
 from analysis.exchange.mast_text import Attributes, Object, Value, parse, printed
-from analysis.exchange.shapes import spelled_out
+from analysis.exchange.shapes import background, in_queues, spelled_out, unqueued
 from tests.support.core_cases import REFERENCE, two_nodes
 from tests.support.random_networks import random_network
 
@@ -240,8 +240,8 @@ FRAME = Frame("m", 1, 1_000, 1_000, 100)
 TASK = Task("a", 1, 100, 100, 10)
 
 
-def on_bus(frame: Frame, bus: Bus) -> Network:
-    return Network((), {"can": (frame,)}, {"can": bus})
+def on_bus(bus: Bus, *frames: Frame) -> Network:
+    return Network((), {"can": frames}, {"can": bus})
 
 
 @pytest.mark.parametrize(
@@ -253,18 +253,21 @@ def on_bus(frame: Frame, bus: Bus) -> Network:
             "no errors on a bus",
         ),
         (
-            Network((), {"can": (replace(FRAME, queue="q"),)}, {"can": Bus(1)}),
+            on_bus(
+                Bus(1),
+                *(replace(FRAME, name=n, rank=k, cost=600, queue="q") for k, n in enumerate("ab")),
+            ),
             "",
-            "first-in first-out",
+            "a has no bound in its queue, so there is none",
         ),
         (Network((replace(TASK, period=2**60),)), "mast", "104 days"),
-        (Network((TASK,), sections=(Section("o", "main", 5),)), "mast", "main uses o and is none"),
+        (Network((TASK,), sections=(Section("o", "main", 5),)), "mast", "no task uses o"),
         (
             Network((TASK, replace(TASK, name="b", jitter=3)), released_by={"b": "a"}),
             "mast pycpa",
             "no jitter of what is released by another: b",
         ),
-        (on_bus(FRAME, Bus(1, 50)), "pycpa", "unknown ones of bus can"),
+        (on_bus(Bus(1, 50), FRAME), "pycpa", "unknown ones of bus can"),
         (
             Network((TASK, replace(TASK, name="b", period=2**60))),
             "cheddar",
@@ -352,6 +355,66 @@ def test_what_is_spelled_out_has_the_same_bounds() -> None:
         found, spelled = holistic.analyse(network), holistic.analyse(spelled_out(network))
         for name in found.responses:
             assert spelled.from_event(name) == found.from_event(name), (seed, name)
+
+
+def test_without_queues_no_bound_is_smaller() -> None:
+    """Frames of a queue stand alone, with more jitter."""
+    compared = 0
+    for seed in range(150):
+        chance = random.Random(seed)
+        network = random_network(chance)
+        frames = {
+            bus: tuple(replace(f, queue="p", best=chance.choice((0, f.cost))) for f in some)
+            for bus, some in network.frames.items()
+        }
+        network = replace(network, frames=frames)
+        if len(in_queues(network)) < 2:
+            continue
+        try:
+            told = unqueued(network)
+        except Unfit:
+            continue
+        assert not any(frame.queue for some in told.frames.values() for frame in some)
+        found, other = holistic.analyse(network), holistic.analyse(told)
+        for name in found.responses:
+            less, more = found.from_event(name), other.from_event(name)
+            later = found.deadline(name) - other.deadline(name)
+            if more is not None:
+                assert less is not None and less <= more + later, (seed, name)
+        compared += 1
+    assert compared > 20
+
+
+def test_a_frame_alone_in_its_queue_stays_where_it_is() -> None:
+    network = on_bus(Bus(1), replace(FRAME, queue="q"), replace(FRAME, name="n", rank=2))
+    assert unqueued(network) == on_bus(Bus(1), FRAME, replace(FRAME, name="n", rank=2))
+
+
+def test_a_user_that_is_no_task_becomes_one_below_all_with_the_same_blocking() -> None:
+    network = Network(
+        (replace(TASK, core="p"), replace(TASK, name="b", core="q")),
+        sections=(Section("o", "main", 5), Section("o", "a", 2), Section("n", "main", 3),
+                  Section("n", "b", 1)),
+    )  # fmt: skip
+    found, told = holistic.analyse(network), holistic.analyse(background(network))
+    for name in ("a", "b"):
+        assert told.from_event(name) == found.from_event(name)
+    model = parse(mast.export(network, (), "x"))
+    check_references(model)
+    servers = [a.word("Name") for a in by_kind(model)["Scheduling_Server"]]
+    assert {"main_on_p_server", "main_on_q_server"} <= set(servers)
+
+
+def test_what_is_said_in_other_words_stands_in_the_head() -> None:
+    frames = [replace(FRAME, name=n, rank=k, queue="q") for k, n in enumerate("ab")]
+    rows = (Row("r", 1), Row("s", 1, 2))
+    network = replace(on_bus(Bus(1), *frames), tasks=(replace(TASK, rows=rows, name="t"),))
+    chain = Chain("way", (Step("a", Hop.RELEASED), Step("t", Hop.QUEUED)))
+    for name, export in FORMATS.items():
+        text = export(network, (chain,), "x")
+        assert "Of table t every row counts in every job." in text, name
+        assert "b shares a first-in first-out queue" in text, name
+        assert "Left out: chain way, through a, t." in text, name
 
 
 # --- pyCPA -------------------------------------------------------------------------------

@@ -64,10 +64,15 @@ def test_a_trace_that_says_nothing_is_refused(
     assert message in capsys.readouterr().err
 
 
-def test_options_of_the_other_kind_of_file_are_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["a.csv", "--html", "x"], "--html is for models"),
+        ([str(MODEL), "--json", "--html", "x"], "--json and --export go without --html and"),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(
+    capsys: pytest.CaptureFixture[str], options: list[str], message: str
 ) -> None:
-    assert main(["analyse", str(MODEL), "--json"]) == WRONG
-    assert "--json and --export are for CSV and JSON files" in capsys.readouterr().err
-    assert main(["analyse", str(tmp_path / "a.csv"), "--observed", "x"]) == WRONG
-    assert "--html and --observed are for models" in capsys.readouterr().err
+    assert main(["analyse", *options]) == WRONG
+    assert message in capsys.readouterr().err

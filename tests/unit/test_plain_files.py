@@ -320,6 +320,56 @@ def test_the_command_fails_with_what_is_wrong(
     assert "must be UTF-8" in capsys.readouterr().err
 
 
+def test_what_to_change_is_told_and_is_in_the_json(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "late.csv"
+    file.write_text(
+        "task,priority,period_ms,cost_us\nfast,1,2,400\nslow,2,10,1700\n", encoding="utf-8"
+    )
+    assert main(["analyse", str(file)]) == 1
+    text = capsys.readouterr().out
+    assert "one of these is enough:\n  priorities of the core in this order: fast, slow\n" in text
+    assert max(map(len, text.splitlines())) <= 80
+    assert main(["analyse", str(file), "--json"]) == 1
+    first, second, *_ = json.loads(capsys.readouterr().out)["changes"]
+    assert (first["change"], first["order"]) == ("order", ["fast", "slow"])
+    assert (second["of"], second["factor"]) == ("slow", "941/1000")
+
+
+TABLE = """\
+task,priority,period_ms,cost_us
+a,1,10,5
+
+row,task,cost_us,every
+r,a,20,1
+s,a,30,2
+"""
+
+
+@pytest.mark.parametrize(
+    ("seen", "status", "told"),
+    [
+        ("task,cost_us\na,55\n", 0, "a: 55 us, within its budget of 55 us"),
+        ("task,cost_us\na,54.9999\na,55.0001\n", 1, "a: 55.1 us, ABOVE its budget of 55 us"),
+        ("row,task,cost_ns\ns,a,30001\n", 1, "a.s: 30.1 us, ABOVE its budget of 30 us"),
+        ("row,task,cost_us\ns,a,30\n", 0, "a.r: not executed in this run"),
+        ("task,cost_us\nb,1\n", 1, "seen.csv:2: error: there is no task b"),
+        ("core,tick_us\nb,1\n", 1, "error: core is none of task, row, message"),
+        ("task,cost\na,1\n", 1, "must say its unit"),
+        ("", 1, "no execution time was observed"),
+    ],
+)
+def test_observed_times_are_held_against_budgets(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], seen: str, status: int, told: str
+) -> None:
+    model, times = tmp_path / "a.csv", tmp_path / "seen.csv"
+    model.write_text(TABLE, encoding="utf-8")
+    times.write_text(seen, encoding="utf-8")
+    assert main(["analyse", str(model), "--observed", str(times)]) == status
+    assert told in "".join(capsys.readouterr())
+
+
 def test_every_column_is_described() -> None:
     page = (HERE.parents[1] / "docs" / "plain-files.md").read_text(encoding="utf-8")
     for kind, columns in KINDS.items():

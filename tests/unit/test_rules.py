@@ -192,13 +192,14 @@ def test_activity_may_not_be_named_like_the_port_region() -> None:
     assert "RV-0304" in codes(("      tell:\n", "      ports:\n"), ("north.tell", "north.ports"))
 
 
-def test_event_raised_by_a_missed_deadline_needs_no_other_source() -> None:
+@pytest.mark.parametrize("key", ["on_deadline_miss", "on_overrun"])
+def test_event_raised_by_a_processor_needs_no_other_source(key: str) -> None:
     assert codes(("events: [Lost]", "events: [Lost, Late]")) == ["RV-0509"]
     assert (
         codes(
             ("events: [Lost]", "events: [Lost, Late]"),
             (LOST, LOST + "          late: {from: Filling, to: Idle, on: Late}\n"),
-            ("stack: 16 KiB,", "stack: 16 KiB, on_deadline_miss: [north.Late],"),
+            ("stack: 16 KiB,", f"stack: 16 KiB, {key}: [north.Late],"),
         )
         == []
     )

@@ -1,0 +1,51 @@
+"""Longest execution times that were seen, as plain rows: `task`, `row` or `message` with a cost."""
+
+from __future__ import annotations
+
+from analysis.core.holistic import Network
+from analysis.core.tasks import Task
+
+from .columns import LONG, NEEDED, Kinds, values
+from .entries import Problem, read
+
+KINDS: Kinds = {
+    "task": {"cost": LONG},
+    "row": {"task": NEEDED, "cost": LONG},
+    "message": {"cost": LONG},
+}
+"""What the rows may be; a row of a table needs its task."""
+
+
+def budgets(network: Network) -> dict[str, int]:
+    """What each task, row (``task.row``) and message may take, in ns.
+
+    Of a task with a table, the longest of its jobs.
+    """
+    found = {}
+    for name, item in network.items().items():
+        if isinstance(item, Task):
+            jobs = [item.cost + sum(row.cost for row in rows) for rows in item.frames]
+            found[name] = max(jobs, default=item.cost)
+            found |= {f"{name}.{row.name}": row.cost for row in item.rows}
+        else:
+            found[name] = item.cost
+    return found
+
+
+def observed(text: str, file: str, network: Network) -> dict[str, int] | tuple[Problem, ...]:
+    """The longest time seen of each that the file lists, in ns, or what is wrong with it."""
+    reading = read(text, file)
+    known = budgets(network)
+    found: dict[str, int] = {}
+    for entry in reading.entries:
+        row = values(entry, reading, KINDS)
+        if row is None:
+            continue
+        name = f"{row.word('task')}.{row.name}" if entry.kind == "row" else row.name
+        if name not in known:
+            reading.complain(entry.line, f"there is no {entry.kind} {name}")
+        else:
+            found[name] = max(found.get(name, 0), row.number("cost"))
+    if not reading.problems and not found:
+        reading.complain(0, "no execution time was observed")
+    return tuple(reading.problems) or found

@@ -1,0 +1,24 @@
+"""What is checked and analysed, and cannot be generated yet: told before anything is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from .diagnostics import Diagnostic, error
+from .model import System
+
+UNREADY = "RV-0804"
+"""The model is checked and analysed, but not generated yet."""
+
+
+def unready(system: System) -> Iterator[Diagnostic]:
+    """An error for each element that has no code yet."""
+    for node in system.nodes:
+        if node.cores > 1:
+            text = f"{node.name} has {node.cores} cores: several are analysed, not generated yet"
+            yield error(UNREADY, node.origin, text, hint="put all processors on one core")
+    for message in system.messages:
+        if message.fd:
+            text = f"{message.name} is a CAN FD frame: CAN FD is analysed, not generated yet"
+            hint = "a payload of up to 8 bytes fits a frame of `format: classic`"
+            yield error(UNREADY, message.origin, text, hint=hint)
