@@ -10,6 +10,68 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   function In_S1_Init (Now : Occurrence; Data : Variables) return Selection is
+     (if Now = Passing
+         then S1_Init
+      elsif Now = On_A
+         then S1_A
+      elsif Now = On_B
+         then S1_B
+      elsif Now = On_C
+         then S1_C
+      elsif Now = On_D and then not Data.Foo
+         then S1_D
+      elsif Now = On_F
+         then S1_F
+      elsif Now = On_I
+         then S1_I
+      elsif Now = On_E
+         then S_E
+      elsif Now = On_I and then Data.Foo
+         then S_I
+      else None)
+   with
+     Post =>
+       Is_Selection (In_S1_Init'Result, Chart_States.S1_Init, Now, Data);
+
+   function In_S21_Init
+     (Now : Occurrence;
+      Data : Variables)
+     return Selection is
+     (if Now = Passing
+         then S21_Init
+      elsif Now = On_A
+         then S21_A
+      elsif Now = On_B
+         then S21_B
+      elsif Now = On_G
+         then S21_G
+      elsif Now = On_C
+         then S2_C
+      elsif Now = On_F
+         then S2_F
+      elsif Now = On_I and then not Data.Foo
+         then S2_I
+      elsif Now = On_E
+         then S_E
+      elsif Now = On_I and then Data.Foo
+         then S_I
+      else None)
+   with
+     Post =>
+       Is_Selection (In_S21_Init'Result, Chart_States.S21_Init, Now, Data);
+
+   function In_S_Init (Now : Occurrence; Data : Variables) return Selection is
+     (if Now = Passing
+         then S_Init
+      elsif Now = On_E
+         then S_E
+      elsif Now = On_I and then Data.Foo
+         then S_I
+      else None)
+   with
+     Post => Is_Selection (In_S_Init'Result, Chart_States.S_Init, Now, Data);
+
    function Select_Transition
      (Leaf : Chart_States.Leaf;
       Now  : Occurrence;
@@ -40,26 +102,7 @@ is
             elsif Now = On_I and then Data.Foo
                then S_I
             else None),
-        when Chart_States.S1_Init =>
-           (if Now = Passing
-               then S1_Init
-            elsif Now = On_A
-               then S1_A
-            elsif Now = On_B
-               then S1_B
-            elsif Now = On_C
-               then S1_C
-            elsif Now = On_D and then not Data.Foo
-               then S1_D
-            elsif Now = On_F
-               then S1_F
-            elsif Now = On_I
-               then S1_I
-            elsif Now = On_E
-               then S_E
-            elsif Now = On_I and then Data.Foo
-               then S_I
-            else None),
+        when Chart_States.S1_Init => In_S1_Init (Now, Data),
         when Chart_States.S211 =>
            (if Now = On_D
                then S211_D
@@ -82,34 +125,8 @@ is
             elsif Now = On_I and then Data.Foo
                then S_I
             else None),
-        when Chart_States.S21_Init =>
-           (if Now = Passing
-               then S21_Init
-            elsif Now = On_A
-               then S21_A
-            elsif Now = On_B
-               then S21_B
-            elsif Now = On_G
-               then S21_G
-            elsif Now = On_C
-               then S2_C
-            elsif Now = On_F
-               then S2_F
-            elsif Now = On_I and then not Data.Foo
-               then S2_I
-            elsif Now = On_E
-               then S_E
-            elsif Now = On_I and then Data.Foo
-               then S_I
-            else None),
-        when Chart_States.S_Init =>
-           (if Now = Passing
-               then S_Init
-            elsif Now = On_E
-               then S_E
-            elsif Now = On_I and then Data.Foo
-               then S_I
-            else None))
+        when Chart_States.S21_Init => In_S21_Init (Now, Data),
+        when Chart_States.S_Init => In_S_Init (Now, Data))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Data);
 
    function Select_Segment
