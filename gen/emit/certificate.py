@@ -20,6 +20,7 @@ from .certificate_terms import (
     arrivals,
     assured,
     before,
+    bounded,
     ceiling,
     name_of,
     named,
@@ -206,7 +207,7 @@ def _claims(system: System, task: Task, claims: Claims) -> list[Decl]:
         if len(windows) == 1:
             work = plus(*(Ref(f"{own}_{letter}") for letter in _costs(task)))
         items.append(named(needs, demand(system, task, last, work)))
-        items.append(refuse(Ref(needs), last, label, SLOW))
+        items += bounded(Ref(needs), last, label)
         if len(windows) > 1:
             items.append(refuse(plus(jitter, last, *before(own, job)), bound, label, SLOW))
     limit = times(number(len(windows)), period)
@@ -232,5 +233,5 @@ def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
         stated(f"{done}_Done", bound),
         named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
         named(f"{done}_Needs", demand(system, task, window, work)),
-        refuse(Ref(f"{done}_Needs"), window, row, SLOW),
+        *bounded(Ref(f"{done}_Needs"), window, row),
     ]

@@ -16,10 +16,12 @@ from ..claims import Claim, Claims
 from ..model import Bus, Message, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
 from .certificate_terms import (
+    ONE,
     SLOW,
     arrivals,
     assured,
     before,
+    bounded,
     ceiling,
     name_of,
     named,
@@ -176,15 +178,18 @@ def _waits(bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
         times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
     ]
     lost = _Level(order[0], order, []).lost(bus, busiest)
+    problem = "can be busy longer than claimed"
     items = [
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
         named(f"{line}_Busiest_Needs", plus(*works, *lost)),
-        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, "can be busy longer than claimed"),
+        refuse(ONE, busiest, bus.name, problem),
+        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, problem),
     ]
     for message in order:
         if message.element in claims.waits:
-            own, problem = name_of(message.element), "can wait longer than claimed"
+            own = name_of(message.element)
+            problem = "can wait longer than claimed"
             longest = Chain("-", (busiest, Ref(f"{own}_C")))
             items.append(stated(f"{own}_Wait", claims.waits[message.element]))
             items.append(refuse(longest, Ref(f"{own}_Wait"), message.element, problem))
@@ -244,6 +249,7 @@ def _instances(
     window: Expr = Ref(f"{own}_{prefix}Busy")
     items.append(named(f"{own}_{prefix}Busy_Needs", busy(window)))
     problem = "can keep others waiting for longer than claimed"
+    items.append(refuse(ONE, window, label, problem))  # no time at all is a solution too
     items.append(refuse(Ref(f"{own}_{prefix}Busy_Needs"), window, label, problem))
     late = Ref(f"{own}_J") if not prefix else Ref(f"{own}_{prefix}J")
     most = times(number(len(claim.windows)), Ref(f"{own}_T"))
@@ -255,7 +261,7 @@ def _instances(
         needs = f"{own}_{prefix}Needs{tail}"
         items.append(stated(f"{own}_{prefix}W{tail}", length))
         items.append(named(needs, waiting(instance, at)))
-        items.append(refuse(Ref(needs), at, label, SLOW))
+        items += bounded(Ref(needs), at, label)
     return items
 
 
