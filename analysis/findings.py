@@ -11,7 +11,7 @@ from gen.terms import Origin
 
 from .core.can_response import FrameResponse
 from .core.responses import Interference, Reason, Response
-from .latencies import Latency
+from .latencies import Hop, Latency
 from .timing import Analysis
 from .units import duration, microseconds, percent
 
@@ -203,7 +203,7 @@ def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
 def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
     """Chains without a way, and those that may take too long."""
     for chain in analysis.system.chains:
-        gap = analysis.ways.through(chain.path).gap
+        gap = chain.gap
         if gap is not None:
             message = f"the chain {chain.name} is broken: no values go from {gap[0]} to {gap[1]}"
             yield error(NO_WAY, chain.origin, message, hint="name what lies between them")
@@ -225,9 +225,29 @@ def _late_chain(
         CHAIN_LATE,
         chain.origin,
         f"the {what} of {chain.name} {takes}, and its limit is {duration(limit)}",
-        notes=[
+        notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
+        or [
             (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
             for name, time in hops[:LARGEST]
         ],
-        hint="let its rows run more often, or in one processor in the order of the chain",
+        hint="let its rows run more often, or in one processor in the order of the chain"
+        if value is not None
+        else "limit the parts of it before and behind that",
     )
+
+
+def _unbounded(found: Latency, what: str) -> Iterator[str]:
+    """Which hops have no bound, and why."""
+    for before, hop in zip((None, *found.hops), found.hops, strict=False):
+        step = hop.step
+        if hop.response is None:
+            yield f"{step.name} has no bound of its response"
+        elif what == "age" and step.keeps:
+            yield step.keeps
+        elif what == "reaction" and step.waits:
+            yield step.waits
+        elif step.hop is Hop.QUEUED and hop.wait is None and before:
+            many = f"{step.puts} values at once" if step.puts > 1 else "them faster"
+            yield f"{step.name} takes one value in a job, and {before.step.name} may put {many} in"
+        elif step.hop is Hop.SAMPLED and hop.wait is None:
+            yield f"{step.name} samples, and nothing says how often it runs"

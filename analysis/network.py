@@ -1,6 +1,6 @@
 """A `System` as the records of `analysis.core`: the one place that knows both.
 
-A processor is a task whose rows are those of its table; its two context switches
+A processor is a task whose rows are those of its table; its context switches
 and the timer come from the node's platform figures. The driver's work on a message
 follows the job that sends it, or the frame that arrived; the frame follows the
 driver. Every user of a protected object has a section of its own. A node's frames
@@ -65,6 +65,7 @@ def _task(task: model.Task, system: System) -> Task:
         rows=rows,
         timed=task.timed and system.node(task.node).tick is not None,
         sporadic=task.sporadic,
+        suspensions=task.suspensions,
     )
 
 

@@ -159,10 +159,9 @@ class Analysis:
         """The chains that the model limits, where there is a way, with their latencies."""
         found = []
         for chain in self.system.chains:
-            way = self.ways.through(chain.path)
-            if way.places:
+            if chain.way:
                 limits = (chain.reaction or 0, chain.age or 0)
-                found.append((chain, self._latencies.along(chain.name, way.places, *limits)))
+                found.append((chain, self._latencies.along(chain.name, chain.way, *limits)))
         return tuple(found)
 
     @cached_property

@@ -15,7 +15,19 @@ from enum import Enum
 from functools import cached_property
 
 from .statechart import DONE, Overflow, Region, Timing
-from .terms import Expression, Flow, Ns, Origin, Scalar, ScalarType, Type, Value, named
+from .terms import (
+    Expression,
+    Flow,
+    Ns,
+    Origin,
+    RecordType,
+    Scalar,
+    ScalarType,
+    Type,
+    Value,
+    always,
+    named,
+)
 
 NO_TIME = Ns(0)
 
@@ -165,6 +177,32 @@ class Component:
     def runnables(self) -> tuple[Region | Activity, ...]:
         """The regions, then the activities, each in model order."""
         return (*self.regions, *self.activities)
+
+    def renews(self, row: Region | Activity, name: str) -> bool:
+        """Whether every execution of a row gives a data item or output port a new value.
+
+        A region does in some only, and a do activity while its state is active; a user's
+        body is taken to do so.
+        """
+        if isinstance(row, Region) or row.while_in is not None:
+            return False
+        if row.flow is None:
+            return True
+        sure = always(row.flow)
+        if name in sure:
+            return True
+        item = next((data.type for data in self.data if data.name == name), None)
+        return isinstance(item, RecordType) and all(
+            f"{name}.{field.name}" in sure for field in item.fields
+        )
+
+    def values_in_job(self, port: str) -> int:
+        """The most values that are sent on a port while each row is executed once."""
+        return sum(
+            item.steps_per_execution if isinstance(item, Region) else 1
+            for item in self.runnables()
+            if port in item.sends
+        )
 
     def completing(self, region: str) -> tuple[tuple[Activity, str], ...]:
         """The do activities that complete a state of a region, each with that state."""
@@ -381,7 +419,9 @@ class Task:
     ``budget`` is the longest execution of a job, overheads apart: of one that runs
     all of ``slots`` where there are some. ``released_by`` names the task or message
     whose completion releases it; ``jitter`` and ``deadline`` count from the event
-    that begins that chain. ``timed``: the node's timer releases it.
+    that begins that chain. ``timed``: the node's timer releases it. A job suspends
+    itself ``suspensions`` times: one of a sporadic processor waits for a frame, and
+    then until its least separation is over.
     """
 
     element: str
@@ -397,6 +437,11 @@ class Task:
     released_by: str | None = None
     sporadic: bool = False
     timed: bool = False
+
+    @property
+    def suspensions(self) -> int:
+        """See above: each costs two context switches, and the work of making it ready."""
+        return 2 if self.sporadic else 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -417,7 +462,8 @@ class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
     ``path`` names messages and rows (``owner.name``), in order; between two of
-    them the shortest way is meant.
+    them the shortest way is meant. `ways` fills in ``way``, all its places, or the
+    ``gap`` between two of the path that no values cross.
     """
 
     name: str
@@ -427,6 +473,8 @@ class Chain:
     """From an input until the first output that knows it."""
     age: Ns | None
     """From the sampling of an input until the output made of it."""
+    way: tuple[str, ...] = ()
+    gap: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -439,7 +487,7 @@ class Shutdown:
 
 @dataclass(frozen=True)
 class System:
-    """A whole system, resolved. ``tasks`` and ``objects`` are filled in by `derive`."""
+    """A whole system, resolved. ``tasks``, ``objects`` and ways are filled in by `derive`."""
 
     name: str
     origin: Origin

@@ -9,7 +9,7 @@ may have waited.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 
 from ..claims import Claim, Claims
@@ -153,8 +153,8 @@ def _bits(message: Message) -> int:
     return 10 * message.length + (25 if message.extended else 0)
 
 
-def bus_claims(system: System, bus: Bus, claims: Claims) -> list[Decl]:
-    """The instances of each message, and what they show of its response."""
+def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
+    """The instances of each message, and what they show of its response; then those handed over."""
     order = _of(system, bus)
     queued = [n for n, message in enumerate(order, 1) if message.source is not None]
     items = _waits(bus, order, claims)
@@ -163,8 +163,8 @@ def bus_claims(system: System, bus: Bus, claims: Claims) -> list[Decl]:
         level = _Level(message, order[:reach], order[reach:])
         items += _of_message(bus, level, claims)
     for message in order:
-        if message.element in claims.turns:
-            items += _turns(system, message, claims.turns[message.element])
+        if message.element in handed:
+            items += _turns(system, message, claims.turns.get(message.element, Claim()))
     return items
 
 

@@ -1,0 +1,92 @@
+"""Small models of which a bound was once too low: what runs, and what is said of it now."""
+
+from __future__ import annotations
+
+from analysis.findings import findings
+from analysis.timing import Analysis
+from tests.support.timing_models import CHART, KEPT, QUEUE, SEVERAL, SWITCHES, analysed
+
+
+def said(analysis: Analysis) -> list[str]:
+    """What is found wrong with it."""
+    return [f"{item.code} {item.message}" for item in findings(analysis)]
+
+
+# --- A sporadic processor suspends itself twice ----------------------------------------
+
+
+def test_a_sporadic_processor_waits_for_a_frame_and_for_its_separation() -> None:
+    """Of a frame that comes early it pays four context switches."""
+    found = analysed(SWITCHES, ("context_switch: 5 us", "context_switch: 50 us"))
+    assert (
+        found.response("reception").bound == 40_000 + 4 * 50_000 + 1 * (40_000 + 2 * 50_000) + 5_000
+    )
+
+
+def test_switches_that_were_not_counted_are_a_deadline_missed() -> None:
+    """Frames every millisecond: 380 us of each are gone, where 280 us were counted.
+
+    With those 280 us the processor would need 19.8 ms of its 20 ms.
+    """
+    fast = (("context_switch: 5 us", "context_switch: 50 us"), ("period: 2 ms", "period: 1 ms"))
+    early = ("released_by: can0, period: 1 ms", "released_by: can0, period: 999 us")
+    (one,) = said(analysed(SWITCHES, *fast, early))
+    assert "work has no response-time bound: it and what preempts it need 109.1 %" in one
+
+
+# --- Chains through queues and charts --------------------------------------------------
+
+
+def latency_of(analysis: Analysis) -> tuple[int | None, int | None]:
+    """Reaction and age of the only chain."""
+    ((_, found),) = analysis.limited
+    return found.reaction, found.age
+
+
+def test_what_a_queue_does_not_renew_ages_as_long_as_what_fills_it() -> None:
+    """A valve told every 10 ms, of a command that comes every 100 ms: as with a sampled port."""
+    queued, sampled = analysed(QUEUE), analysed(QUEUE, (", kind: queued, depth: 4", ""))
+    assert latency_of(queued)[0] == latency_of(sampled)[0]
+    (_, old), (_, older) = latency_of(queued), latency_of(sampled)
+    assert old is not None and older is not None
+    assert 100_000_000 < older <= old < 125_000_000
+    apart = "  port_work: {node: cpu, stack: 32 KiB, activities: [d.ports]}\n"
+    moved = analysed(QUEUE, (apart, ""), ("[d.act]", "[d.ports, d.act]"))
+    assert (latency_of(moved)[1] or 0) > 100_000_000
+
+
+def test_an_age_through_what_is_not_always_sent_or_set_has_no_bound() -> None:
+    body = ("[{send: valve, with: i}]", "[{if: i > 3, then: [{send: valve, with: i}]}]")
+    assert (latency_of(analysed(QUEUE, body))[1] or 0) > 100_000_000  # what is sent, is of that
+    always = analysed(KEPT, ("if: i > 3, then: [{set: level, to: i}]", "set: level, to: i"))
+    assert (latency_of(always)[1] or 0) > 100_000_000
+    some = analysed(KEPT)
+    assert latency_of(some)[1] is None and latency_of(some)[0] == latency_of(always)[0]
+    (one,) = findings(some)
+    assert "the age of cmd has no bound" in one.message
+    assert one.notes[0][1] == "d.look gives d.level a new value in some of its jobs only"
+
+
+def test_an_event_that_waits_behind_others_has_no_bound() -> None:
+    """One is taken in an execution, so each that waits before it is 20 ms more."""
+    (one,) = findings(analysed(CHART))
+    assert "the reaction of stop has no bound" in one.message
+    assert [note for _, note in one.notes] == [
+        "brk.Main takes events, time-outs and completions one by one, oldest first"
+    ]
+    watching = CHART[: CHART.index("          a: {from: Run")]
+    watching += "          halt: {from: Run, to: Halted, when: stop > 3}\n"
+    watching += "          go: {from: Halted, to: Run, when: stop < 3}\n"
+    watching += CHART[CHART.index("    activities:\n      act") :]
+    assert (latency_of(analysed(watching))[0] or 0) < 30_000_000
+
+
+def test_two_senders_put_two_values_in_a_queue_that_gives_one() -> None:
+    (one,) = [item for item in findings(analysed(SEVERAL)) if item.code == "RV-0905"]
+    assert "the reaction of cmd has no bound" in one.message
+    assert [note for _, note in one.notes] == [
+        "d.ports takes one value in a job, and s.one may put 2 values at once in"
+    ]
+    alone = ("      two: {period: 20 ms, wcet: 100 us, body: [{send: o, with: cmd}]}\n", "")
+    reaction, _ = latency_of(analysed(SEVERAL, alone, (", s.two", "")))
+    assert reaction is not None and reaction < 30_000_000
