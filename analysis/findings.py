@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from gen.diagnostics import Diagnostic, error
+from gen.diagnostics import Diagnostic, error, warning
 from gen.model import Bus, Chain
 from gen.terms import Origin
 
@@ -27,6 +27,9 @@ BUS_OVERLOAD = "RV-0903"
 NO_WAY, CHAIN_LATE = "RV-0904", "RV-0905"
 """A chain is broken; it may take longer than its limit."""
 
+QUEUE_SHORT, QUEUE_OPEN = "RV-0906", "RV-0907"
+"""A queue does not hold what may wait in it; nothing bounds what may wait in it."""
+
 LARGEST = 3
 """How many interferers a diagnostic names."""
 
@@ -41,7 +44,7 @@ def findings(analysis: Analysis) -> tuple[Diagnostic, ...]:
         else:
             found.append(_of_message(response, analysis))
     found += [_of_bus(bus, analysis) for bus in analysis.overloaded]
-    return (*found, *_of_receptions(analysis), *_of_chains(analysis))
+    return (*found, *_of_receptions(analysis), *_of_chains(analysis), *_of_queues(analysis))
 
 
 def no_bound_reason(response: Response | FrameResponse) -> str:
@@ -198,6 +201,19 @@ def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
                 ],
                 hint="shorten the period of the processor",
             )
+
+
+def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Queues that may lose what comes: a warning where no depth is known to hold all of it."""
+    for one in analysis.short_queues:
+        lost = f"and `{one.key}` is {one.given}: what it does not hold is lost"
+        hint = "let it be read more often, or filled less often"
+        if one.needed is not None:
+            message = f"up to {one.needed} {one.what} at once, {lost}"
+            hint = f"give it `{one.key}: {one.needed}`, or {hint}"
+            yield error(QUEUE_SHORT, one.origin, message, hint=hint)
+        elif analysis.found.met:
+            yield warning(QUEUE_OPEN, one.origin, f"any number of {one.what}, {lost}", hint=hint)
 
 
 def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:

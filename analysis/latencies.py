@@ -19,7 +19,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from gen.model import Message, Port, PortKind, Processor, System
+from gen.model import Activity, Message, Port, PortKind, Processor, System
+from gen.statechart import Region
 from gen.terms import named
 
 from .core import can
@@ -179,16 +180,20 @@ class Latencies:
     ) -> Step:
         """A row: later in the same job as the step before, or at its own times."""
         queued = port is not None and port.kind is PortKind.QUEUED and bool(steps)
-        puts = self._puts(place) if queued else 1
+        senders = self._senders(place) if queued else ()
+        puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
         before = steps[-1].name if steps else ""
         made = Step(row, Hop.QUEUED if queued else Hop.SAMPLED, puts=puts)
-        if before in self.rows and row in self.rows and puts == 1:
+        if before in self.rows and row in self.rows and puts == 1 and len(senders) < 2:
             (processor, first), (other, then) = self.rows[before], self.rows[row]
             divisors = {processor.slots[first].divisor, other.slots[then].divisor}
             phases = {processor.slots[first].phase, other.slots[then].phase}
             if processor is other and first < then and len(divisors) == len(phases) == 1:
                 released[row] = before
                 made = Step(row, Hop.RELEASED)
+        if len(senders) > 1:
+            names = " and ".join(sender.name for sender in senders)
+            made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
         owner, _, name = row.partition(".")
         regions = self.system.instance(owner).component.regions
         if any(region.name == name and region.takes_turns for region in regions):
@@ -196,13 +201,13 @@ class Latencies:
             made = replace(made, waits=waits)
         return made
 
-    def _puts(self, place: str) -> int:
-        """The values that one job puts into a queued port; a message brings one."""
+    def _senders(self, place: str) -> tuple[Region | Activity, ...]:
+        """The rows that send to a port over a connection; a message has one."""
         for connection in self.system.connections:
             if str(connection.target) == place:
                 source = self.system.instance(connection.source.instance)
-                return max(1, source.component.values_in_job(connection.source.port))
-        return 1
+                return source.component.senders(connection.source.port)
+        return ()
 
 
 def handed(element: str) -> str:

@@ -196,13 +196,9 @@ class Component:
             f"{name}.{field.name}" in sure for field in item.fields
         )
 
-    def values_in_job(self, port: str) -> int:
-        """The most values that are sent on a port while each row is executed once."""
-        return sum(
-            item.steps_per_execution if isinstance(item, Region) else 1
-            for item in self.runnables()
-            if port in item.sends
-        )
+    def senders(self, port: str) -> tuple[Region | Activity, ...]:
+        """The regions and activities that send on a port."""
+        return tuple(item for item in self.runnables() if port in item.sends)
 
     def completing(self, region: str) -> tuple[tuple[Activity, str], ...]:
         """The do activities that complete a state of a region, each with that state."""

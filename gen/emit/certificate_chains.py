@@ -55,6 +55,7 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
     items = [Comment(" ".join(words)), *items]
     waiting = [hop.element for hop in hops if hop.open]
     kept = [hop.element for hop in hops[:-1] if not hop.sure]
+    kept += [hop.element for hop in hops if hop.open and hop.how == "queued"]
     for what, terms, bound, limit, without in (
         ("Reaction", reaction, claim.reaction, chain.reaction, waiting),
         ("Age", age, claim.age, chain.age, kept),

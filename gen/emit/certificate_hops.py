@@ -20,9 +20,9 @@ class Hop:
     """One step of a chain: a row, a task, a message, or a message's handing over.
 
     ``how`` values come to it: ``released`` by the step before or the chain's event,
-    ``sampled``, or ``queued`` with so many at once. ``open``: its values may wait inside
-    it for as long as its region has other things to do. ``sure``: each of its jobs
-    makes a new output.
+    ``sampled``, or ``queued`` with so many at once. ``open``: values may wait for as long
+    as its region has other things to do, or as others fill the same queue. ``sure``: each
+    of its jobs makes a new output.
     """
 
     element: str
@@ -81,14 +81,16 @@ def _row(system: System, element: str, row: Region | Activity, hops: list[Hop]) 
 def _handler(system: System, owner: str, port: str, hops: list[Hop]) -> Hop:
     """The port region of an instance, as far as it handles this port."""
     element = f"{owner}.ports"
-    many = 1
-    for connection in system.connections:
-        if (connection.target.instance, connection.target.port) == (owner, port):
-            source = system.instance(connection.source.instance).component
-            many = source.values_in_job(connection.source.port)
     queued = system.instance(owner).component.port(port).kind is PortKind.QUEUED
-    if queued and hops and many > 1:
-        return Hop(element, "row", "queued", many)
+    many = [
+        row.steps_per_execution if isinstance(row, Region) else 1
+        for connection in system.connections
+        if (connection.target.instance, connection.target.port) == (owner, port)
+        for row in system.instance(connection.source.instance).component.runnables()
+        if connection.source.port in row.sends
+    ]
+    if queued and hops and sum(many) > 1:
+        return Hop(element, "row", "queued", max(many), open=len(many) > 1)
     if hops and _follows(system, hops[-1], element):
         return Hop(element, "row", "released")
     return Hop(element, "row", "queued" if queued and hops else "sampled")

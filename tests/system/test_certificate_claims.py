@@ -112,7 +112,8 @@ def test_waits_in_queues_are_exact(tmp_path: Path) -> None:
     ("model", "problem"),
     [
         (CHART, "chain stop can have any reaction: brk.Main"),
-        (SEVERAL, "chain cmd can fill a queue"),
+        (SEVERAL, "chain cmd can have any reaction: d.ports"),
+        (QUEUE.replace("period: 100 ms", "period: 5 ms"), "chain cmd can fill a queue"),
         (KEPT, "chain cmd can have any age: d.look"),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from analysis.findings import findings
 from analysis.timing import Analysis
+from analysis.words import verdict_line
 from tests.support.timing_models import CHART, KEPT, QUEUE, SEVERAL, SWITCHES, analysed
 
 
@@ -85,8 +86,51 @@ def test_two_senders_put_two_values_in_a_queue_that_gives_one() -> None:
     (one,) = [item for item in findings(analysed(SEVERAL)) if item.code == "RV-0905"]
     assert "the reaction of cmd has no bound" in one.message
     assert [note for _, note in one.notes] == [
-        "d.ports takes one value in a job, and s.one may put 2 values at once in"
+        "one and two both send to d.i, which gives one in a job"
     ]
     alone = ("      two: {period: 20 ms, wcet: 100 us, body: [{send: o, with: cmd}]}\n", "")
     reaction, _ = latency_of(analysed(SEVERAL, alone, (", s.two", "")))
     assert reaction is not None and reaction < 30_000_000
+
+
+def test_a_region_of_several_steps_puts_as_many_values_in_a_queue() -> None:
+    region = """\
+    regions:
+      Main:
+        {period: 20 ms, wcet: 100 us, queue: 1, steps: STEPS, initial: Run, states: {Run: {}},
+         transitions: {go: {from: Run, to: Run, when: cmd > 3, effect: [{send: o, with: cmd}]}}}
+"""
+    old = SEVERAL[SEVERAL.index("    activities:\n      one") : SEVERAL.index("  Dst:")]
+    text = SEVERAL.replace(old, region).replace("s.one", "s.Main").replace(", s.two", "")
+    reaction, _ = latency_of(analysed(text, ("STEPS", "1")))
+    assert reaction is not None and reaction < 30_000_000
+    found = analysed(text, ("STEPS", "3"))
+    (one, _) = findings(found)
+    assert [note for _, note in one.notes] == [
+        "d.ports takes one value in a job, and s.Main may put 3 values at once in"
+    ]
+
+
+# --- Queues and their depths -----------------------------------------------------------
+
+
+def test_queues_that_may_be_full_are_errors_with_the_depth_that_holds_all() -> None:
+    two = ("messages:\n", "messages:\n  b: {bus: can0, id: 0x101, to: d.j, period: 5 ms}\n")
+    port = ("ports: {", "ports: {j: {in: Word, kind: queued, depth: 2}, ")
+    fast = ("port_region: {period: 10 ms", "port_region: {period: 5 ms")
+    assert said(analysed(QUEUE, two, port, fast)) == []
+    short = ("receive_depth: 8, transmit_depth: 8", "receive_depth: 1, transmit_depth: 1")
+    found = analysed(QUEUE, two, port, fast, short)
+    assert said(found) == [
+        "RV-0906 up to 2 frames of can0 may wait for reception at once, and `receive_depth` is 1: "
+        "what it does not hold is lost"
+    ]
+    assert not found.schedulable and "queues too short: receive_depth" in verdict_line(found)
+    (one,) = said(analysed(QUEUE, two, port, fast, ("depth: 2", "depth: 1")))
+    assert one.startswith("RV-0906 up to 2 values may wait in d.j at once, and `depth` is 1")
+    slow = analysed(QUEUE, two, port)
+    (one,) = said(slow)
+    assert one.startswith("RV-0907 any number of values may wait in d.j, and `depth` is 2")
+    assert slow.schedulable
+    expected = ("depth: 2}", "depth: 2, overflow: drop_oldest}")
+    assert said(analysed(QUEUE, two, port, expected)) == []
