@@ -33,7 +33,7 @@ def network_of(system: System) -> Network:
     return Network(
         tasks=tuple(_task(task, system) for task in system.tasks),
         frames={
-            bus.name: tuple(_frame(m, bus) for m in system.messages if m.bus == bus.name)
+            bus.name: tuple(_frame(m, bus) for m in system.frames if m.bus == bus.name)
             for bus in system.buses
         },
         buses={bus.name: _bus(bus) for bus in system.buses},

@@ -57,7 +57,7 @@ class Analysis:
     @cached_property
     def messages(self) -> dict[str, Message]:
         """The messages of the system by element."""
-        return {message.element: message for message in self.system.messages}
+        return {message.element: message for message in self.system.frames}
 
     def origin(self, name: str) -> Origin:
         """Where a task or message stands in the model."""

@@ -314,7 +314,8 @@ class Message:
     """A CAN message: a port's value on a bus.
 
     ``source`` None: sent by a party outside the system; ``targets`` empty:
-    received outside. ``period`` is the least time between two instances.
+    received outside. ``period`` is the least time between two instances. A frame that
+    others send to others has neither, and no signals.
     """
 
     name: str
@@ -325,7 +326,7 @@ class Message:
     type: Type
     signals: tuple[Signal, ...]
     length: int
-    """Data length in bytes, 1 .. 8."""
+    """Data length in bytes, 0 .. 8."""
     source: End | None
     targets: tuple[End, ...]
     period: Ns
@@ -336,6 +337,11 @@ class Message:
     def element(self) -> str:
         """Stable id of the frame: ``bus.message``."""
         return f"{self.bus}.{self.name}"
+
+    @property
+    def is_foreign(self) -> bool:
+        """Others send it to others: it takes its time on the bus, and nothing else."""
+        return self.source is None and not self.targets
 
     @property
     def limit(self) -> Ns:
@@ -499,8 +505,15 @@ class System:
     processors: tuple[Processor, ...]
     shutdown: Shutdown
     chains: tuple[Chain, ...] = ()
+    traffic: tuple[Message, ...] = ()
+    """Frames of the buses that are none of the system's ``messages``."""
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
+
+    @property
+    def frames(self) -> tuple[Message, ...]:
+        """All that is sent on the buses: the system's messages, then those of others."""
+        return (*self.messages, *self.traffic)
 
     def instance(self, name: str) -> Instance:
         """The instance called ``name``; KeyError where there is none."""

@@ -439,7 +439,7 @@ class ConnectionForm(Element):
 
 
 class MessageForm(Element):
-    """A port's value on a CAN bus."""
+    """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
     bus: Reference = key("The bus.")
     id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
@@ -458,6 +458,13 @@ class MessageForm(Element):
     period: PositiveSpan | None = optional(
         "Least time between two frames; only for messages from outside, the others have the period "
         "of what sends them."
+    )
+    bytes: int | None = PydanticField(
+        default=None,
+        ge=0,
+        le=8,
+        description="Data bytes of a frame with neither `from` nor `to`, 0 to 8: other nodes "
+        "exchange it, and here it only takes its time on the bus.",
     )
     deadline: PositiveSpan | None = optional(
         "From the release of what sends it, or from its arrival, until it is received; the period "

@@ -47,7 +47,7 @@ LETTERS = (
 def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     """The certificate of a system; its claims are those of the analysis."""
     items: list[Decl] = [Comment(LETTERS)]
-    elements = [task.element for task in system.tasks] + [m.element for m in system.messages]
+    elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
     items.append(Comment("The claimed responses: each is some other's lateness, or its own bound."))
     items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
     for node in system.nodes:

@@ -45,7 +45,7 @@ def arbitration(message: Message) -> tuple[int, bool, int]:
 
 def _of(system: System, bus: Bus) -> list[Message]:
     """The messages of a bus, most urgent first."""
-    return sorted((m for m in system.messages if m.bus == bus.name), key=arbitration)
+    return sorted((m for m in system.frames if m.bus == bus.name), key=arbitration)
 
 
 def bus_terms(system: System, bus: Bus) -> list[Decl]:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
 from analysis.findings import findings
 from analysis.timing import Analysis
 from analysis.words import verdict_line
+from gen.load import load
+from tests.support.certificates import certificate, compiled
 from tests.support.timing_models import CHART, KEPT, QUEUE, SEVERAL, SWITCHES, analysed
 
 
@@ -134,3 +141,41 @@ def test_queues_that_may_be_full_are_errors_with_the_depth_that_holds_all() -> N
     assert slow.schedulable
     expected = ("depth: 2}", "depth: 2, overflow: drop_oldest}")
     assert said(analysed(QUEUE, two, port, expected)) == []
+
+
+# --- What other nodes send -------------------------------------------------------------
+
+
+def test_frames_that_others_send_to_others_take_their_time(tmp_path: Path) -> None:
+    lower = "  x: {bus: can0, id: 0x700, bytes: 8, period: 1 ms}\n"
+    higher = "  y: {bus: can0, id: 0x10, bytes: 0, period: 2 ms}\n"
+    alone = analysed(QUEUE)
+    shared = analysed(QUEUE, ("chains:\n", f"{lower}{higher}chains:\n"))
+    assert findings(shared) == ()
+    assert [message.name for message in shared.system.messages] == ["cmd", "valve"]
+    before, after = (one.found.responses["can0.valve"].bound for one in (alone, shared))
+    assert before is not None and after is not None
+    assert after == before + 270_000 + 110_000  # an x has begun, and a y goes before it
+    (bus,) = shared.system.buses
+    assert shared.bus_load(bus) == alone.bus_load(bus) + Fraction(27, 100) + Fraction(55, 1000)
+    assert compiled(certificate(shared), tmp_path) == ""
+    assert "can0.x" in {name for name in shared.messages}
+
+
+@pytest.mark.parametrize(
+    ("line", "problem"),
+    [
+        ("id: 0x700, period: 1 ms", "RV-0608"),
+        ("id: 0x700, bytes: 8", "RV-0609"),
+        ("id: 0x110, bytes: 8, period: 1 ms", "RV-0607"),
+        ("id: 0x700, bytes: 9, period: 1 ms", "RV-02"),
+    ],
+)
+def test_traffic_of_others_that_says_too_little_is_refused(line: str, problem: str) -> None:
+    text = QUEUE.replace("chains:\n", f"  x: {{bus: can0, {line}}}\nchains:\n")
+    result = load(Path("model.yaml"), lambda path, limit: text.encode()[:limit])
+    assert any(item.code.startswith(problem) for item in result.diagnostics), result.diagnostics
+    mine = text.replace(f"  x: {{bus: can0, {line}}}\n", "")
+    mine = mine.replace("id: 0x110, to: d.i", "id: 0x110, bytes: 3, to: d.i")
+    result = load(Path("model.yaml"), lambda path, limit: mine.encode()[:limit])
+    assert [item.code for item in result.diagnostics] == ["RV-0608"]
