@@ -4,7 +4,8 @@ A processor is a task whose rows are those of its table; its context switches
 and the timer come from the node's platform figures. The driver's work on a message
 follows the job that sends it, or the frame that arrived; the frame follows the
 driver. Every user of a protected object has a section of its own. A node's frames
-leave in the order sent, by the contract of the controller, so they share a queue.
+leave in the order sent, by the contract of the controller, so they share a queue; the
+driver may hand them over one by one.
 """
 
 from __future__ import annotations
@@ -85,6 +86,7 @@ def _frame(message: Message, bus: model.Bus) -> Frame:
         deadline=message.limit,
         cost=frame_length(message).time(bus.bit_rate),
         queue="" if message.source is None else f"{bus.name}.transmit",
+        reloaded=message.source is not None,
     )
 
 

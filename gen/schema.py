@@ -397,7 +397,9 @@ class NodeForm(Element):
         "A task above all others that measures how long a host withholds the processor."
     )
     release: Span = PydanticField(
-        default=0, description="Longest work above all tasks that makes one job ready."
+        default=0,
+        description="Longest work of one release outside its rows: making the job ready, above all "
+        "tasks, and its bookkeeping (record, check of the deadline). Counted above all tasks.",
     )
     tick: TickForm | None = optional(
         "The timer's periodic interrupt, where it has one; exact time-outs unless given."
@@ -417,7 +419,10 @@ class BusForm(Element):
     """A CAN bus."""
 
     bit_rate: BitRate = key("Nominal bit rate, 10 kbit/s to 1 Mbit/s.")
-    driver_wcet: PositiveSpan = key("Worst-case time of the driver for one frame in or out.")
+    driver_wcet: PositiveSpan = key(
+        "Worst-case time of the driver for one frame in or out, and of the reception for handing "
+        "one to every port that it goes to."
+    )
     receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
     transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")

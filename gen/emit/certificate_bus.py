@@ -3,8 +3,8 @@
 A frame waits for the longest one that goes behind it and has begun, for what goes
 before it, and for errors; a bit later than it could begin, arbitration is over. All
 instances of the busy period count. Frames that a node sends share a first-in
-first-out queue: each goes with the last of them, and to others it is as late as it
-may have waited.
+first-out queue, of which the driver may hand over one by one: any frame may go before
+each of them, and to others it is as late as it may have waited.
 """
 
 from __future__ import annotations
@@ -156,10 +156,9 @@ def _bits(message: Message) -> int:
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
     """The instances of each message, and what they show of its response; then those handed over."""
     order = _of(system, bus)
-    queued = [n for n, message in enumerate(order, 1) if message.source is not None]
     items = _waits(bus, order, claims)
     for number_, message in enumerate(order, 1):
-        reach = max(queued) if message.source is not None else number_
+        reach = len(order) if message.source is not None else number_
         level = _Level(message, order[:reach], order[reach:])
         items += _of_message(bus, level, claims)
     for message in order:

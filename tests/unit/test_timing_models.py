@@ -179,3 +179,24 @@ def test_traffic_of_others_that_says_too_little_is_refused(line: str, problem: s
     mine = mine.replace("id: 0x110, to: d.i", "id: 0x110, bytes: 3, to: d.i")
     result = load(Path("model.yaml"), lambda path, limit: mine.encode()[:limit])
     assert [item.code for item in result.diagnostics] == ["RV-0608"]
+
+
+def test_less_urgent_frames_go_between_those_of_a_queue_in_memory(tmp_path: Path) -> None:
+    """One mailbox, loaded again after each frame: x may win each time, and does so four times."""
+    sent = "".join(f"  v{n}: {{bus: can0, id: 0x13{n}, from: d.v{n}}}\n" for n in range(3))
+    ports = "".join(f"v{n}: {{out: Word}}, " for n in range(3))
+    body = "".join(f"{{send: v{n}, with: i}}, " for n in range(3))
+    lower = "  x: {bus: can0, id: 0x700, bytes: 8, period: 400 us, deadline: 4 ms}\n"
+    found = analysed(
+        QUEUE,
+        ("chains:\n", f"{sent}{lower}chains:\n"),
+        ("ports: {", "ports: {" + ports),
+        ("[{send: valve", "[" + body + "{send: valve"),
+    )
+    frames = {one.frame.name: one for one in found.frames(found.system.buses[0])}
+    last = frames["can0.valve"]
+    assert last.bound is not None
+    #  four own frames of 65 bits, one received, and an x before each
+    assert last.bound >= last.frame.jitter + 4 * (130_000 + 270_000)
+    said = compiled(certificate(found), tmp_path)
+    assert said == "", said
