@@ -6,14 +6,15 @@ of the busy period, and of a message the busy period itself.
 
 from __future__ import annotations
 
-from gen.claims import ChainClaim, Claim, Claims, Step
+from gen.claims import ChainClaim, Claim, Claims
 from gen.terms import Ns
 
+from . import latencies
 from .core import can
 from .core.bus import Bus
 from .core.can_response import ERRORS, FrameResponse
 from .core.chains import Hop
-from .core.responses import Response, demand_of, jitter_of
+from .core.responses import Response, demand_of, jitter_of, release_time
 from .core.window import Effort, Window, fixed_cost, source
 from .latencies import Latency, reception_frames
 from .timing import Analysis
@@ -38,11 +39,10 @@ def claims_of(analysis: Analysis) -> Claims:
     items = {}
     for name, response in analysis.found.responses.items():
         items[name] = _of_task(response) if isinstance(response, Response) else _of(response)
-    chains = tuple(_of_chain(latency, analysis) for _, latency in analysis.limited)
-    steps = [step for chain in chains for step in chain.steps]
-    bounds = {row.row.name: Ns(row.bound) for _, row in analysis.rows()}
-    rows = {step.element: bounds[step.element] for step in steps if step.kind == "row"}
-    handed = {step.element for step in steps if step.kind == "handed"}
+    chains = {chain.name: _of_chain(latency) for chain, latency in analysis.limited}
+    steps = {hop.step.name for _, latency in analysis.limited for hop in latency.hops}
+    rows = {r.row.name: Ns(r.bound) for _, r in analysis.rows() if r.row.name in steps}
+    handed = {element for element in analysis.deliveries if latencies.handed(element) in steps}
     waits, busiest = _capped(analysis)
     return Claims(items, rows, waits, busiest, _turns(analysis, handed), chains)
 
@@ -68,7 +68,8 @@ def _jobs(response: Response) -> list[int]:
     if platform.tick_cost:
         window.add(number, fixed_cost(platform.tick_period, 0, platform.tick_cost))
     for place, other in enumerate(level.order if platform.release else (), number + 1):
-        release = fixed_cost(other.period, jitter_of(other, platform), platform.release)
+        cost = release_time(other, platform)
+        release = fixed_cost(other.period, jitter_of(other, platform), cost)
         window.add(place, release)
     demand = demand_of(task, platform)
     found: list[int] = []
@@ -148,19 +149,7 @@ def _turns(analysis: Analysis, handed: set[str]) -> dict[str, Claim]:
     return found
 
 
-def _of_chain(latency: Latency, analysis: Analysis) -> ChainClaim:
-    """The steps of a chain in the terms of the certificate."""
-    steps = []
-    for number, hop in enumerate(latency.hops):
-        element, kind = hop.step.name, "item"
-        if element in analysis.row_names:
-            kind = "row"
-        elif element not in analysis.found.responses:
-            element, kind = element.removesuffix(".reception"), "handed"
-        after = latency.hops[number + 1 : number + 2]
-        renewed = any(one.step.hop is Hop.SAMPLED for one in after)
-        wait = Ns(hop.wait or 0)
-        steps.append(Step(element, kind, hop.step.hop.value, wait, renewed))
-    assert latency.reaction is not None and latency.age is not None
-    name = latency.chain.name
-    return ChainClaim(name, tuple(steps), Ns(latency.reaction), Ns(latency.age))
+def _of_chain(latency: Latency) -> ChainClaim:
+    """The latencies of a chain; what has no bound has no limit either."""
+    waits = tuple(Ns(hop.wait or 0) for hop in latency.hops if hop.step.hop is Hop.QUEUED)
+    return ChainClaim(Ns(latency.reaction or 0), Ns(latency.age or 0), waits)

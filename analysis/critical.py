@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
-from .core.responses import Response, demand_of, jitter_of
+from .core.responses import Response, demand_of, jitter_of, release_time
 from .core.tasks import Task
 from .core.window import releases
 
@@ -90,7 +90,7 @@ def _jobs(response: Response) -> list[Job]:
         jobs += [(time, 0, platform.tick_cost, "ticks and releases", "overhead") for time in times]
     for task in level.order if platform.release else ():
         for time in _times(task, response):
-            jobs.append((time, 0, platform.release, "ticks and releases", "overhead"))
+            jobs.append((time, 0, release_time(task, platform), "ticks and releases", "overhead"))
     return [job for job in jobs if job[2]]
 
 

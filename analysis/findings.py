@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from gen.diagnostics import Diagnostic, error
+from gen.diagnostics import Diagnostic, error, warning
 from gen.model import Bus, Chain
 from gen.terms import Origin
 
 from .core.can_response import FrameResponse
 from .core.responses import Interference, Reason, Response
-from .latencies import Latency
+from .latencies import Hop, Latency
 from .timing import Analysis
 from .units import duration, microseconds, percent
 
@@ -27,6 +27,9 @@ BUS_OVERLOAD = "RV-0903"
 NO_WAY, CHAIN_LATE = "RV-0904", "RV-0905"
 """A chain is broken; it may take longer than its limit."""
 
+QUEUE_SHORT, QUEUE_OPEN = "RV-0906", "RV-0907"
+"""A queue does not hold what may wait in it; nothing bounds what may wait in it."""
+
 LARGEST = 3
 """How many interferers a diagnostic names."""
 
@@ -41,7 +44,7 @@ def findings(analysis: Analysis) -> tuple[Diagnostic, ...]:
         else:
             found.append(_of_message(response, analysis))
     found += [_of_bus(bus, analysis) for bus in analysis.overloaded]
-    return (*found, *_of_receptions(analysis), *_of_chains(analysis))
+    return (*found, *_of_receptions(analysis), *_of_chains(analysis), *_of_queues(analysis))
 
 
 def no_bound_reason(response: Response | FrameResponse) -> str:
@@ -200,10 +203,23 @@ def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
             )
 
 
+def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Queues that may lose what comes: a warning where no depth is known to hold all of it."""
+    for one in analysis.short_queues:
+        lost = f"and `{one.key}` is {one.given}: what it does not hold is lost"
+        hint = "let it be read more often, or filled less often"
+        if one.needed is not None:
+            message = f"up to {one.needed} {one.what} at once, {lost}"
+            hint = f"give it `{one.key}: {one.needed}`, or {hint}"
+            yield error(QUEUE_SHORT, one.origin, message, hint=hint)
+        elif analysis.found.met:
+            yield warning(QUEUE_OPEN, one.origin, f"any number of {one.what}, {lost}", hint=hint)
+
+
 def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
     """Chains without a way, and those that may take too long."""
     for chain in analysis.system.chains:
-        gap = analysis.ways.through(chain.path).gap
+        gap = chain.gap
         if gap is not None:
             message = f"the chain {chain.name} is broken: no values go from {gap[0]} to {gap[1]}"
             yield error(NO_WAY, chain.origin, message, hint="name what lies between them")
@@ -225,9 +241,29 @@ def _late_chain(
         CHAIN_LATE,
         chain.origin,
         f"the {what} of {chain.name} {takes}, and its limit is {duration(limit)}",
-        notes=[
+        notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
+        or [
             (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
             for name, time in hops[:LARGEST]
         ],
-        hint="let its rows run more often, or in one processor in the order of the chain",
+        hint="let its rows run more often, or in one processor in the order of the chain"
+        if value is not None
+        else "limit the parts of it before and behind that",
     )
+
+
+def _unbounded(found: Latency, what: str) -> Iterator[str]:
+    """Which hops have no bound, and why."""
+    for before, hop in zip((None, *found.hops), found.hops, strict=False):
+        step = hop.step
+        if hop.response is None:
+            yield f"{step.name} has no bound of its response"
+        elif what == "age" and step.keeps:
+            yield step.keeps
+        elif what == "reaction" and step.waits:
+            yield step.waits
+        elif step.hop is Hop.QUEUED and hop.wait is None and before:
+            many = f"{step.puts} values at once" if step.puts > 1 else "them faster"
+            yield f"{step.name} takes one value in a job, and {before.step.name} may put {many} in"
+        elif step.hop is Hop.SAMPLED and hop.wait is None:
+            yield f"{step.name} samples, and nothing says how often it runs"

@@ -8,9 +8,8 @@ it ``runs`` and an instance to its component (``is``).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import networkx as nx
 
@@ -48,14 +47,6 @@ def dependencies(system: System) -> nx.DiGraph[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """The places on a way, none where it is broken; then ``gap`` says between what."""
-
-    places: tuple[str, ...]
-    gap: tuple[str, str] | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Ways:
     """The ways that values can take through messages, ports, rows and data."""
 
@@ -68,17 +59,6 @@ class Ways:
         graph = dependencies(system)
         carries = {edge for edge in graph.edges if graph.edges[edge]["kind"] in FLOW}
         return cls(system, nx.subgraph_view(graph, filter_edge=lambda a, b: (a, b) in carries))
-
-    def through(self, path: Sequence[str]) -> Way:
-        """The way along a path of messages and rows, the shortest from each to the next."""
-        nodes = [place if "." in place else f"message {place}" for place in path]
-        places = [nodes[0]]
-        for before, after in pairwise(nodes):
-            try:
-                places += nx.shortest_path(self.flow, before, after)[1:]
-            except nx.NetworkXNoPath:
-                return Way((), (before.removeprefix("message "), after.removeprefix("message ")))
-        return Way(tuple(places))
 
     def between_messages(self) -> tuple[tuple[str, ...], ...]:
         """From each message received to each message sent: the shortest way through the rows.

@@ -3,7 +3,10 @@
 A way of values through messages, ports, rows and data is taken hop by hop. A row
 that runs later in the same job than the row before it follows at once; any other row
 samples what it reads at its own times, or takes one value in a job from a queued
-port. A received frame waits in the queue of its bus for the reception, which takes
+port, of as many as the writer puts there. A region that takes its occurrences one by
+one has no bound: nothing is known here of how many wait.
+
+A received frame waits in the queue of its bus for the reception, which takes
 one at a time and keeps its least separation.
 
 `core.chains` does the sums. It gets the rows as items of their own, each with its
@@ -14,8 +17,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
-from gen.model import Message, PortKind, Processor, System
+from gen.model import Activity, Message, Port, PortKind, Processor, System
+from gen.statechart import Region
 from gen.terms import named
 
 from .core import can
@@ -128,41 +133,81 @@ class Latencies:
         """The latency of a way, which lists messages, ports, rows and data."""
         steps: list[Step] = []
         released = dict(self.network.released_by)
-        for place in way:
+        kept = ""  # why a job may leave what comes next as it was
+        for place, following in zip_longest(way, way[1:], fillvalue=""):
             if place.startswith("message "):
                 found = named(self.system.messages, place.removeprefix("message "))
                 steps += _of_message(found, steps, released)
-            elif place in self.rows:
-                steps.append(self._row(place, PortKind.SAMPLED, steps, released))
-            else:
-                kind = self._input(place)
-                if kind is not None:
-                    handler = f"{place.partition('.')[0]}.ports"
-                    steps.append(self._row(handler, kind, steps, released))
+                continue
+            row, port = place, self._input(place)
+            if port is not None:
+                row = f"{place.partition('.')[0]}.ports"
+            elif place not in self.rows:
+                continue
+            if kept:
+                steps[-1] = replace(steps[-1], keeps=kept)
+            steps.append(self._row(row, port, place, steps, released))
+            kept = "" if port is not None else self._kept(row, following)
+        if kept:
+            steps[-1] = replace(steps[-1], keeps=kept)
         network = replace(self.network, released_by=released)
         return latency(Chain(name, tuple(steps), reaction, age), network, self.found)
 
-    def _input(self, place: str) -> PortKind | None:
-        """How an input port keeps values; None for what is none."""
+    def _input(self, place: str) -> Port | None:
+        """An input port; None for what is none."""
         instance, _, name = place.partition(".")
         for port in self.system.instance(instance).component.inputs():
             if port.name == name:
-                return port.kind
+                return port
         return None
 
+    def _kept(self, row: str, following: str) -> str:
+        """Why jobs of a row may leave what it leads to as it was; "" where none does."""
+        owner, _, name = row.partition(".")
+        component = self.system.instance(owner).component
+        item = named(component.runnables(), name)
+        if not following or component.renews(item, following.rpartition(".")[2]):
+            return ""
+        return f"{row} gives {following} a new value in some of its jobs only"
+
     def _row(
-        self, row: str, kind: PortKind, steps: Sequence[Step], released: dict[str, str]
+        self,
+        row: str,
+        port: Port | None,
+        place: str,
+        steps: Sequence[Step],
+        released: dict[str, str],
     ) -> Step:
         """A row: later in the same job as the step before, or at its own times."""
+        queued = port is not None and port.kind is PortKind.QUEUED and bool(steps)
+        senders = self._senders(place) if queued else ()
+        puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
         before = steps[-1].name if steps else ""
-        if before in self.rows and row in self.rows:
+        made = Step(row, Hop.QUEUED if queued else Hop.SAMPLED, puts=puts)
+        if before in self.rows and row in self.rows and puts == 1 and len(senders) < 2:
             (processor, first), (other, then) = self.rows[before], self.rows[row]
             divisors = {processor.slots[first].divisor, other.slots[then].divisor}
             phases = {processor.slots[first].phase, other.slots[then].phase}
             if processor is other and first < then and len(divisors) == len(phases) == 1:
                 released[row] = before
-                return Step(row, Hop.RELEASED)
-        return Step(row, Hop.QUEUED if kind is PortKind.QUEUED and steps else Hop.SAMPLED)
+                made = Step(row, Hop.RELEASED)
+        if len(senders) > 1:
+            names = " and ".join(sender.name for sender in senders)
+            made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
+        owner, _, name = row.partition(".")
+        regions = self.system.instance(owner).component.regions
+        if any(region.name == name and region.takes_turns for region in regions):
+            waits = f"{row} takes events, time-outs and completions one by one, oldest first"
+            made = replace(made, waits=waits)
+        return made
+
+    def _senders(self, place: str) -> tuple[Region | Activity, ...]:
+        """The rows that send to a port over a connection; a message has one."""
+        for connection in self.system.connections:
+            if str(connection.target) == place:
+                source = self.system.instance(connection.source.instance)
+                return source.component.senders(connection.source.port)
+        return ()
 
 
 def handed(element: str) -> str:

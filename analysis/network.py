@@ -1,10 +1,11 @@
 """A `System` as the records of `analysis.core`: the one place that knows both.
 
-A processor is a task whose rows are those of its table; its two context switches
+A processor is a task whose rows are those of its table; its context switches
 and the timer come from the node's platform figures. The driver's work on a message
 follows the job that sends it, or the frame that arrived; the frame follows the
 driver. Every user of a protected object has a section of its own. A node's frames
-leave in the order sent, by the contract of the controller, so they share a queue.
+leave in the order sent, by the contract of the controller, so they share a queue; the
+driver may hand them over one by one.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def network_of(system: System) -> Network:
     return Network(
         tasks=tuple(_task(task, system) for task in system.tasks),
         frames={
-            bus.name: tuple(_frame(m, bus) for m in system.messages if m.bus == bus.name)
+            bus.name: tuple(_frame(m, bus) for m in system.frames if m.bus == bus.name)
             for bus in system.buses
         },
         buses={bus.name: _bus(bus) for bus in system.buses},
@@ -65,6 +66,7 @@ def _task(task: model.Task, system: System) -> Task:
         rows=rows,
         timed=task.timed and system.node(task.node).tick is not None,
         sporadic=task.sporadic,
+        suspensions=task.suspensions,
     )
 
 
@@ -84,6 +86,7 @@ def _frame(message: Message, bus: model.Bus) -> Frame:
         deadline=message.limit,
         cost=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
         queue="" if message.source is None else f"{bus.name}.transmit",
+        reloaded=message.source is not None,
     )
 
 

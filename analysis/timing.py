@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
@@ -19,6 +19,7 @@ from .core.holistic import Holistic, Network
 from .core.responses import Level, Response, RowResponse
 from .core.sensitivity import NetworkScaling, network_scaling
 from .core.tasks import plain
+from .depths import Depth, depths
 from .graph import Ways
 from .latencies import Delivery, Latencies
 from .network import network_of
@@ -56,7 +57,7 @@ class Analysis:
     @cached_property
     def messages(self) -> dict[str, Message]:
         """The messages of the system by element."""
-        return {message.element: message for message in self.system.messages}
+        return {message.element: message for message in self.system.frames}
 
     def origin(self, name: str) -> Origin:
         """Where a task or message stands in the model."""
@@ -117,8 +118,18 @@ class Analysis:
 
     @property
     def schedulable(self) -> bool:
-        """Every deadline is met, every queue of received frames is served, every limit kept."""
-        return self.found.met and not self.undelivered and all(one.met for _, one in self.limited)
+        """Every deadline is met, every received frame is taken, every limit kept, nothing lost.
+
+        But for queues of which no depth is known to hold all.
+        """
+        kept = all(found.met for _, found in self.limited)
+        full = any(queue.needed is not None for queue in self.short_queues)
+        return self.found.met and not self.undelivered and kept and not full
+
+    @cached_property
+    def short_queues(self) -> tuple[Depth, ...]:
+        """The queues that may lose what does not fit."""
+        return tuple(one for one in depths(self) if not one.holds)
 
     @property
     def undelivered(self) -> tuple[Message, ...]:
@@ -154,24 +165,24 @@ class Analysis:
     def _latencies(self) -> Latencies:
         return Latencies.of(self.system, self.network, self.found, self.deliveries)
 
+    def latency(self, way: Sequence[str]) -> latencies.Latency:
+        """The latency of a way, which lists messages, ports, rows and data."""
+        return self._latencies.along(f"{way[0]} to {way[-1]}".replace("message ", ""), way)
+
     @cached_property
     def limited(self) -> tuple[tuple[Chain, latencies.Latency], ...]:
         """The chains that the model limits, where there is a way, with their latencies."""
         found = []
         for chain in self.system.chains:
-            way = self.ways.through(chain.path)
-            if way.places:
+            if chain.way:
                 limits = (chain.reaction or 0, chain.age or 0)
-                found.append((chain, self._latencies.along(chain.name, way.places, *limits)))
+                found.append((chain, self._latencies.along(chain.name, chain.way, *limits)))
         return tuple(found)
 
     @cached_property
     def chains(self) -> tuple[latencies.Latency, ...]:
         """From each message received to each message that it can influence: the shortest way."""
-        return tuple(
-            self._latencies.along(f"{way[0]} to {way[-1]}".replace("message ", ""), way)
-            for way in self.ways.between_messages()
-        )
+        return tuple(self.latency(way) for way in self.ways.between_messages())
 
     @cached_property
     def scaling(self) -> NetworkScaling | None:

@@ -44,6 +44,9 @@ def verdict_line(analysis: Analysis) -> str:
     if late:
         parts.append(f"too slow: {', '.join(late)}")
     lost = [message.name for message in analysis.undelivered]
+    short = [queue.key for queue in analysis.short_queues if queue.needed is not None]
+    if short and not failed:
+        parts.append(f"queues too short: {', '.join(dict.fromkeys(short))}")
     if lost and not failed:
         parts.append(f"not received in time: {', '.join(lost)}")
     return f"{name}: {'; '.join(parts) or f'every deadline is met ({total})'}"

@@ -25,35 +25,20 @@ class Claim:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
-    """A step of a chain: a row, a task, a message, or a message's handing over.
-
-    ``hop`` is ``released`` by the step before or the chain's event, ``sampled`` or
-    ``queued``; then ``wait`` is how long an item waits for its reader. ``renewed``:
-    the step after it samples.
-    """
-
-    element: str
-    kind: str
-    """``row``, ``item`` (a task or message) or ``handed``."""
-    hop: str
-    wait: Ns = NOTHING
-    renewed: bool = False
-
-
-@dataclass(frozen=True, slots=True)
 class ChainClaim:
-    """The latencies of one of the model's chains."""
+    """The latencies of one of the model's chains; ``waits`` in its queues, one after the other."""
 
-    name: str
-    steps: tuple[Step, ...]
-    reaction: Ns
-    age: Ns
+    reaction: Ns = NOTHING
+    age: Ns = NOTHING
+    waits: tuple[Ns, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Claims:
-    """All of them, by element; what is not there claims no time at all."""
+    """All of them, by element; what is not there claims no time at all.
+
+    What they are about is not theirs to say: numbers only.
+    """
 
     items: Mapping[str, Claim] = field(default_factory=dict)
     """Tasks and messages."""
@@ -66,7 +51,8 @@ class Claims:
     """How long a bus is busy at most, by its name: where messages wait by that."""
     turns: Mapping[str, Claim] = field(default_factory=dict)
     """Received messages: when the reception turns to them."""
-    chains: tuple[ChainClaim, ...] = ()
+    chains: Mapping[str, ChainClaim] = field(default_factory=dict)
+    """The model's chains by name."""
 
     def of(self, element: str) -> Claim:
         """The claim about a task or message."""

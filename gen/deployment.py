@@ -38,7 +38,7 @@ from .schema import (
 )
 from .signals import length_of, signals_of
 from .statechart import Timing
-from .terms import Ns, Origin, Scalar
+from .terms import BOOLEAN, Ns, Origin, Scalar
 from .values import constant
 
 
@@ -203,17 +203,24 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     targets = [_end(text, origin, Direction.IN, site) for text, origin in texts]
     sound = [target for target in targets if target is not None]
     gone = form.lost("from") or form.lost("to") or form.list_damaged("to")
-    if form.from_ is None and not texts and not gone:
+    foreign = form.from_ is None and not texts and not gone
+    if foreign and form.bytes is None and not form.lost("bytes"):
         message = f"the message {name} has neither `from` nor `to`"
-        hint = "name the port that sends it, or the one that receives it"
+        hint = (
+            "name the port that sends it or the one that receives it; of a frame that others "
+            "send to others, give the `bytes`"
+        )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
+    if not foreign and form.bytes is not None:
+        message = f"the message {name} is as long as the type of its port; leave `bytes` out"
+        findings.error("RV-0608", form.at_key("bytes"), message)
     period = _message_period(name, form, source, site)
     broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
-    if bus is None or broken or gone or period is None:
+    if bus is None or broken or gone or period is None or form.lost("bytes"):
         return None
-    type_ = (source or sound[0])[1].type
-    signals, fd = signals_of(type_), form.format == "fd"
+    type_ = BOOLEAN if foreign else (source or sound[0])[1].type
+    signals, fd = () if foreign else signals_of(type_), form.format == "fd"
     return Message(
         name=name,
         origin=form.origin,
@@ -222,7 +229,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         extended=form.extended,
         type=type_,
         signals=signals,
-        length=length_of(signals, fd=fd),
+        length=form.bytes if form.bytes is not None else length_of(signals, fd=fd),
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
         period=period,

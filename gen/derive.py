@@ -21,6 +21,7 @@ from .model import (
 )
 from .statechart import Region
 from .terms import Ns
+from .ways import routed
 
 PROBE = "probe"
 """A node's host probe, as a task."""
@@ -326,8 +327,8 @@ def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...
 
 
 def completed(system: System) -> System:
-    """A valid system with divisors, priorities, tasks and shared objects."""
+    """A valid system with divisors, priorities, tasks, shared objects and the ways of chains."""
     processors = prioritised([_with_divisors(processor) for processor in system.processors])
     told = replace(system, processors=processors)
     tasks = tasks_of(told)
-    return replace(told, tasks=tasks, objects=objects_of(told, tasks))
+    return routed(replace(told, tasks=tasks, objects=objects_of(told, tasks)))

@@ -15,7 +15,19 @@ from enum import Enum
 from functools import cached_property
 
 from .statechart import DONE, Overflow, Region, Timing
-from .terms import Expression, Flow, Ns, Origin, Scalar, ScalarType, Type, Value, named
+from .terms import (
+    Expression,
+    Flow,
+    Ns,
+    Origin,
+    RecordType,
+    Scalar,
+    ScalarType,
+    Type,
+    Value,
+    always,
+    named,
+)
 
 NO_TIME = Ns(0)
 
@@ -166,6 +178,28 @@ class Component:
         """The regions, then the activities, each in model order."""
         return (*self.regions, *self.activities)
 
+    def renews(self, row: Region | Activity, name: str) -> bool:
+        """Whether every execution of a row gives a data item or output port a new value.
+
+        A region does in some only, and a do activity while its state is active; a user's
+        body is taken to do so.
+        """
+        if isinstance(row, Region) or row.while_in is not None:
+            return False
+        if row.flow is None:
+            return True
+        sure = always(row.flow)
+        if name in sure:
+            return True
+        item = next((data.type for data in self.data if data.name == name), None)
+        return isinstance(item, RecordType) and all(
+            f"{name}.{field.name}" in sure for field in item.fields
+        )
+
+    def senders(self, port: str) -> tuple[Region | Activity, ...]:
+        """The regions and activities that send on a port."""
+        return tuple(item for item in self.runnables() if port in item.sends)
+
     def completing(self, region: str) -> tuple[tuple[Activity, str], ...]:
         """The do activities that complete a state of a region, each with that state."""
         all_of_them = ((a, a.completes) for a in self.activities)
@@ -294,7 +328,8 @@ class Message:
     """A CAN message: a port's value on a bus.
 
     ``source`` None: sent by a party outside the system; ``targets`` empty:
-    received outside. ``period`` is the least time between two instances.
+    received outside. ``period`` is the least time between two instances. A frame that
+    others send to others has neither, and no signals.
     """
 
     name: str
@@ -305,7 +340,7 @@ class Message:
     type: Type
     signals: tuple[Signal, ...]
     length: int
-    """Data length in bytes, 1 .. 8; of a CAN FD frame one of its sizes, up to 64."""
+    """Data length in bytes, 0 .. 8; of a CAN FD frame one of its sizes, up to 64."""
     source: End | None
     targets: tuple[End, ...]
     period: Ns
@@ -318,6 +353,11 @@ class Message:
     def element(self) -> str:
         """Stable id of the frame: ``bus.message``."""
         return f"{self.bus}.{self.name}"
+
+    @property
+    def is_foreign(self) -> bool:
+        """Others send it to others: it takes its time on the bus, and nothing else."""
+        return self.source is None and not self.targets
 
     @property
     def limit(self) -> Ns:
@@ -406,7 +446,9 @@ class Task:
     ``budget`` is the longest execution of a job, overheads apart: of one that runs
     all of ``slots`` where there are some. ``released_by`` names the task or message
     whose completion releases it; ``jitter`` and ``deadline`` count from the event
-    that begins that chain. ``timed``: the node's timer releases it.
+    that begins that chain. ``timed``: the node's timer releases it. A job suspends
+    itself ``suspensions`` times: one of a sporadic processor waits for a frame, and
+    then until its least separation is over.
     """
 
     element: str
@@ -423,6 +465,11 @@ class Task:
     sporadic: bool = False
     timed: bool = False
     core: int = 1
+
+    @property
+    def suspensions(self) -> int:
+        """See above: each costs two context switches, and the work of making it ready."""
+        return 2 if self.sporadic else 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -443,7 +490,8 @@ class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
     ``path`` names messages and rows (``owner.name``), in order; between two of
-    them the shortest way is meant.
+    them the shortest way is meant. `ways` fills in ``way``, all its places, or the
+    ``gap`` between two of the path that no values cross.
     """
 
     name: str
@@ -453,6 +501,8 @@ class Chain:
     """From an input until the first output that knows it."""
     age: Ns | None
     """From the sampling of an input until the output made of it."""
+    way: tuple[str, ...] = ()
+    gap: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -465,7 +515,7 @@ class Shutdown:
 
 @dataclass(frozen=True)
 class System:
-    """A whole system, resolved. ``tasks`` and ``objects`` are filled in by `derive`."""
+    """A whole system, resolved. ``tasks``, ``objects`` and ways are filled in by `derive`."""
 
     name: str
     origin: Origin
@@ -481,8 +531,15 @@ class System:
     processors: tuple[Processor, ...]
     shutdown: Shutdown
     chains: tuple[Chain, ...] = ()
+    traffic: tuple[Message, ...] = ()
+    """Frames of the buses that are none of the system's ``messages``."""
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
+
+    @property
+    def frames(self) -> tuple[Message, ...]:
+        """All that is sent on the buses: the system's messages, then those of others."""
+        return (*self.messages, *self.traffic)
 
     def instance(self, name: str) -> Instance:
         """The instance called ``name``; KeyError where there is none."""

@@ -153,7 +153,7 @@ def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
 def identifiers_are_unique(resolved: Resolved) -> Iterator[Diagnostic]:
     """Identifiers are within their range and differ on one bus."""
     first: dict[tuple[str, bool, int], Message] = {}
-    for item in resolved.system.messages:
+    for item in resolved.system.frames:
         last = EXTENDED_LAST if item.extended else STANDARD_LAST
         if item.identifier > last:
             bits = 29 if item.extended else 11

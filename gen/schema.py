@@ -398,7 +398,9 @@ class NodeForm(Element):
         "A task above all others that measures how long a host withholds the processor."
     )
     release: Span = PydanticField(
-        default=0, description="Longest work above all tasks that makes one job ready."
+        default=0,
+        description="Longest work of one release outside its rows: making the job ready, above all "
+        "tasks, and its bookkeeping (record, check of the deadline). Counted above all tasks.",
     )
     tick: TickForm | None = optional(
         "The timer's periodic interrupt, where it has one; exact time-outs unless given."
@@ -424,7 +426,10 @@ class BusForm(Element):
     """A CAN bus."""
 
     bit_rate: BitRate = key("Nominal bit rate, 10 kbit/s to 1 Mbit/s.")
-    driver_wcet: PositiveSpan = key("Worst-case time of the driver for one frame in or out.")
+    driver_wcet: PositiveSpan = key(
+        "Worst-case time of the driver for one frame in or out, and of the reception for handing "
+        "one to every port that it goes to."
+    )
     receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
     transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
@@ -450,7 +455,7 @@ class ConnectionForm(Element):
 
 
 class MessageForm(Element):
-    """A port's value on a CAN bus."""
+    """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
     bus: Reference = key("The bus.")
     id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
@@ -474,6 +479,13 @@ class MessageForm(Element):
     period: PositiveSpan | None = optional(
         "Least time between two frames; only for messages from outside, the others have the period "
         "of what sends them."
+    )
+    bytes: int | None = PydanticField(
+        default=None,
+        ge=0,
+        le=8,
+        description="Data bytes of a frame with neither `from` nor `to`, 0 to 8: other nodes "
+        "exchange it, and here it only takes its time on the bus.",
     )
     deadline: PositiveSpan | None = optional(
         "From the release of what sends it, or from its arrival, until it is received; the period "

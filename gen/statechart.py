@@ -321,6 +321,15 @@ class Region:
         triggered = (t for t in self.transitions if not isinstance(t.trigger, Segment))
         return tuple(sorted(triggered, key=lambda t: -len(self.ancestors(t.source))))
 
+    @property
+    def takes_turns(self) -> bool:
+        """Whether what it answers to may wait: it takes one occurrence after the other.
+
+        Conditions do not wait for each other; they are read where nothing else does.
+        """
+        kinds = (OnEvent, After, Every, Completion)
+        return bool(self.events()) or any(isinstance(t.trigger, kinds) for t in self.transitions)
+
     def events(self) -> tuple[str, ...]:
         """The events that the region names in triggers or defers, each once, in model order."""
         named = [t.trigger.event for t in self.transitions if isinstance(t.trigger, OnEvent)]

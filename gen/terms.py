@@ -220,3 +220,22 @@ class If:
 
 Action = Set | Send | Raise | If
 Flow = tuple[Action, ...]
+
+
+def always(flow: Flow) -> set[str]:
+    """What a flow sends, raises or sets on every path: ports, events, data.
+
+    Of a record, of which fields are set one by one, ``data.field``.
+    """
+    sure: set[str] = set()
+    for action in flow:
+        match action:
+            case Set(_, data, field):
+                sure.add(data if field is None else f"{data}.{field}")
+            case Send(_, port):
+                sure.add(port)
+            case Raise(_, event):
+                sure.add(event)
+            case If(_, _, then, otherwise):
+                sure |= always(then) & always(otherwise)
+    return sure

@@ -28,6 +28,8 @@ class Frame:
     ``queue``     the first-in first-out queue it is sent from; "" where the sender
                   offers its most urgent frame
     ``best``      least transmission time, for the jitter of what the frame releases
+    ``reloaded``  the controller gets the next frame of the queue when it has sent one, so
+                  that anything may go in between; otherwise it holds the whole queue
     """
 
     name: str
@@ -38,6 +40,7 @@ class Frame:
     jitter: int = 0
     queue: str = ""
     best: int = 0
+    reloaded: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names field and frame."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from .blocking import Section
 from .multiframe import Demand
 from .platform import Platform
-from .responses import Level, Reason, Response, RowResponse, demand_of, jitter_of
+from .responses import Level, Reason, Response, RowResponse, demand_of, jitter_of, switch_time
 from .tasks import Task
 from .window import Effort, Source, Window, source
 
@@ -36,7 +36,7 @@ class Contender:
         jitter, demand = jitter_of(task, platform), demand_of(task, platform)
         goals = [(cost, frame, WHOLE) for frame, cost in enumerate(demand.costs)]
         if task.rows:
-            before = task.cost + 2 * platform.context_switch
+            before = task.cost + switch_time(task, platform)
             goals += _row_goals(task, before)
             goals.sort()
         item = source(task.period, jitter, demand)

@@ -18,7 +18,9 @@ copying delay), unless its frames share a first-in first-out queue. Those follow
 idea of Davis, Kollmann, Pollex, Slomka (ECRTS 2011), here with every instance of
 the busy period: a queued frame is analysed at the least urgent identifier of its
 queue, with all frames of the queue before it; to others it has, as more jitter, the
-time until it is sent. Safe, not exact.
+time until it is sent. Safe, not exact. Of a queue that is handed to the controller frame by
+frame, any less urgent frame may be sent before each: then all frames of the bus count,
+as often as they come, for whatever the order, a bus that is not idle sends them all.
 """
 
 from __future__ import annotations
@@ -175,8 +177,9 @@ def _overloaded(level: FrameLevel, used: Load) -> bool:
 def _in_queue(
     frame: Frame, order: tuple[Frame, ...], bus: Bus, delays: Delays, effort: Effort
 ) -> FrameResponse:
-    """The response of a frame of a queue, at the least urgent rank of the queue."""
+    """The response of a frame of a queue, at the least urgent rank that goes before it."""
     reach = max(n for n, other in enumerate(order, 1) if other.queue == frame.queue)
+    reach = len(order) if frame.reloaded else reach
     known = {name: delay for name, delay in delays.items() if delay is not None}
     level = FrameLevel(order, reach, bus, known)
     for other in order[:reach]:

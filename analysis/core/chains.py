@@ -7,7 +7,8 @@ the response of its last step, from the arrival of its first, and one period T.
   reaction  from an input that was just missed until the first output that knows it:
             sum over segments of  wait + R, where the wait for a sampling task is at
             most T: data written just after it was read is read in the next job
-            (Davare et al., DAC 2007)
+            (Davare et al., DAC 2007). Where steps follow only some of the jobs before
+            them, T is the period of the last of them
   age       from the arrival of the job that sampled an input until an output made of
             it: R of the last segment, and R + T for each one before it that is sampled:
             what is read was written by the last job completed before (Durr, von der
@@ -15,7 +16,10 @@ the response of its last step, from the arrival of its first, and one period T.
             it: `held` is the age then, and equals the reaction when all is sampled.
 
 A queue hands each item over once. Its reader takes so many in a job; an item waits
-for those before it. These are bounds for any phasing of any clocks.
+for those before it. A job that finds none repeats what it made of the last item, so
+the output is replaced as often as its writer puts one in: that T counts for the age,
+whatever comes after, and the reader's own does not. These are bounds for any phasing
+of any clocks.
 """
 
 from __future__ import annotations
@@ -43,15 +47,29 @@ class Hop(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A task or frame of a chain; ``takes`` items in a job where the hop to it is queued."""
+    """A task or frame of a chain.
+
+    ``takes``   items in a job, where the hop to it is queued
+    ``puts``    items that a job of the step before puts into that queue; with more than
+                one, one is taken in a job
+    ``waits``   why what it reads may wait inside the step without bound, once a job of
+                it has arrived; "" where it does not wait
+    ``keeps``   why some of its jobs leave the old output in place, or make none, so that
+                nothing bounds the age of what comes after; "" where each makes a new one
+    """
 
     name: str
     hop: Hop
     takes: int = 1
+    puts: int = 1
+    waits: str = ""
+    keeps: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse to take no items, with a ValueError."""
-        positive(f"step {self.name}", takes=self.takes)
+        """Refuse to take or put no items, or several of both, with a ValueError."""
+        positive(f"step {self.name}", takes=self.takes, puts=self.puts)
+        if self.takes > 1 and self.puts > 1:
+            raise ValueError(f"step {self.name} takes several items or is given several, not both")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +86,11 @@ class Chain:
 class HopLatency:
     """What one step adds, in ticks; None where there is no bound.
 
-    ``wait``      until the arrival of the job that reads the input
+    ``wait``      until the arrival of the job that reads the input, or of one that the
+                  step follows
     ``response``  from there (or the step before, when released by it) to completion
-    ``renewal``   longest time until the output of a job is replaced by the next job's,
-                  where a sampling step follows; it counts for the age
+    ``renewal``   longest time until the output of a job is replaced by the next one,
+                  where that counts for the age: before a queue or a sampling step
     ``backlog``   places that a queue before the step must have to lose nothing
     """
 
@@ -100,8 +119,8 @@ class Latency:
     def age(self) -> int | None:
         """From the sampling of an input to the output made of it.
 
-        All responses and renewals, and the waits in queues; not the wait before a
-        sampling step, for what it reads is renewed meanwhile.
+        All responses and renewals, and the waits in queues; not the wait before other
+        steps, for what they read is renewed meanwhile.
         """
         parts = []
         for hop in self.hops:
@@ -133,23 +152,34 @@ def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
     """
     _check(chain, network)
     hops = []
+    renewal: int | None = 0
+    queued = False
     for number, step in enumerate(chain.steps):
         before = chain.steps[number - 1] if number else None
         after = chain.steps[number + 1] if number + 1 < len(chain.steps) else None
-        response = found.from_event(step.name)
+        response, cycle = found.from_event(step.name), _cycle(step.name, network)
         wait: int | None = 0
         backlog: int | None = 0
         if step.hop is Hop.RELEASED and before is not None:
             response = _less(response, found.from_event(before.name))
+            wait = network.items()[step.name].period - network.items()[before.name].period
+            wait = None if queued and wait else wait  # some items are not passed on
         elif step.hop is Hop.SAMPLED:
-            wait = _cycle(step.name, network)
+            wait, queued = cycle, False
         elif step.hop is Hop.QUEUED and before is not None:
             wait, backlog = _queue(before.name, step, network, found)
-        sampled = after is not None and after.hop is Hop.SAMPLED
-        renewal = _cycle(step.name, network) if sampled else 0
-        hops.append(HopLatency(step, wait, response, renewal, backlog))
-    last = _cycle(chain.steps[-1].name, network)
-    return Latency(chain, tuple(hops), last)
+            queued = True
+        if step.hop is Hop.SAMPLED or before is None:
+            renewal = cycle
+        else:
+            renewal = None if renewal is None or cycle is None else max(renewal, cycle)
+        renewal = None if step.keeps else renewal
+        counted: int | None = 0
+        if after is not None and (renewal is None or after.hop is Hop.QUEUED or not queued):
+            counted = 0 if after.hop is Hop.RELEASED and not step.keeps else renewal
+        wait = None if step.waits else wait
+        hops.append(HopLatency(step, wait, response, counted, backlog))
+    return Latency(chain, tuple(hops), renewal)
 
 
 def _check(chain: Chain, network: Network) -> None:
@@ -182,23 +212,25 @@ def _queue(
 ) -> tuple[int | None, int | None]:
     """How long an item waits for the arrival of the job that takes it, and how many do.
 
-    Item k (from 1) of a burst comes no earlier than (k - 1) T - J of the writer, and
-    has its turn in job ceil(k / takes) of the reader from then on. The wait is longest
-    for the last item that jitter can make come at once, or the first of the next job.
+    The items of job k (from 1) of a burst come no earlier than (k - 1) T - J of the
+    writer, and item n has its turn in job ceil(n / takes) of the reader from then on. The
+    wait is longest for the last item that jitter can make come at once, or for the next
+    that needs one more job of the reader.
     """
     items = network.items()
-    period, takes = items[writer].period, step.takes
+    period, takes, puts = items[writer].period, step.takes, step.puts
     cycle, read = _cycle(step.name, network), found.from_event(step.name)
     written = found.from_event(writer)
-    if cycle is None or read is None or written is None or cycle > takes * period:
+    if cycle is None or read is None or written is None or puts * cycle > takes * period:
         return None, None
     jitter = written - found.best[writer] - items[writer].best
-    burst = jitter // period + 1
-    later = -(-burst // takes) * takes + 1
+    burst = puts * (jitter // period + 1)
+    later = -(-burst // takes) * takes + puts
     wait = max(
-        -(-item // takes) * cycle - max(0, (item - 1) * period - jitter) for item in (burst, later)
+        -(-item // takes) * cycle - max(0, (item // puts - 1) * period - jitter)
+        for item in (burst, later)
     )
-    return wait, (wait + read + jitter) // period + 1
+    return wait, puts * ((wait + read + jitter) // period + 1)
 
 
 def _less(longer: int | None, shorter: int | None) -> int | None:

@@ -27,7 +27,7 @@ from .blocking import Section, blockers
 from .busy_period import Contender, response
 from .checks import distinct
 from .platform import Platform
-from .responses import Level, Reason, Response, jitter_of
+from .responses import Level, Reason, Response, jitter_of, release_time, switch_time
 from .tasks import Task
 from .window import Effort, Load, Window, fixed_cost
 
@@ -102,12 +102,11 @@ def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Pla
     for task in order:
         if task.jitter or task.rows or task.timed:
             return []
-    switches = 2 * platform.context_switch
     periods = [task.period for task in order]
     last = {task.priority: number for number, task in enumerate(order)}
     lengths = busy_periods(
         periods,
-        [task.cost + switches for task in order],
+        [task.cost + switch_time(task, platform) for task in order],
         [last[task.priority] for task in order],
         [held[task.name].length if task.name in held else 0 for task in order],
     )
@@ -147,7 +146,7 @@ def _beginning(tasks: Sequence[Task], platform: Platform) -> tuple[Window, Load]
     if platform.release:
         for task in tasks:
             jitter = jitter_of(task, platform)
-            sources.append(fixed_cost(task.period, jitter, platform.release))
+            sources.append(fixed_cost(task.period, jitter, release_time(task, platform)))
     for number, item in enumerate(sources):
         window.add(OVERHEADS_FROM + number, item)
         load.add(item)

@@ -193,4 +193,6 @@ def _reach(frame: Frame, frames: Sequence[Frame]) -> int:
 
 def _level(frame: Frame, frames: Sequence[Frame]) -> int:
     """The least urgent rank that a frame and its queue are analysed at."""
+    if frame.reloaded:
+        return max(f.rank for f in frames)
     return max(f.rank for f in frames if f is frame or (f.queue and f.queue == frame.queue))

@@ -12,8 +12,9 @@ class Platform:
     """Overheads of one core, all in ticks; zero where there is none.
 
     Each job pays for two context switches (to it and back), whoever it runs
-    before. ``release`` is the work of the timer or interrupt that makes one job
-    ready: it runs above all tasks, for releases of less urgent tasks too.
+    before, and for two more each further time that it suspends itself. ``release``
+    is the work of the timer or interrupt that makes one job ready, each time: it runs
+    above all tasks, for releases of less urgent tasks too.
     A periodic tick costs ``tick_cost`` every ``tick_period`` above all tasks, and
     a task that is released by it (`Task.timed`) may be late by one period of it.
     Burns, Tindell and Wellings, Effective analysis for engineering real-time

@@ -62,7 +62,7 @@ class Level:
         platform = self.platform
         load = Fraction(platform.tick_cost, platform.tick_period or 1)
         for task in self.order:
-            load += Fraction(platform.release, task.period)
+            load += Fraction(release_time(task, platform), task.period)
         for task in self.order[: self.reach]:
             demand = demand_of(task, platform)
             load += Fraction(demand.total, len(demand.costs) * task.period)
@@ -147,12 +147,15 @@ class Response:
         platform = self.level.platform
         if self.bound is None:
             return Overheads(0, 0, 0, 0, 0, 0)
-        jobs = self.worst_job + 1 + sum(self._releases(other) for other in self._others())
+        own = (self.worst_job + 1) * self.task.suspensions
+        switched = own + sum(self._releases(t) * t.suspensions for t in self._others())
         ticks = releases(self.window, platform.tick_period, 0) if platform.tick_period else 0
-        released = sum(self._releases(task) for task in self.level.order) if platform.release else 0
+        released = 0
+        if platform.release:
+            released = sum(self._releases(task) * task.suspensions for task in self.level.order)
         return Overheads(
-            2 * jobs,
-            2 * jobs * platform.context_switch,
+            2 * switched,
+            2 * switched * platform.context_switch,
             ticks,
             ticks * platform.tick_cost,
             released,
@@ -171,7 +174,7 @@ class Response:
         count = self._releases(other)
         demand = demand_of(other, self.level.platform)
         item = source(other.period, 0, demand)
-        switches = 2 * count * self.level.platform.context_switch
+        switches = count * switch_time(other, self.level.platform)
         return Interference(other, count, demand.first(count), cost_of(item, count) - switches)
 
 
@@ -180,9 +183,19 @@ def jitter_of(task: Task, platform: Platform) -> int:
     return task.jitter + (platform.tick_period if task.timed else 0)
 
 
+def switch_time(task: Task, platform: Platform) -> int:
+    """The context switches of one job: to it and back, each time that it suspends itself."""
+    return 2 * task.suspensions * platform.context_switch
+
+
+def release_time(task: Task, platform: Platform) -> int:
+    """What makes one job ready, each time that it suspends itself, above all tasks."""
+    return task.suspensions * platform.release
+
+
 def demand_of(task: Task, platform: Platform) -> Demand:
-    """What the releases of ``task`` cost, each with its two context switches."""
-    extra = task.cost + 2 * platform.context_switch
+    """What the releases of ``task`` cost, each with its context switches."""
+    extra = task.cost + switch_time(task, platform)
     if not task.rows:
         return Demand((extra,))
     return Demand(tuple(extra + sum(row.cost for row in rows) for rows in task.frames))

@@ -46,6 +46,8 @@ class Task:
     ``timed``      released by the tick of its core: late by up to one tick period
     ``sporadic``   nothing makes it arrive; the analysis of responses is the same
     ``best``       least execution time of a job, for the jitter of what it releases
+    ``suspensions`` times that a job waits for something: each costs two context switches
+                   and the work of making it ready
 
     Offsets are not a parameter: the bounds hold for all of them.
     """
@@ -61,11 +63,12 @@ class Task:
     timed: bool = False
     sporadic: bool = False
     best: int = 0
+    suspensions: int = 1
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names field and task."""
         owner = f"task {self.name}"
-        positive(owner, period=self.period, deadline=self.deadline)
+        positive(owner, period=self.period, deadline=self.deadline, suspensions=self.suspensions)
         natural(owner, jitter=self.jitter, best=self.best)
         if self.rows:
             natural(owner, cost=self.cost)

@@ -9,11 +9,14 @@ in which a frame still takes part in arbitration, so its bounds can be a frame s
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from analysis.core.blocking import Section, ceilings
 from analysis.core.bus import Frame
 from analysis.core.chains import Chain
+from analysis.core.fixed_priority import NO_OVERHEAD
 from analysis.core.holistic import Network
+from analysis.core.responses import release_time, switch_time
 from analysis.core.tasks import Task
 
 from .mast_text import Attributes, Object, Value, printed
@@ -224,7 +227,7 @@ class _Writer:
                 _attributes(
                     Type="Enclosing" if parts else "Simple",
                     Name=f"{name}_job",
-                    Worst_Case_Execution_Time=task.plain_cost,
+                    Worst_Case_Execution_Time=task.plain_cost + self._further(task),
                     Best_Case_Execution_Time=task.best or None,
                     Composite_Operation_List=tuple(parts) or None,
                 ),
@@ -260,10 +263,15 @@ class _Writer:
             ),
         )
 
+    def _further(self, task: Task) -> int:
+        """The switches of a job that suspends itself more often than MAST counts: once."""
+        platform = self.network.platforms.get(task.core, NO_OVERHEAD)
+        return switch_time(task, platform) - switch_time(replace(task, suspensions=1), platform)
+
     def _release(self, task: Task) -> int:
         """What makes a job of the task ready costs that much; the task needs an event for it."""
         platform = self.network.platforms.get(task.core)
-        return platform.release if platform else 0
+        return release_time(task, platform) if platform else 0
 
     def _transaction(self, tree: Tree) -> Object:
         """What one event releases, step by step; every step has its deadline from the event."""

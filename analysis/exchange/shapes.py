@@ -13,6 +13,7 @@ from analysis.core.bus import Frame
 from analysis.core.chains import Chain
 from analysis.core.fixed_priority import NO_OVERHEAD
 from analysis.core.holistic import Network
+from analysis.core.responses import release_time, switch_time
 from analysis.core.tasks import Task
 
 HOUR = 3600 * 10**9
@@ -167,10 +168,12 @@ def spelled_out(network: Network) -> Network:
     for task in network.tasks:
         platform = network.platforms.get(task.core, NO_OVERHEAD)
         late = task.jitter + (platform.tick_period if task.timed else 0)
-        cost = task.plain_cost + 2 * platform.context_switch
+        cost = task.plain_cost + switch_time(task, platform)
         tasks.append(replace(task, cost=cost, jitter=late, rows=(), timed=False))
         if platform.release:
-            extra = _above_all(network, f"{task.name}_release", task.core, platform.release)
+            extra = _above_all(
+                network, f"{task.name}_release", task.core, release_time(task, platform)
+            )
             tasks.append(
                 replace(extra, period=task.period, deadline=task.period + late, jitter=late)
             )

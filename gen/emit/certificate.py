@@ -10,16 +10,20 @@ Lehoczky 1990 (several jobs) and Davis, Burns, Bril, Lukkien 2007 (frames).
 
 from __future__ import annotations
 
-from ..claims import Claims
+from collections.abc import Set
+
+from ..claims import ChainClaim, Claims
 from ..model import SharedObject, System, Task
 from .ada import SPARK, Aspect, Comment, Decl, Expr, Package, Ref, Unit, number
 from .certificate_bus import bus_claims, bus_terms
 from .certificate_chains import chain_claims
+from .certificate_hops import hops_of
 from .certificate_terms import (
     SLOW,
     arrivals,
     assured,
     before,
+    bounded,
     ceiling,
     name_of,
     named,
@@ -33,7 +37,7 @@ from .naming import ada_case
 
 LETTERS = (
     "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
-    "event to the release, C longest execution (with two context switches) or transmission, "
+    "event to the release, C longest execution (with context switches) or transmission, "
     "B blocking, R the claimed response from the event, W the time claimed from the start of a "
     "busy period. A is J + T - 1, so that (W + A) / T is the number of releases within W. Needs "
     "is the demand that arises within W: where it is more, W is too short."
@@ -43,7 +47,7 @@ LETTERS = (
 def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     """The certificate of a system; its claims are those of the analysis."""
     items: list[Decl] = [Comment(LETTERS)]
-    elements = [task.element for task in system.tasks] + [m.element for m in system.messages]
+    elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
     items.append(Comment("The claimed responses: each is some other's lateness, or its own bound."))
     items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
     for node in system.nodes:
@@ -62,12 +66,15 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
         items += _terms(system, task)
     for bus in system.buses:
         items += bus_terms(system, bus)
+    hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
+    rows = {hop.element for hop in hops if hop.kind == "row"}
+    handed = {hop.element for hop in hops if hop.kind == "handed"}
     for task in system.tasks:
-        items += _claims(system, task, claims)
+        items += _claims(system, task, claims, rows)
     for bus in system.buses:
-        items += bus_claims(system, bus, claims)
-    for chain in claims.chains:
-        items += chain_claims(system, chain)
+        items += bus_claims(system, bus, claims, handed)
+    for chain in system.chains:
+        items += chain_claims(system, chain, claims.chains.get(chain.name, ChainClaim()))
     package = Package(
         f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
     )
@@ -113,7 +120,7 @@ def _words(task: Task, held: tuple[SharedObject, str] | None) -> str:
     if task.released_by is not None:
         what = f"the driver's work, released by {task.released_by}, which is J late"
     elif task.sporadic:
-        what = "released by arrivals, no closer than T"
+        what = "released by arrivals, no closer than T; it may wait for T to be over as well"
     else:
         what = "released every T"
     text = f"[{task.element}] priority {task.priority}, {what}."
@@ -138,9 +145,14 @@ def _jitter(system: System, task: Task) -> Expr:
     return plus(*terms)
 
 
+def _switches(task: Task) -> Expr:
+    """To a job and back, twice where it waits for its least separation as well."""
+    return Ref(f"{4 if task.sporadic else 2} * {ada_case(task.node)}_Context_Switch")
+
+
 def _costs(task: Task) -> dict[str, Expr]:
     """C of what every release executes, and C_n of the rows of every n-th release."""
-    switches: Expr = Ref(f"2 * {ada_case(task.node)}_Context_Switch")
+    switches = _switches(task)
     if not task.slots:
         return {"C": plus(Ref(f"{name_of(task.element)}_Budget"), switches)}
     groups: dict[int, list[Expr]] = {1: []}
@@ -166,9 +178,8 @@ def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:
         if other is not task and other.priority >= task.priority:
             terms.append(_work(other, within(name_of(other.element), window)))
         if node.release:
-            terms.append(
-                times(within(name_of(other.element), window), Ref(f"{ada_case(node.name)}_Release"))
-            )
+            ready = number(2 if other.sporadic else 1), Ref(f"{ada_case(node.name)}_Release")
+            terms.append(times(within(name_of(other.element), window), *ready))
     if node.tick is not None and node.tick.wcet:
         tick = ada_case(node.name)
         terms.append(times(ceiling(window, Ref(f"{tick}_Tick_T")), Ref(f"{tick}_Tick_C")))
@@ -186,8 +197,8 @@ def _work(task: Task, releases: Expr) -> Expr:
     return plus(*terms)
 
 
-def _claims(system: System, task: Task, claims: Claims) -> list[Decl]:
-    """The jobs of a task, one after the other, and what they show of its response."""
+def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[Decl]:
+    """The jobs of a task, one after the other, and what they show of it and of these rows."""
     own, label = name_of(task.element), task.element
     windows = claims.of(label).windows
     jitter, period, bound = (Ref(f"{own}_{letter}") for letter in "JTR")
@@ -206,7 +217,7 @@ def _claims(system: System, task: Task, claims: Claims) -> list[Decl]:
         if len(windows) == 1:
             work = plus(*(Ref(f"{own}_{letter}") for letter in _costs(task)))
         items.append(named(needs, demand(system, task, last, work)))
-        items.append(refuse(Ref(needs), last, label, SLOW))
+        items += bounded(Ref(needs), last, label)
         if len(windows) > 1:
             items.append(refuse(plus(jitter, last, *before(own, job)), bound, label, SLOW))
     limit = times(number(len(windows)), period)
@@ -215,8 +226,8 @@ def _claims(system: System, task: Task, claims: Claims) -> list[Decl]:
     items.append(refuse(bound, Ref(f"{own}_D"), label, "can miss its deadline"))
     items += [assured(Ref(f"{own}_Needs{tail}"), last), assured(bound, Ref(f"{own}_D"))]
     for place, slot in enumerate(task.slots, 1):
-        if slot.element in claims.rows:
-            items += _row(system, task, place, claims.rows[slot.element])
+        if slot.element in rows:
+            items += _row(system, task, place, claims.rows.get(slot.element, 0))
     return items
 
 
@@ -225,12 +236,12 @@ def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
     row, own = task.slots[place - 1].element, name_of(task.element)
     done = name_of(row)
     budgets = [Ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
-    work = plus(Ref(f"2 * {ada_case(task.node)}_Context_Switch"), *budgets)
+    work = plus(_switches(task), *budgets)
     window = Ref(f"{done}_W")
     return [
         Comment(f"[{row}] done, from the event that releases its processor"),
         stated(f"{done}_Done", bound),
         named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
         named(f"{done}_Needs", demand(system, task, window, work)),
-        refuse(Ref(f"{done}_Needs"), window, row, SLOW),
+        *bounded(Ref(f"{done}_Needs"), window, row),
     ]

@@ -3,23 +3,25 @@
 A frame waits for the longest one that goes behind it and has begun, for what goes
 before it, and for errors; a bit later than it could begin, arbitration is over. All
 instances of the busy period count. Frames that a node sends share a first-in
-first-out queue: each goes with the last of them, and to others it is as late as it
-may have waited.
+first-out queue, of which the driver may hand over one by one: any frame may go before
+each of them, and to others it is as late as it may have waited.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 
 from ..claims import Claim, Claims
 from ..model import Bus, Message, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
 from .certificate_terms import (
+    ONE,
     SLOW,
     arrivals,
     assured,
     before,
+    bounded,
     ceiling,
     name_of,
     named,
@@ -43,7 +45,7 @@ def arbitration(message: Message) -> tuple[int, bool, int]:
 
 def _of(system: System, bus: Bus) -> list[Message]:
     """The messages of a bus, most urgent first."""
-    return sorted((m for m in system.messages if m.bus == bus.name), key=arbitration)
+    return sorted((m for m in system.frames if m.bus == bus.name), key=arbitration)
 
 
 def bus_terms(system: System, bus: Bus) -> list[Decl]:
@@ -151,18 +153,17 @@ def _bits(message: Message) -> int:
     return 10 * message.length + (25 if message.extended else 0)
 
 
-def bus_claims(system: System, bus: Bus, claims: Claims) -> list[Decl]:
-    """The instances of each message, and what they show of its response."""
+def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
+    """The instances of each message, and what they show of its response; then those handed over."""
     order = _of(system, bus)
-    queued = [n for n, message in enumerate(order, 1) if message.source is not None]
     items = _waits(bus, order, claims)
     for number_, message in enumerate(order, 1):
-        reach = max(queued) if message.source is not None else number_
+        reach = len(order) if message.source is not None else number_
         level = _Level(message, order[:reach], order[reach:])
         items += _of_message(bus, level, claims)
     for message in order:
-        if message.element in claims.turns:
-            items += _turns(system, message, claims.turns[message.element])
+        if message.element in handed:
+            items += _turns(system, message, claims.turns.get(message.element, Claim()))
     return items
 
 
@@ -176,15 +177,18 @@ def _waits(bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
         times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
     ]
     lost = _Level(order[0], order, []).lost(bus, busiest)
+    problem = "can be busy longer than claimed"
     items = [
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
         named(f"{line}_Busiest_Needs", plus(*works, *lost)),
-        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, "can be busy longer than claimed"),
+        refuse(ONE, busiest, bus.name, problem),
+        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, problem),
     ]
     for message in order:
         if message.element in claims.waits:
-            own, problem = name_of(message.element), "can wait longer than claimed"
+            own = name_of(message.element)
+            problem = "can wait longer than claimed"
             longest = Chain("-", (busiest, Ref(f"{own}_C")))
             items.append(stated(f"{own}_Wait", claims.waits[message.element]))
             items.append(refuse(longest, Ref(f"{own}_Wait"), message.element, problem))
@@ -244,6 +248,7 @@ def _instances(
     window: Expr = Ref(f"{own}_{prefix}Busy")
     items.append(named(f"{own}_{prefix}Busy_Needs", busy(window)))
     problem = "can keep others waiting for longer than claimed"
+    items.append(refuse(ONE, window, label, problem))  # no time at all is a solution too
     items.append(refuse(Ref(f"{own}_{prefix}Busy_Needs"), window, label, problem))
     late = Ref(f"{own}_J") if not prefix else Ref(f"{own}_{prefix}J")
     most = times(number(len(claim.windows)), Ref(f"{own}_T"))
@@ -255,7 +260,7 @@ def _instances(
         needs = f"{own}_{prefix}Needs{tail}"
         items.append(stated(f"{own}_{prefix}W{tail}", length))
         items.append(named(needs, waiting(instance, at)))
-        items.append(refuse(Ref(needs), at, label, SLOW))
+        items += bounded(Ref(needs), at, label)
     return items
 
 

@@ -1,10 +1,15 @@
-"""The chains of a model in the timing certificate: sums of what tasks and messages claim."""
+"""The chains of a model in the timing certificate: sums of what tasks and messages claim.
+
+Which sums, the model says (`certificate_hops`); claims are numbers only.
+"""
 
 from __future__ import annotations
 
-from ..claims import ChainClaim, Step
+from ..claims import ChainClaim
+from ..model import Chain as ModelChain
 from ..model import Processor, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
+from .certificate_hops import Hop, hops_of
 from .certificate_terms import assured, name_of, named, plus, refuse, stated, times
 from .naming import ada_case
 
@@ -12,39 +17,48 @@ SUFFIX = {"row": "Done", "item": "R", "handed": "Handed"}
 """What the response of a step is called."""
 
 
-def chain_claims(system: System, claim: ChainClaim) -> list[Decl]:
+def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[Decl]:
     """The reaction time and the age of a chain as sums.
 
     What is released by the step before it counts from the same event, so of such
-    steps the last one stands for all.
+    steps the last one stands for all. An output is renewed as often as the rows that
+    make it run, at the least: where a queue is filled, and where a sampled row begins
+    what is sampled next. What repeats the values of a queue renews nothing.
     """
-    own = f"Chain_{ada_case(claim.name)}"
-    words = [f"[{claim.name}] from end to end."]
+    own = f"Chain_{ada_case(chain.name)}"
+    hops = hops_of(system, chain)
+    words = [f"[{chain.name}] from end to end."]
     reaction: list[Expr] = []
     age: list[Expr] = []
     items: list[Decl] = []
-    for number_, step in enumerate(claim.steps, 1):
-        before = claim.steps[number_ - 2] if number_ > 1 else None
-        if step.hop == "released" and before is not None:
+    queued = False
+    waits = iter(claim.waits)
+    for place, hop in enumerate(hops):
+        before = hops[place - 1] if place else None
+        if hop.how == "released" and before is not None:
             del reaction[-1], age[-1]  # its response counts from the same event
-        elif step.hop == "sampled":
-            words.append(f"{step.element} samples.")
-            reaction.append(_period(system, step))
-        elif step.hop == "queued" and before is not None:
-            words.append(f"{step.element} takes one of a queue: Wait_{number_}.")
-            wait = f"{own}_Wait_{number_}"
-            items += _queue(system, wait, before, step, claim.name)
+        elif hop.how == "sampled":
+            words.append(f"{hop.element} samples.")
+            reaction.append(_period(system, hop))
+            if before is not None and not queued:
+                age.append(_period(system, before))
+            queued = False
+        elif before is not None:
+            words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
+            wait = f"{own}_Wait_{place + 1}"
+            items += _queue(system, wait, (before, hop), next(waits, 0), chain.name)
             reaction.append(Ref(wait))
-            age.append(Ref(wait))
-        reaction.append(_response(step))
-        age.append(_response(step))
-        if step.renewed:
-            age.append(_period(system, step))
-    chain = next(chain for chain in system.chains if chain.name == claim.name)
+            age += [_renewal(system, hops[:place]), Ref(wait)]
+            queued = True
+        reaction.append(_response(hop))
+        age.append(_response(hop))
     items = [Comment(" ".join(words)), *items]
-    for what, terms, bound, limit in (
-        ("Reaction", reaction, claim.reaction, chain.reaction),
-        ("Age", age, claim.age, chain.age),
+    waiting = [hop.element for hop in hops if hop.open]
+    kept = [hop.element for hop in hops[:-1] if not hop.sure]
+    kept += [hop.element for hop in hops if hop.open and hop.how == "queued"]
+    for what, terms, bound, limit, without in (
+        ("Reaction", reaction, claim.reaction, chain.reaction, waiting),
+        ("Age", age, claim.age, chain.age, kept),
     ):
         if limit is None:
             continue
@@ -53,48 +67,60 @@ def chain_claims(system: System, claim: ChainClaim) -> list[Decl]:
             stated(f"{own}_{what}_Limit", limit),
             named(f"{own}_{what}_Needs", plus(*terms)),
         ]
+        label, low = f"chain {chain.name}", what.lower()
         needs, claimed = Ref(f"{own}_{what}_Needs"), Ref(f"{own}_{what}")
-        problem = f"can have a longer {what.lower()} than claimed"
-        items.append(refuse(needs, claimed, f"chain {claim.name}", problem))
-        problem = f"can exceed the limit of its {what.lower()}"
-        items.append(refuse(claimed, Ref(f"{own}_{what}_Limit"), f"chain {claim.name}", problem))
+        items.append(refuse(needs, claimed, label, f"can have a longer {low} than claimed"))
+        problem = f"can exceed the limit of its {low}"
+        items.append(refuse(claimed, Ref(f"{own}_{what}_Limit"), label, problem))
         items.append(assured(needs, Ref(f"{own}_{what}_Limit")))
+        if not hops or without:
+            problem = f"can have any {low}: " + (without[0] if without else "its way is broken")
+            items.append(refuse(number(1), number(0), label, problem))
     return items
 
 
-def _response(step: Step) -> Expr:
-    return Ref(f"{name_of(step.element)}_{SUFFIX[step.kind]}")
+def _response(hop: Hop) -> Expr:
+    return Ref(f"{name_of(hop.element)}_{SUFFIX[hop.kind]}")
 
 
-def _period(system: System, step: Step) -> Expr:
+def _period(system: System, hop: Hop) -> Expr:
     """The distance of its outputs."""
-    if step.kind != "row":
-        return Ref(f"{name_of(step.element)}_T")
-    processor = system.processor_of(step.element)
-    return times(number(_divisor(processor, step.element)), Ref(f"{name_of(processor.name)}_T"))
+    if hop.kind != "row":
+        return Ref(f"{name_of(hop.element)}_T")
+    processor = system.processor_of(hop.element)
+    return times(number(_divisor(processor, hop.element)), Ref(f"{name_of(processor.name)}_T"))
+
+
+def _renewal(system: System, hops: tuple[Hop, ...]) -> Expr:
+    """How often new values come out of these steps: what only passes them on adds nothing."""
+    makes = [hop for hop in hops if hop.how == "sampled"]
+    return _period(system, makes[-1] if makes else hops[0])
 
 
 def _divisor(processor: Processor, row: str) -> int:
     return next(slot.divisor for slot in processor.slots if slot.element == row)
 
 
-def _queue(system: System, wait: str, before: Step, step: Step, chain: str) -> list[Decl]:
+def _queue(
+    system: System, wait: str, hops: tuple[Hop, Hop], claimed: int, chain: str
+) -> list[Decl]:
     """How long an item waits for its reader, who takes one in a job.
 
-    The wait is longest for the last of those that lateness lets come at once, or
-    for the next.
+    The wait is longest for the last item that lateness lets come at once, or for the
+    last that the next job of the writer puts in.
     """
-    late, period, cycle = _response(before), _period(system, before), _period(system, step)
+    before, hop = hops
+    late, period, cycle = _response(before), _period(system, before), _period(system, hop)
     burst = f"{wait}_Burst"
-    label = f"chain {chain}"
-    last = times(Ref(burst), cycle)
+    label, many = f"chain {chain}", number(hop.at_once)
+    last = times(Ref(burst), many, cycle)
     gone = Chain("*", (number(-1), Ref(burst), period))
-    following = plus(times(plus(Ref(burst), number(1)), cycle), late, gone)
+    following = plus(times(plus(Ref(burst), number(1)), many, cycle), late, gone)
     problem = "can wait longer in a queue than claimed"
     return [
         named(burst, plus(Chain("/", (late, period)), number(1))),
-        stated(wait, step.wait),
-        refuse(cycle, period, label, "has a queue that fills"),
+        stated(wait, claimed),
+        refuse(times(many, cycle), period, label, "can fill a queue"),
         refuse(last, Ref(wait), label, problem),
         refuse(following, Ref(wait), label, problem),
     ]

@@ -6,10 +6,12 @@ from .ada import Chain, Decl, Expr, Object, Pragma, Ref, chain, number
 from .naming import constant_name as name_of
 
 __all__ = [
+    "ONE",
     "SLOW",
     "arrivals",
     "assured",
     "before",
+    "bounded",
     "ceiling",
     "name_of",
     "named",
@@ -72,6 +74,18 @@ def refuse(left: Expr, right: Expr, element: str, problem: str) -> Decl:
     """A build fails, with our words, when ``left`` exceeds ``right``."""
     words = Chain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
     return Pragma("Compile_Time_Error", (Chain(">", (left, right)), words))
+
+
+def bounded(needs: Expr, window: Expr, element: str) -> list[Decl]:
+    """A window holds its demand, and is none that ends before it begins.
+
+    Ada rounds quotients towards zero: a negative window could hold the demand of what
+    needs more than all of the time.
+    """
+    return [
+        refuse(number(0), window, element, SLOW),
+        refuse(needs, window, element, SLOW),
+    ]
 
 
 def assured(left: Expr, right: Expr) -> Decl:

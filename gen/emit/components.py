@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..model import Activity, Component, Direction, System
 from ..statechart import RAISED_PER_STEP, Region
-from ..terms import Type
+from ..terms import Type, always
 from .ada import (
     FALSE,
     SPARK,
@@ -29,7 +29,7 @@ from .ada import (
 from .charts.places import Places
 from .events import event_types, null_event
 from .naming import ada_case, component_package, default_value, type_name
-from .terms import Scope, always, effective, emit_flow, flow_names, flow_operators
+from .terms import Scope, effective, emit_flow, flow_names, flow_operators
 
 
 def leaf_type(component: Component, region: Region) -> str:

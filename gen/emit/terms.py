@@ -138,22 +138,6 @@ def expressions_in(flow: m.Flow) -> Iterator[m.Expression]:
                 yield from expressions_in(action.otherwise)
 
 
-def always(flow: m.Flow) -> set[str]:
-    """The ports, events and whole data items that a flow sends, raises or sets on every path."""
-    sure: set[str] = set()
-    for action in flow:
-        match action:
-            case m.Set(_, data, None):
-                sure.add(data)
-            case m.Send(_, port):
-                sure.add(port)
-            case m.Raise(_, event):
-                sure.add(event)
-            case m.If(_, _, then, otherwise):
-                sure |= always(then) & always(otherwise)
-    return sure
-
-
 def effective(flow: m.Flow) -> m.Flow:
     """A flow of an activity without what has no effect: values set anew before they are read."""
     kept: list[m.Action] = []

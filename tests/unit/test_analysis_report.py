@@ -23,6 +23,7 @@ from analysis.words import binding_lines
 from gen.diagnostics import render as render_diagnostic
 from gen.model import Chain, System
 from gen.terms import Ns
+from gen.ways import routed
 from tests.support.certificates import random_system
 from tests.support.plant_model import plant
 from tests.support.pump import system_of
@@ -81,7 +82,7 @@ def test_a_message_that_is_late_says_what_goes_before_it() -> None:
 
 def chain(*path: str, reaction: int) -> System:
     limits = (Ns(reaction), None)
-    return replace(plant(), chains=(Chain("flow", plant().origin, path, *limits),))
+    return routed(replace(plant(), chains=(Chain("flow", plant().origin, path, *limits),)))
 
 
 def test_chains_that_are_broken_or_late_are_findings() -> None:

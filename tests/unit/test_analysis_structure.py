@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from xml.etree import ElementTree as Xml
 
 import pytest
 
-from analysis.graph import Way, Ways, component_view, dependencies
+from analysis.graph import Ways, component_view, dependencies
 from analysis.network import frame_length
 from analysis.picture import LEGIBLE, draw
 from analysis.timing import analyse
-from gen.model import System
+from gen.model import Chain, System
+from gen.terms import Ns
+from gen.ways import routed
 from tests.support.plant_model import plant
-from tests.support.systems import bus, message, system
+from tests.support.systems import HERE, bus, message, system
 
 
 @pytest.mark.parametrize(
@@ -79,10 +82,11 @@ def test_a_chain_leads_from_the_message_received_to_the_message_sent() -> None:
 
 
 def test_a_way_goes_through_the_places_named_or_says_where_it_is_broken() -> None:
-    ways = Ways.of(plant())
-    whole = ways.through(["raw_level", "pump.drive"])
-    assert (whole.places[0], whole.places[-1]) == ("message raw_level", "pump.drive")
-    assert ways.through(["pump.drive", "raw_level"]) == Way((), ("pump.drive", "raw_level"))
+    chains = (("raw_level", "pump.drive"), ("pump.drive", "raw_level"))
+    one = replace(plant(), chains=tuple(Chain("c", HERE, path, Ns(1), None) for path in chains))
+    whole, broken = routed(one).chains
+    assert (whole.way[0], whole.way[-1], whole.gap) == ("message raw_level", "pump.drive", None)
+    assert (broken.way, broken.gap) == ((), ("pump.drive", "raw_level"))
 
 
 def boxes_of(svg: str) -> list[tuple[float, float]]:

@@ -215,3 +215,52 @@ def test_releases_of_a_task_without_bound_take_the_bounds_of_all_above_it() -> N
     assert holistic.analyse(network).from_event("high") == 5
     costly = replace(network, platforms={"here": Platform(release=1)})
     assert holistic.analyse(costly).from_event("high") is None
+
+
+def test_several_values_at_once_wait_for_each_other() -> None:
+    network = Network((task("write", 1, 40, "a"), task("take", 2, 10, "b")))
+    chain = Chain("many", (Step("write", RELEASED), Step("take", QUEUED, puts=3)))
+    hop = latency(chain, network, holistic.analyse(network)).hops[1]
+    #  jitter of 1: the third is taken by the third job; 3 more come 39 later at the soonest
+    assert (hop.wait, hop.backlog) == (30, 3)
+    full = Chain("full", (Step("write", RELEASED), Step("take", QUEUED, puts=5)))
+    assert latency(full, network, holistic.analyse(network)).reaction is None
+    with pytest.raises(ValueError, match="takes several items or is given several, not both"):
+        Step("take", QUEUED, takes=2, puts=2)
+
+
+def test_what_follows_every_second_job_only_waits_for_one_of_those() -> None:
+    network = Network(
+        (task("a", 1, 10, "x", priority=2), task("b", 1, 20, "x", priority=1)),
+        released_by={"b": "a"},
+    )
+    found = of(network, ("a", SAMPLED), ("b", RELEASED), reaction_limit=15)
+    #  an input just missed by the job that b follows waits for the second next one
+    assert [(hop.wait, hop.response) for hop in found.hops] == [(10, 1), (10, 2)]
+    assert (found.reaction, found.met) == (23, False)
+    network = replace(network, tasks=(*network.tasks, task("in", 1, 10, "y")))
+    queued = of(network, ("in", RELEASED), ("a", QUEUED), ("b", RELEASED))
+    assert queued.reaction is None  # every second item goes no further
+
+
+def test_a_queue_repeats_its_last_item_until_there_is_a_next_one() -> None:
+    network = Network((task("in", 1, 100, "a"), task("take", 2, 10, "b"), task("act", 3, 10, "c")))
+    found = of(network, ("in", RELEASED), ("take", QUEUED), ("act", SAMPLED))
+    wait = found.hops[1].wait
+    assert wait is not None
+    assert found.age == 100 + 1 + wait + 2 + 3
+    last = of(network, ("in", RELEASED), ("take", QUEUED))
+    assert last.age == 100 + 1 + wait + 2
+
+
+def test_what_keeps_its_old_output_ages_without_bound() -> None:
+    network = Network((task("in", 1, 10, "a"), task("act", 3, 10, "c")))
+    steps = (Step("in", RELEASED, keeps="it may"), Step("act", SAMPLED))
+    found = latency(Chain("c", steps), network, holistic.analyse(network))
+    assert found.age is None and found.reaction is not None
+    last = (Step("in", RELEASED), Step("act", SAMPLED, keeps="it may"))
+    found = latency(Chain("c", last), network, holistic.analyse(network))
+    assert found.age is not None and found.held is None
+    waits = (Step("in", RELEASED), Step("act", SAMPLED, waits="for others"))
+    found = latency(Chain("c", waits), network, holistic.analyse(network))
+    assert found.age is not None and found.reaction is None

@@ -291,3 +291,17 @@ def test_one_response_alone_is_the_same(
 def test_the_reference_cases_add_up() -> None:
     for case in cases("rta.json", "fp"):
         assert all(adds_up(r) for r in analyse(tasks_of(case), sections_of(case)))
+
+
+def test_each_suspension_of_a_job_costs_two_switches_and_a_release() -> None:
+    platform = {"": Platform(context_switch=5, release=3)}
+    fast = task("fast", 2, 10, 100, suspensions=2)
+    low = task("low", 1, 20, 1_000)
+    found = {r.task.name: r for r in analyse([fast, low], (), platform)}
+    #  each job of `fast`: 10 + 4 x 5, and 2 x 3 to make it ready
+    assert found["fast"].bound == 10 + 4 * 5 + 2 * 3 + 3
+    assert found["low"].bound == 20 + 2 * 5 + 3 + 10 + 4 * 5 + 2 * 3
+    assert (found["low"].overheads.switches, found["low"].overheads.releases) == (6, 3)
+    assert found["low"].level.load == Fraction(30 + 6, 100) + Fraction(30 + 3, 1_000)
+    with pytest.raises(ValueError, match="suspensions of task a must be an integer above 0"):
+        task("a", 1, 1, 9, suspensions=0)

@@ -7,31 +7,31 @@ with SPARK_Mode, Pure
 is
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  two context switches) or transmission, B blocking, R the claimed
-   --  response from the event, W the time claimed from the start of a busy
-   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
-   --  within W. Needs is the demand that arises within W: where it is more,
-   --  W is too short.
+   --  context switches) or transmission, B blocking, R the claimed response
+   --  from the event, W the time claimed from the start of a busy period. A
+   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
+   --  Needs is the demand that arises within W: where it is more, W is too
+   --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Reception_R : constant := 485_000;
-   Trajectory_R : constant := 795_000;
-   Control_R : constant := 1_935_000;
-   Supervision_R : constant := 3_255_000;
+   Reception_R : constant := 495_000;
+   Trajectory_R : constant := 805_000;
+   Control_R : constant := 1_955_000;
+   Supervision_R : constant := 3_295_000;
    Robot_Bus_Driver_Rx_Robot_Command_R : constant := 935_000;
-   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 3_690_000;
-   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 2_370_000;
-   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 2_370_000;
-   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 2_370_000;
+   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 3_730_000;
+   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 2_390_000;
+   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 2_390_000;
+   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 2_390_000;
    Robot_Bus_Driver_Rx_X_Feedback_R : constant := 1_675_000;
    Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 1_905_000;
    Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 2_135_000;
    Controller_Probe_R : constant := 35_000;
    Robot_Bus_Robot_Command_R : constant := 500_000;
-   Robot_Bus_Robot_Status_R : constant := 5_390_000;
-   Robot_Bus_X_Set_Point_R : constant := 4_070_000;
-   Robot_Bus_Y_Set_Point_R : constant := 4_070_000;
-   Robot_Bus_Z_Set_Point_R : constant := 4_070_000;
+   Robot_Bus_Robot_Status_R : constant := 5_430_000;
+   Robot_Bus_X_Set_Point_R : constant := 4_090_000;
+   Robot_Bus_Y_Set_Point_R : constant := 4_090_000;
+   Robot_Bus_Z_Set_Point_R : constant := 4_090_000;
    Robot_Bus_X_Feedback_R : constant := 1_240_000;
    Robot_Bus_Y_Feedback_R : constant := 1_470_000;
    Robot_Bus_Z_Feedback_R : constant := 1_700_000;
@@ -40,15 +40,16 @@ is
    Controller_Context_Switch : constant := 5_000;
    Controller_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 4, released by arrivals, no closer than T. B:
-   --  control may be inside joint_x.feedback.mailbox.
+   --  [reception] priority 4, released by arrivals, no closer than T; it
+   --  may wait for T to be over as well. B: control may be inside
+   --  joint_x.feedback.mailbox.
    Robot_Bus_Receive_Budget : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
    Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
-     Robot_Bus_Receive_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Receive_Budget + 4 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
 
    --  [trajectory] priority 3, released every T. B: control may be inside
@@ -427,6 +428,9 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Reception_W,
+      "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -471,6 +475,9 @@ is
      + (((Trajectory_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
+   pragma Compile_Time_Error
+     (0 > Trajectory_W,
+      "trajectory " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Trajectory_Needs > Trajectory_W,
       "trajectory " & "can take longer than its claimed response time");
@@ -518,6 +525,9 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Control_W,
+      "control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -530,7 +540,7 @@ is
    pragma Assert (Control_R <= Control_D);
 
    --  [joint_x.ports] done, from the event that releases its processor
-   Joint_X_Ports_Done : constant := 905_000;
+   Joint_X_Ports_Done : constant := 915_000;
    Joint_X_Ports_W : constant := Joint_X_Ports_Done - Control_J;
    Joint_X_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -566,12 +576,15 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_X_Ports_W,
+      "joint_x.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_X_Ports_Needs > Joint_X_Ports_W,
       "joint_x.ports " & "can take longer than its claimed response time");
 
    --  [joint_x.position_control] done, from the event that releases its
    --  processor
-   Joint_X_Position_Control_Done : constant := 1_235_000;
+   Joint_X_Position_Control_Done : constant := 1_255_000;
    Joint_X_Position_Control_W : constant :=
      Joint_X_Position_Control_Done - Control_J;
    Joint_X_Position_Control_Needs : constant :=
@@ -613,12 +626,16 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_X_Position_Control_W,
+      "joint_x.position_control "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_X_Position_Control_Needs > Joint_X_Position_Control_W,
       "joint_x.position_control "
       & "can take longer than its claimed response time");
 
    --  [joint_y.ports] done, from the event that releases its processor
-   Joint_Y_Ports_Done : constant := 1_335_000;
+   Joint_Y_Ports_Done : constant := 1_355_000;
    Joint_Y_Ports_W : constant := Joint_Y_Ports_Done - Control_J;
    Joint_Y_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -657,12 +674,15 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_Y_Ports_W,
+      "joint_y.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_Y_Ports_Needs > Joint_Y_Ports_W,
       "joint_y.ports " & "can take longer than its claimed response time");
 
    --  [joint_y.position_control] done, from the event that releases its
    --  processor
-   Joint_Y_Position_Control_Done : constant := 1_585_000;
+   Joint_Y_Position_Control_Done : constant := 1_605_000;
    Joint_Y_Position_Control_W : constant :=
      Joint_Y_Position_Control_Done - Control_J;
    Joint_Y_Position_Control_Needs : constant :=
@@ -707,12 +727,16 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_Y_Position_Control_W,
+      "joint_y.position_control "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_Y_Position_Control_Needs > Joint_Y_Position_Control_W,
       "joint_y.position_control "
       & "can take longer than its claimed response time");
 
    --  [joint_z.ports] done, from the event that releases its processor
-   Joint_Z_Ports_Done : constant := 1_685_000;
+   Joint_Z_Ports_Done : constant := 1_705_000;
    Joint_Z_Ports_W : constant := Joint_Z_Ports_Done - Control_J;
    Joint_Z_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -754,12 +778,15 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_Z_Ports_W,
+      "joint_z.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_Z_Ports_Needs > Joint_Z_Ports_W,
       "joint_z.ports " & "can take longer than its claimed response time");
 
    --  [joint_z.position_control] done, from the event that releases its
    --  processor
-   Joint_Z_Position_Control_Done : constant := 1_935_000;
+   Joint_Z_Position_Control_Done : constant := 1_955_000;
    Joint_Z_Position_Control_W : constant :=
      Joint_Z_Position_Control_Done - Control_J;
    Joint_Z_Position_Control_Needs : constant :=
@@ -807,6 +834,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_Z_Position_Control_W,
+      "joint_z.position_control "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_Z_Position_Control_Needs > Joint_Z_Position_Control_W,
       "joint_z.position_control "
       & "can take longer than its claimed response time");
@@ -847,6 +878,9 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Supervision_W,
+      "supervision " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Supervision_Needs > Supervision_W,
       "supervision " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -859,7 +893,7 @@ is
    pragma Assert (Supervision_R <= Supervision_D);
 
    --  [coordinator.ports] done, from the event that releases its processor
-   Coordinator_Ports_Done : constant := 2_125_000;
+   Coordinator_Ports_Done : constant := 2_155_000;
    Coordinator_Ports_W : constant := Coordinator_Ports_Done - Supervision_J;
    Coordinator_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -896,101 +930,16 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Coordinator_Ports_W,
+      "coordinator.ports "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Coordinator_Ports_Needs > Coordinator_Ports_W,
       "coordinator.ports "
       & "can take longer than its claimed response time");
 
-   --  [coordinator.Mission] done, from the event that releases its
-   --  processor
-   Coordinator_Mission_Done : constant := 2_325_000;
-   Coordinator_Mission_W : constant :=
-     Coordinator_Mission_Done - Supervision_J;
-   Coordinator_Mission_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget
-     + Supervision_B
-     + (((Coordinator_Mission_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Coordinator_Mission_W + Trajectory_A) / Trajectory_T)
-        * Trajectory_C)
-     + (((Coordinator_Mission_W + Control_A) / Control_T) * Control_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Coordinator_Mission_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Coordinator_Mission_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (Coordinator_Mission_Needs > Coordinator_Mission_W,
-      "coordinator.Mission "
-      & "can take longer than its claimed response time");
-
-   --  [joint_x.Motion] done, from the event that releases its processor
-   Joint_X_Motion_Done : constant := 2_475_000;
-   Joint_X_Motion_W : constant := Joint_X_Motion_Done - Supervision_J;
-   Joint_X_Motion_Needs : constant :=
-     2 * Controller_Context_Switch
-     + Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget
-     + Joint_X_Motion_Budget
-     + Supervision_B
-     + (((Joint_X_Motion_W + Reception_A) / Reception_T) * Reception_C)
-     + (((Joint_X_Motion_W + Trajectory_A) / Trajectory_T) * Trajectory_C)
-     + (((Joint_X_Motion_W + Control_A) / Control_T) * Control_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Robot_Command_A)
-         / Robot_Bus_Driver_Rx_Robot_Command_T)
-        * Robot_Bus_Driver_Rx_Robot_Command_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Robot_Status_A)
-         / Robot_Bus_Driver_Tx_Robot_Status_T)
-        * Robot_Bus_Driver_Tx_Robot_Status_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_X_Set_Point_A)
-         / Robot_Bus_Driver_Tx_X_Set_Point_T)
-        * Robot_Bus_Driver_Tx_X_Set_Point_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Y_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Y_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Y_Set_Point_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Tx_Z_Set_Point_A)
-         / Robot_Bus_Driver_Tx_Z_Set_Point_T)
-        * Robot_Bus_Driver_Tx_Z_Set_Point_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_X_Feedback_A)
-         / Robot_Bus_Driver_Rx_X_Feedback_T)
-        * Robot_Bus_Driver_Rx_X_Feedback_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Y_Feedback_A)
-         / Robot_Bus_Driver_Rx_Y_Feedback_T)
-        * Robot_Bus_Driver_Rx_Y_Feedback_C)
-     + (((Joint_X_Motion_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
-         / Robot_Bus_Driver_Rx_Z_Feedback_T)
-        * Robot_Bus_Driver_Rx_Z_Feedback_C)
-     + (((Joint_X_Motion_W + Controller_Probe_A) / Controller_Probe_T)
-        * Controller_Probe_C);
-
-   pragma Compile_Time_Error
-     (Joint_X_Motion_Needs > Joint_X_Motion_W,
-      "joint_x.Motion " & "can take longer than its claimed response time");
-
    --  [joint_x.supervise] done, from the event that releases its processor
-   Joint_X_Supervise_Done : constant := 2_875_000;
+   Joint_X_Supervise_Done : constant := 2_905_000;
    Joint_X_Supervise_W : constant := Joint_X_Supervise_Done - Supervision_J;
    Joint_X_Supervise_Needs : constant :=
      2 * Controller_Context_Switch
@@ -1032,13 +981,17 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Joint_X_Supervise_W,
+      "joint_x.supervise "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Joint_X_Supervise_Needs > Joint_X_Supervise_W,
       "joint_x.supervise "
       & "can take longer than its claimed response time");
 
    --  [coordinator.summarise] done, from the event that releases its
    --  processor
-   Coordinator_Summarise_Done : constant := 3_255_000;
+   Coordinator_Summarise_Done : constant := 3_295_000;
    Coordinator_Summarise_W : constant :=
      Coordinator_Summarise_Done - Supervision_J;
    Coordinator_Summarise_Needs : constant :=
@@ -1086,6 +1039,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Coordinator_Summarise_W,
+      "coordinator.summarise "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Coordinator_Summarise_Needs > Coordinator_Summarise_W,
       "coordinator.summarise "
       & "can take longer than its claimed response time");
@@ -1129,6 +1086,10 @@ is
          / Controller_Probe_T)
         * Controller_Probe_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Rx_Robot_Command_W,
+      "robot_bus.driver_rx.robot_command "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Robot_Command_Needs
       > Robot_Bus_Driver_Rx_Robot_Command_W,
@@ -1191,6 +1152,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Tx_Robot_Status_W,
+      "robot_bus.driver_tx.robot_status "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Robot_Status_Needs
       > Robot_Bus_Driver_Tx_Robot_Status_W,
       "robot_bus.driver_tx.robot_status "
@@ -1252,6 +1217,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Tx_X_Set_Point_W,
+      "robot_bus.driver_tx.x_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_X_Set_Point_Needs
       > Robot_Bus_Driver_Tx_X_Set_Point_W,
       "robot_bus.driver_tx.x_set_point "
@@ -1309,6 +1278,10 @@ is
          / Controller_Probe_T)
         * Controller_Probe_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Tx_Y_Set_Point_W,
+      "robot_bus.driver_tx.y_set_point "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Y_Set_Point_Needs
       > Robot_Bus_Driver_Tx_Y_Set_Point_W,
@@ -1368,6 +1341,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Tx_Z_Set_Point_W,
+      "robot_bus.driver_tx.z_set_point "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Driver_Tx_Z_Set_Point_Needs
       > Robot_Bus_Driver_Tx_Z_Set_Point_W,
       "robot_bus.driver_tx.z_set_point "
@@ -1425,6 +1402,10 @@ is
          / Controller_Probe_T)
         * Controller_Probe_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Rx_X_Feedback_W,
+      "robot_bus.driver_rx.x_feedback "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_X_Feedback_Needs
       > Robot_Bus_Driver_Rx_X_Feedback_W,
@@ -1484,6 +1465,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Rx_Y_Feedback_W,
+      "robot_bus.driver_rx.y_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Y_Feedback_Needs
       > Robot_Bus_Driver_Rx_Y_Feedback_W,
       "robot_bus.driver_rx.y_feedback "
@@ -1542,6 +1527,10 @@ is
         * Controller_Probe_C);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Driver_Rx_Z_Feedback_W,
+      "robot_bus.driver_rx.z_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Driver_Rx_Z_Feedback_Needs
       > Robot_Bus_Driver_Rx_Z_Feedback_W,
       "robot_bus.driver_rx.z_feedback "
@@ -1567,6 +1556,9 @@ is
      Controller_Probe_C + Controller_Probe_B;
 
    pragma Compile_Time_Error
+     (0 > Controller_Probe_W,
+      "controller.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Controller_Probe_Needs > Controller_Probe_W,
       "controller.probe " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -1589,6 +1581,10 @@ is
         * Robot_Bus_Robot_Command_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Robot_Command_Busy,
+      "robot_bus.robot_command "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Robot_Command_Busy_Needs > Robot_Bus_Robot_Command_Busy,
       "robot_bus.robot_command "
       & "can keep others waiting for longer than claimed");
@@ -1600,6 +1596,10 @@ is
    Robot_Bus_Robot_Command_W : constant := 230_000;
    Robot_Bus_Robot_Command_Needs : constant := Robot_Bus_X_Feedback_C;
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Robot_Command_W,
+      "robot_bus.robot_command "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Robot_Command_Needs > Robot_Bus_Robot_Command_W,
       "robot_bus.robot_command "
@@ -1646,6 +1646,10 @@ is
         * Robot_Bus_Robot_Status_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_X_Set_Point_Busy,
+      "robot_bus.x_set_point "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_X_Set_Point_Busy_Needs > Robot_Bus_X_Set_Point_Busy,
       "robot_bus.x_set_point "
       & "can keep others waiting for longer than claimed");
@@ -1681,6 +1685,10 @@ is
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_X_Set_Point_W,
+      "robot_bus.x_set_point "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_X_Set_Point_Needs > Robot_Bus_X_Set_Point_W,
       "robot_bus.x_set_point "
@@ -1727,6 +1735,10 @@ is
         * Robot_Bus_Robot_Status_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Y_Set_Point_Busy,
+      "robot_bus.y_set_point "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Y_Set_Point_Busy_Needs > Robot_Bus_Y_Set_Point_Busy,
       "robot_bus.y_set_point "
       & "can keep others waiting for longer than claimed");
@@ -1762,6 +1774,10 @@ is
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Y_Set_Point_W,
+      "robot_bus.y_set_point "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Set_Point_Needs > Robot_Bus_Y_Set_Point_W,
       "robot_bus.y_set_point "
@@ -1808,6 +1824,10 @@ is
         * Robot_Bus_Robot_Status_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Z_Set_Point_Busy,
+      "robot_bus.z_set_point "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Z_Set_Point_Busy_Needs > Robot_Bus_Z_Set_Point_Busy,
       "robot_bus.z_set_point "
       & "can keep others waiting for longer than claimed");
@@ -1843,6 +1863,10 @@ is
          / Robot_Bus_Robot_Status_T)
         * Robot_Bus_Robot_Status_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Z_Set_Point_W,
+      "robot_bus.z_set_point "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Set_Point_Needs > Robot_Bus_Z_Set_Point_W,
       "robot_bus.z_set_point "
@@ -1887,6 +1911,10 @@ is
         * Robot_Bus_X_Feedback_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_X_Feedback_Busy,
+      "robot_bus.x_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_Busy_Needs > Robot_Bus_X_Feedback_Busy,
       "robot_bus.x_feedback "
       & "can keep others waiting for longer than claimed");
@@ -1920,6 +1948,10 @@ is
          / Robot_Bus_Z_Set_Point_T)
         * Robot_Bus_Z_Set_Point_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_X_Feedback_W,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_Needs > Robot_Bus_X_Feedback_W,
       "robot_bus.x_feedback "
@@ -1967,6 +1999,10 @@ is
         * Robot_Bus_Y_Feedback_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Y_Feedback_Busy,
+      "robot_bus.y_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_Busy_Needs > Robot_Bus_Y_Feedback_Busy,
       "robot_bus.y_feedback "
       & "can keep others waiting for longer than claimed");
@@ -2003,6 +2039,10 @@ is
          / Robot_Bus_X_Feedback_T)
         * Robot_Bus_X_Feedback_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Y_Feedback_W,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_Needs > Robot_Bus_Y_Feedback_W,
       "robot_bus.y_feedback "
@@ -2053,6 +2093,10 @@ is
         * Robot_Bus_Z_Feedback_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Z_Feedback_Busy,
+      "robot_bus.z_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_Busy_Needs > Robot_Bus_Z_Feedback_Busy,
       "robot_bus.z_feedback "
       & "can keep others waiting for longer than claimed");
@@ -2092,6 +2136,10 @@ is
          / Robot_Bus_Y_Feedback_T)
         * Robot_Bus_Y_Feedback_C);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Z_Feedback_W,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_Needs > Robot_Bus_Z_Feedback_W,
       "robot_bus.z_feedback "
@@ -2138,6 +2186,10 @@ is
         * Robot_Bus_Robot_Status_C);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Robot_Status_Busy,
+      "robot_bus.robot_status "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Robot_Status_Busy_Needs > Robot_Bus_Robot_Status_Busy,
       "robot_bus.robot_status "
       & "can keep others waiting for longer than claimed");
@@ -2174,6 +2226,10 @@ is
         * Robot_Bus_Z_Feedback_C);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Robot_Status_W,
+      "robot_bus.robot_status "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Robot_Status_Needs > Robot_Bus_Robot_Status_W,
       "robot_bus.robot_status "
       & "can take longer than its claimed response time");
@@ -2188,80 +2244,6 @@ is
      (Robot_Bus_Robot_Status_R > Robot_Bus_Robot_Status_D,
       "robot_bus.robot_status " & "can miss its deadline");
    pragma Assert (Robot_Bus_Robot_Status_R <= Robot_Bus_Robot_Status_D);
-
-   --  [robot_bus.robot_command] its turn in the queue of reception, and
-   --  when it is handed over
-   Robot_Bus_Robot_Command_Turn_J : constant :=
-     Robot_Bus_Driver_Rx_Robot_Command_R;
-   Robot_Bus_Robot_Command_Turn_Busy : constant := 7_000_000;
-   Robot_Bus_Robot_Command_Turn_Busy_Needs : constant :=
-     (((Robot_Bus_Robot_Command_Turn_Busy
-        + Robot_Bus_Driver_Rx_Robot_Command_R
-        + (Robot_Bus_Robot_Command_T - 1))
-       / Robot_Bus_Robot_Command_T)
-      * Reception_T)
-     + (((Robot_Bus_Robot_Command_Turn_Busy
-          + Robot_Bus_Driver_Rx_X_Feedback_R
-          + (Robot_Bus_X_Feedback_T - 1))
-         / Robot_Bus_X_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Robot_Command_Turn_Busy
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Robot_Command_Turn_Busy
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_Turn_Busy_Needs
-      > Robot_Bus_Robot_Command_Turn_Busy,
-      "robot_bus.robot_command "
-      & "can keep others waiting for longer than claimed");
-   pragma Compile_Time_Error
-     ((Robot_Bus_Robot_Command_Turn_Busy + Robot_Bus_Robot_Command_Turn_J)
-      > Robot_Bus_Robot_Command_T,
-      "robot_bus.robot_command " & "can come again before it is sent");
-
-   Robot_Bus_Robot_Command_Turn_W : constant := 6_000_000;
-   Robot_Bus_Robot_Command_Turn_Needs : constant :=
-     (((Robot_Bus_Robot_Command_Turn_W
-        + 1
-        + Robot_Bus_Driver_Rx_X_Feedback_R
-        + (Robot_Bus_X_Feedback_T - 1))
-       / Robot_Bus_X_Feedback_T)
-      * Reception_T)
-     + (((Robot_Bus_Robot_Command_Turn_W
-          + 1
-          + Robot_Bus_Driver_Rx_Y_Feedback_R
-          + (Robot_Bus_Y_Feedback_T - 1))
-         / Robot_Bus_Y_Feedback_T)
-        * Reception_T)
-     + (((Robot_Bus_Robot_Command_Turn_W
-          + 1
-          + Robot_Bus_Driver_Rx_Z_Feedback_R
-          + (Robot_Bus_Z_Feedback_T - 1))
-         / Robot_Bus_Z_Feedback_T)
-        * Reception_T);
-
-   pragma Compile_Time_Error
-     (Robot_Bus_Robot_Command_Turn_Needs > Robot_Bus_Robot_Command_Turn_W,
-      "robot_bus.robot_command "
-      & "can take longer than its claimed response time");
-
-   Robot_Bus_Robot_Command_Turn : constant := 6_935_000;
-
-   pragma Compile_Time_Error
-     ((Robot_Bus_Robot_Command_Turn_J + Robot_Bus_Robot_Command_Turn_W)
-      > Robot_Bus_Robot_Command_Turn,
-      "robot_bus.robot_command "
-      & "can take longer than its claimed response time");
-
-   Robot_Bus_Robot_Command_Handed : constant :=
-     Robot_Bus_Robot_Command_Turn + (2 * Reception_R);
 
    --  [robot_bus.x_feedback] its turn in the queue of reception, and when
    --  it is handed over
@@ -2290,6 +2272,10 @@ is
          / Robot_Bus_Z_Feedback_T)
         * Reception_T);
 
+   pragma Compile_Time_Error
+     (1 > Robot_Bus_X_Feedback_Turn_Busy,
+      "robot_bus.x_feedback "
+      & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_Turn_Busy_Needs > Robot_Bus_X_Feedback_Turn_Busy,
       "robot_bus.x_feedback "
@@ -2321,6 +2307,10 @@ is
         * Reception_T);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_X_Feedback_Turn_W_1,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_Turn_Needs_1 > Robot_Bus_X_Feedback_Turn_W_1,
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
@@ -2347,6 +2337,10 @@ is
          / Robot_Bus_Z_Feedback_T)
         * Reception_T);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_X_Feedback_Turn_W_2,
+      "robot_bus.x_feedback "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_Turn_Needs_2 > Robot_Bus_X_Feedback_Turn_W_2,
       "robot_bus.x_feedback "
@@ -2398,6 +2392,10 @@ is
         * Reception_T);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Y_Feedback_Turn_Busy,
+      "robot_bus.y_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_Turn_Busy_Needs > Robot_Bus_Y_Feedback_Turn_Busy,
       "robot_bus.y_feedback "
       & "can keep others waiting for longer than claimed");
@@ -2428,6 +2426,10 @@ is
         * Reception_T);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Y_Feedback_Turn_W_1,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_Turn_Needs_1 > Robot_Bus_Y_Feedback_Turn_W_1,
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
@@ -2454,6 +2456,10 @@ is
          / Robot_Bus_Z_Feedback_T)
         * Reception_T);
 
+   pragma Compile_Time_Error
+     (0 > Robot_Bus_Y_Feedback_Turn_W_2,
+      "robot_bus.y_feedback "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_Turn_Needs_2 > Robot_Bus_Y_Feedback_Turn_W_2,
       "robot_bus.y_feedback "
@@ -2505,6 +2511,10 @@ is
         * Reception_T);
 
    pragma Compile_Time_Error
+     (1 > Robot_Bus_Z_Feedback_Turn_Busy,
+      "robot_bus.z_feedback "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_Turn_Busy_Needs > Robot_Bus_Z_Feedback_Turn_Busy,
       "robot_bus.z_feedback "
       & "can keep others waiting for longer than claimed");
@@ -2535,6 +2545,10 @@ is
         * Reception_T);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Z_Feedback_Turn_W_1,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_Turn_Needs_1 > Robot_Bus_Z_Feedback_Turn_W_1,
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
@@ -2562,6 +2576,10 @@ is
         * Reception_T);
 
    pragma Compile_Time_Error
+     (0 > Robot_Bus_Z_Feedback_Turn_W_2,
+      "robot_bus.z_feedback "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_Turn_Needs_2 > Robot_Bus_Z_Feedback_Turn_W_2,
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
@@ -2585,7 +2603,7 @@ is
      Robot_Bus_Z_Feedback_Turn + (2 * Reception_R);
 
    --  [x_loop] from end to end. joint_x.ports samples.
-   Chain_X_Loop_Reaction : constant := 21_715_000;
+   Chain_X_Loop_Reaction : constant := 21_755_000;
    Chain_X_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_X_Loop_Reaction_Needs : constant :=
      Robot_Bus_X_Feedback_Handed + Control_T + Robot_Bus_X_Set_Point_R;
@@ -2599,7 +2617,7 @@ is
    pragma Assert
      (Chain_X_Loop_Reaction_Needs <= Chain_X_Loop_Reaction_Limit);
 
-   Chain_X_Loop_Age : constant := 16_715_000;
+   Chain_X_Loop_Age : constant := 16_755_000;
    Chain_X_Loop_Age_Limit : constant := 20_000_000;
    Chain_X_Loop_Age_Needs : constant :=
      Robot_Bus_X_Feedback_Handed
@@ -2615,7 +2633,7 @@ is
    pragma Assert (Chain_X_Loop_Age_Needs <= Chain_X_Loop_Age_Limit);
 
    --  [y_loop] from end to end. joint_y.ports samples.
-   Chain_Y_Loop_Reaction : constant := 21_945_000;
+   Chain_Y_Loop_Reaction : constant := 21_985_000;
    Chain_Y_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_Y_Loop_Reaction_Needs : constant :=
      Robot_Bus_Y_Feedback_Handed + Control_T + Robot_Bus_Y_Set_Point_R;
@@ -2629,7 +2647,7 @@ is
    pragma Assert
      (Chain_Y_Loop_Reaction_Needs <= Chain_Y_Loop_Reaction_Limit);
 
-   Chain_Y_Loop_Age : constant := 16_945_000;
+   Chain_Y_Loop_Age : constant := 16_985_000;
    Chain_Y_Loop_Age_Limit : constant := 20_000_000;
    Chain_Y_Loop_Age_Needs : constant :=
      Robot_Bus_Y_Feedback_Handed
@@ -2645,7 +2663,7 @@ is
    pragma Assert (Chain_Y_Loop_Age_Needs <= Chain_Y_Loop_Age_Limit);
 
    --  [z_loop] from end to end. joint_z.ports samples.
-   Chain_Z_Loop_Reaction : constant := 20_175_000;
+   Chain_Z_Loop_Reaction : constant := 20_215_000;
    Chain_Z_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_Z_Loop_Reaction_Needs : constant :=
      Robot_Bus_Z_Feedback_Handed + Control_T + Robot_Bus_Z_Set_Point_R;
@@ -2659,7 +2677,7 @@ is
    pragma Assert
      (Chain_Z_Loop_Reaction_Needs <= Chain_Z_Loop_Reaction_Limit);
 
-   Chain_Z_Loop_Age : constant := 15_175_000;
+   Chain_Z_Loop_Age : constant := 15_215_000;
    Chain_Z_Loop_Age_Limit : constant := 20_000_000;
    Chain_Z_Loop_Age_Needs : constant :=
      Robot_Bus_Z_Feedback_Handed
@@ -2674,72 +2692,14 @@ is
       "chain z_loop " & "can exceed the limit of its age");
    pragma Assert (Chain_Z_Loop_Age_Needs <= Chain_Z_Loop_Age_Limit);
 
-   --  [order] from end to end. coordinator.ports takes one of a queue:
-   --  Wait_4. joint_x.ports takes one of a queue: Wait_6. joint_x.Motion
-   --  samples. joint_x.position_control samples.
-   Chain_Order_Wait_4_Burst : constant :=
-     (Robot_Bus_Robot_Command_Handed / Robot_Bus_Robot_Command_T) + 1;
-   Chain_Order_Wait_4 : constant := 20_000_000;
-
-   pragma Compile_Time_Error
-     (Supervision_T > Robot_Bus_Robot_Command_T,
-      "chain order " & "has a queue that fills");
-   pragma Compile_Time_Error
-     ((Chain_Order_Wait_4_Burst * Supervision_T) > Chain_Order_Wait_4,
-      "chain order " & "can wait longer in a queue than claimed");
-   pragma Compile_Time_Error
-     ((((Chain_Order_Wait_4_Burst + 1) * Supervision_T)
-       + Robot_Bus_Robot_Command_Handed
-       + ((-1) * Chain_Order_Wait_4_Burst * Robot_Bus_Robot_Command_T))
-      > Chain_Order_Wait_4,
-      "chain order " & "can wait longer in a queue than claimed");
-
-   Chain_Order_Wait_6_Burst : constant :=
-     (Coordinator_Mission_Done / Supervision_T) + 1;
-   Chain_Order_Wait_6 : constant := 10_000_000;
-
-   pragma Compile_Time_Error
-     (Control_T > Supervision_T,
-      "chain order " & "has a queue that fills");
-   pragma Compile_Time_Error
-     ((Chain_Order_Wait_6_Burst * Control_T) > Chain_Order_Wait_6,
-      "chain order " & "can wait longer in a queue than claimed");
-   pragma Compile_Time_Error
-     ((((Chain_Order_Wait_6_Burst + 1) * Control_T)
-       + Coordinator_Mission_Done
-       + ((-1) * Chain_Order_Wait_6_Burst * Supervision_T))
-      > Chain_Order_Wait_6,
-      "chain order " & "can wait longer in a queue than claimed");
-
-   Chain_Order_Reaction : constant := 77_680_000;
-   Chain_Order_Reaction_Limit : constant := 100_000_000;
-   Chain_Order_Reaction_Needs : constant :=
-     Robot_Bus_Robot_Command_Handed
-     + Chain_Order_Wait_4
-     + Coordinator_Mission_Done
-     + Chain_Order_Wait_6
-     + Joint_X_Ports_Done
-     + Supervision_T
-     + Joint_X_Motion_Done
-     + Control_T
-     + Robot_Bus_X_Set_Point_R;
-
-   pragma Compile_Time_Error
-     (Chain_Order_Reaction_Needs > Chain_Order_Reaction,
-      "chain order " & "can have a longer reaction than claimed");
-   pragma Compile_Time_Error
-     (Chain_Order_Reaction > Chain_Order_Reaction_Limit,
-      "chain order " & "can exceed the limit of its reaction");
-   pragma Assert (Chain_Order_Reaction_Needs <= Chain_Order_Reaction_Limit);
-
-   --  [status] from end to end. joint_x.ports samples. joint_x.Motion
+   --  [status] from end to end. joint_x.ports samples. joint_x.supervise
    --  samples. coordinator.ports samples.
-   Chain_Status_Reaction : constant := 66_815_000;
+   Chain_Status_Reaction : constant := 67_255_000;
    Chain_Status_Reaction_Limit : constant := 80_000_000;
    Chain_Status_Reaction_Needs : constant :=
      Robot_Bus_X_Feedback_Handed
      + Control_T
-     + Joint_X_Ports_Done
+     + Joint_X_Position_Control_Done
      + Supervision_T
      + Joint_X_Supervise_Done
      + Supervision_T
@@ -2754,12 +2714,12 @@ is
    pragma Assert
      (Chain_Status_Reaction_Needs <= Chain_Status_Reaction_Limit);
 
-   Chain_Status_Age : constant := 51_815_000;
+   Chain_Status_Age : constant := 52_255_000;
    Chain_Status_Age_Limit : constant := 60_000_000;
    Chain_Status_Age_Needs : constant :=
      Robot_Bus_X_Feedback_Handed
      + Robot_Bus_X_Feedback_T
-     + Joint_X_Ports_Done
+     + Joint_X_Position_Control_Done
      + Control_T
      + Joint_X_Supervise_Done
      + Supervision_T

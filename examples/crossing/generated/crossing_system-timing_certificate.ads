@@ -12,39 +12,40 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  two context switches) or transmission, B blocking, R the claimed
-   --  response from the event, W the time claimed from the start of a busy
-   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
-   --  within W. Needs is the demand that arises within W: where it is more,
-   --  W is too short.
+   --  context switches) or transmission, B blocking, R the claimed response
+   --  from the event, W the time claimed from the start of a busy period. A
+   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
+   --  Needs is the demand that arises within W: where it is more, W is too
+   --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Reception_R : constant := 245_000;
-   Control_R : constant := 665_000;
+   Reception_R : constant := 265_000;
+   Control_R : constant := 685_000;
    Street_Driver_Rx_Order_R : constant := 1_245_000;
    Street_Driver_Rx_Button_R : constant := 1_765_000;
-   Street_Driver_Tx_Car_Lamp_R : constant := 870_000;
-   Street_Driver_Tx_Walk_Lamp_R : constant := 870_000;
-   Street_Driver_Tx_Sign_R : constant := 870_000;
+   Street_Driver_Tx_Car_Lamp_R : constant := 890_000;
+   Street_Driver_Tx_Walk_Lamp_R : constant := 890_000;
+   Street_Driver_Tx_Sign_R : constant := 890_000;
    Street_Order_R : constant := 1_040_000;
    Street_Button_R : constant := 1_560_000;
-   Street_Car_Lamp_R : constant := 3_470_000;
-   Street_Walk_Lamp_R : constant := 3_470_000;
-   Street_Sign_R : constant := 3_470_000;
+   Street_Car_Lamp_R : constant := 3_490_000;
+   Street_Walk_Lamp_R : constant := 3_490_000;
+   Street_Sign_R : constant := 3_490_000;
 
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 2, released by arrivals, no closer than T. B:
-   --  control may be inside school.button.mailbox.
+   --  [reception] priority 2, released by arrivals, no closer than T; it
+   --  may wait for T to be over as well. B: control may be inside
+   --  school.button.mailbox.
    Street_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
    Reception_A : constant := Reception_J + (Reception_T - 1);
    Reception_C : constant :=
-     Street_Receive_Budget + 2 * Board_Context_Switch;
+     Street_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [control] priority 1, released every T. B: main may be inside health.
@@ -217,6 +218,9 @@ is
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
+     (0 > Reception_W,
+      "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -247,6 +251,9 @@ is
      + (((Control_W + Street_Driver_Tx_Sign_A) / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
+   pragma Compile_Time_Error
+     (0 > Control_W,
+      "control " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
@@ -279,6 +286,10 @@ is
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
+   pragma Compile_Time_Error
+     (0 > Street_Driver_Rx_Order_W,
+      "street.driver_rx.order "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Driver_Rx_Order_Needs > Street_Driver_Rx_Order_W,
       "street.driver_rx.order "
@@ -315,6 +326,10 @@ is
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
+     (0 > Street_Driver_Rx_Button_W,
+      "street.driver_rx.button "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Street_Driver_Rx_Button_Needs > Street_Driver_Rx_Button_W,
       "street.driver_rx.button "
       & "can take longer than its claimed response time");
@@ -350,6 +365,10 @@ is
          / Street_Driver_Tx_Sign_T)
         * Street_Driver_Tx_Sign_C);
 
+   pragma Compile_Time_Error
+     (0 > Street_Driver_Tx_Car_Lamp_W,
+      "street.driver_tx.car_lamp "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Driver_Tx_Car_Lamp_Needs > Street_Driver_Tx_Car_Lamp_W,
       "street.driver_tx.car_lamp "
@@ -388,6 +407,10 @@ is
         * Street_Driver_Tx_Sign_C);
 
    pragma Compile_Time_Error
+     (0 > Street_Driver_Tx_Walk_Lamp_W,
+      "street.driver_tx.walk_lamp "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Street_Driver_Tx_Walk_Lamp_Needs > Street_Driver_Tx_Walk_Lamp_W,
       "street.driver_tx.walk_lamp "
       & "can take longer than its claimed response time");
@@ -425,6 +448,10 @@ is
         * Street_Driver_Tx_Walk_Lamp_C);
 
    pragma Compile_Time_Error
+     (0 > Street_Driver_Tx_Sign_W,
+      "street.driver_tx.sign "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Street_Driver_Tx_Sign_Needs > Street_Driver_Tx_Sign_W,
       "street.driver_tx.sign "
       & "can take longer than its claimed response time");
@@ -447,6 +474,9 @@ is
         * Street_Order_C);
 
    pragma Compile_Time_Error
+     (1 > Street_Order_Busy,
+      "street.order " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Street_Order_Busy_Needs > Street_Order_Busy,
       "street.order " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -456,6 +486,9 @@ is
    Street_Order_W : constant := 520_000;
    Street_Order_Needs : constant := Street_Button_C;
 
+   pragma Compile_Time_Error
+     (0 > Street_Order_W,
+      "street.order " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Order_Needs > Street_Order_W,
       "street.order " & "can take longer than its claimed response time");
@@ -478,6 +511,9 @@ is
         * Street_Button_C);
 
    pragma Compile_Time_Error
+     (1 > Street_Button_Busy,
+      "street.button " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Street_Button_Busy_Needs > Street_Button_Busy,
       "street.button " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -490,6 +526,9 @@ is
      + (((Street_Button_W + Street_Bit + Street_Order_A) / Street_Order_T)
         * Street_Order_C);
 
+   pragma Compile_Time_Error
+     (0 > Street_Button_W,
+      "street.button " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Button_Needs > Street_Button_W,
       "street.button " & "can take longer than its claimed response time");
@@ -518,6 +557,9 @@ is
         * Street_Sign_C);
 
    pragma Compile_Time_Error
+     (1 > Street_Car_Lamp_Busy,
+      "street.car_lamp " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Street_Car_Lamp_Busy_Needs > Street_Car_Lamp_Busy,
       "street.car_lamp " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -538,6 +580,9 @@ is
      + (((Street_Car_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
         * Street_Sign_C);
 
+   pragma Compile_Time_Error
+     (0 > Street_Car_Lamp_W,
+      "street.car_lamp " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Car_Lamp_Needs > Street_Car_Lamp_W,
       "street.car_lamp " & "can take longer than its claimed response time");
@@ -566,6 +611,10 @@ is
         * Street_Sign_C);
 
    pragma Compile_Time_Error
+     (1 > Street_Walk_Lamp_Busy,
+      "street.walk_lamp "
+      & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Street_Walk_Lamp_Busy_Needs > Street_Walk_Lamp_Busy,
       "street.walk_lamp "
       & "can keep others waiting for longer than claimed");
@@ -587,6 +636,9 @@ is
      + (((Street_Walk_Lamp_W + Street_Bit + Street_Sign_A) / Street_Sign_T)
         * Street_Sign_C);
 
+   pragma Compile_Time_Error
+     (0 > Street_Walk_Lamp_W,
+      "street.walk_lamp " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Walk_Lamp_Needs > Street_Walk_Lamp_W,
       "street.walk_lamp " & "can take longer than its claimed response time");
@@ -614,6 +666,9 @@ is
      + (((Street_Sign_Busy + Street_Sign_A) / Street_Sign_T) * Street_Sign_C);
 
    pragma Compile_Time_Error
+     (1 > Street_Sign_Busy,
+      "street.sign " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Street_Sign_Busy_Needs > Street_Sign_Busy,
       "street.sign " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -634,6 +689,9 @@ is
          / Street_Walk_Lamp_T)
         * Street_Walk_Lamp_C);
 
+   pragma Compile_Time_Error
+     (0 > Street_Sign_W,
+      "street.sign " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Street_Sign_Needs > Street_Sign_W,
       "street.sign " & "can take longer than its claimed response time");

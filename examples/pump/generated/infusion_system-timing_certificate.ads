@@ -12,36 +12,37 @@ is
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  two context switches) or transmission, B blocking, R the claimed
-   --  response from the event, W the time claimed from the start of a busy
-   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
-   --  within W. Needs is the demand that arises within W: where it is more,
-   --  W is too short.
+   --  context switches) or transmission, B blocking, R the claimed response
+   --  from the event, W the time claimed from the start of a busy period. A
+   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
+   --  Needs is the demand that arises within W: where it is more, W is too
+   --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Reception_R : constant := 205_000;
-   Control_R : constant := 875_000;
+   Reception_R : constant := 225_000;
+   Control_R : constant := 895_000;
    Ward_Driver_Rx_Line_R : constant := 1_365_000;
-   Ward_Driver_Tx_Motor_R : constant := 1_040_000;
+   Ward_Driver_Tx_Motor_R : constant := 1_060_000;
    Ward_Driver_Rx_Panel_R : constant := 2_645_000;
-   Ward_Driver_Tx_Display_R : constant := 1_040_000;
+   Ward_Driver_Tx_Display_R : constant := 1_060_000;
    Ward_Line_R : constant := 1_200_000;
-   Ward_Motor_R : constant := 3_520_000;
+   Ward_Motor_R : constant := 3_540_000;
    Ward_Panel_R : constant := 2_480_000;
-   Ward_Display_R : constant := 3_520_000;
+   Ward_Display_R : constant := 3_540_000;
 
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 2, released by arrivals, no closer than T. B:
-   --  control may be inside bed.line.mailbox.
+   --  [reception] priority 2, released by arrivals, no closer than T; it
+   --  may wait for T to be over as well. B: control may be inside
+   --  bed.line.mailbox.
    Ward_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
    Reception_A : constant := Reception_J + (Reception_T - 1);
-   Reception_C : constant := Ward_Receive_Budget + 2 * Board_Context_Switch;
+   Reception_C : constant := Ward_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [control] priority 1, released every T. B: main may be inside health.
@@ -183,6 +184,9 @@ is
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
+     (0 > Reception_W,
+      "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -212,6 +216,9 @@ is
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
+     (0 > Control_W,
+      "control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -240,6 +247,10 @@ is
          / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
+   pragma Compile_Time_Error
+     (0 > Ward_Driver_Rx_Line_W,
+      "ward.driver_rx.line "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Ward_Driver_Rx_Line_Needs > Ward_Driver_Rx_Line_W,
       "ward.driver_rx.line "
@@ -272,6 +283,10 @@ is
         * Ward_Driver_Tx_Display_C);
 
    pragma Compile_Time_Error
+     (0 > Ward_Driver_Tx_Motor_W,
+      "ward.driver_tx.motor "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Ward_Driver_Tx_Motor_Needs > Ward_Driver_Tx_Motor_W,
       "ward.driver_tx.motor "
       & "can take longer than its claimed response time");
@@ -302,6 +317,10 @@ is
          / Ward_Driver_Tx_Display_T)
         * Ward_Driver_Tx_Display_C);
 
+   pragma Compile_Time_Error
+     (0 > Ward_Driver_Rx_Panel_W,
+      "ward.driver_rx.panel "
+      & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Ward_Driver_Rx_Panel_Needs > Ward_Driver_Rx_Panel_W,
       "ward.driver_rx.panel "
@@ -334,6 +353,10 @@ is
         * Ward_Driver_Rx_Panel_C);
 
    pragma Compile_Time_Error
+     (0 > Ward_Driver_Tx_Display_W,
+      "ward.driver_tx.display "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Ward_Driver_Tx_Display_Needs > Ward_Driver_Tx_Display_W,
       "ward.driver_tx.display "
       & "can take longer than its claimed response time");
@@ -356,6 +379,9 @@ is
      + (((Ward_Line_Busy + Ward_Line_A) / Ward_Line_T) * Ward_Line_C);
 
    pragma Compile_Time_Error
+     (1 > Ward_Line_Busy,
+      "ward.line " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Ward_Line_Busy_Needs > Ward_Line_Busy,
       "ward.line " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -365,6 +391,9 @@ is
    Ward_Line_W : constant := 680_000;
    Ward_Line_Needs : constant := Ward_Panel_C;
 
+   pragma Compile_Time_Error
+     (0 > Ward_Line_W,
+      "ward.line " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Ward_Line_Needs > Ward_Line_W,
       "ward.line " & "can take longer than its claimed response time");
@@ -387,6 +416,9 @@ is
         * Ward_Display_C);
 
    pragma Compile_Time_Error
+     (1 > Ward_Motor_Busy,
+      "ward.motor " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Ward_Motor_Busy_Needs > Ward_Motor_Busy,
       "ward.motor " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -403,6 +435,9 @@ is
      + (((Ward_Motor_W + Ward_Bit + Ward_Display_A) / Ward_Display_T)
         * Ward_Display_C);
 
+   pragma Compile_Time_Error
+     (0 > Ward_Motor_W,
+      "ward.motor " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Ward_Motor_Needs > Ward_Motor_W,
       "ward.motor " & "can take longer than its claimed response time");
@@ -428,6 +463,9 @@ is
      + (((Ward_Panel_Busy + Ward_Panel_A) / Ward_Panel_T) * Ward_Panel_C);
 
    pragma Compile_Time_Error
+     (1 > Ward_Panel_Busy,
+      "ward.panel " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Ward_Panel_Busy_Needs > Ward_Panel_Busy,
       "ward.panel " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -446,6 +484,9 @@ is
          / Ward_Motor_T)
         * Ward_Motor_C);
 
+   pragma Compile_Time_Error
+     (0 > Ward_Panel_W,
+      "ward.panel " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Ward_Panel_Needs > Ward_Panel_W,
       "ward.panel " & "can take longer than its claimed response time");
@@ -468,6 +509,9 @@ is
         * Ward_Display_C);
 
    pragma Compile_Time_Error
+     (1 > Ward_Display_Busy,
+      "ward.display " & "can keep others waiting for longer than claimed");
+   pragma Compile_Time_Error
      (Ward_Display_Busy_Needs > Ward_Display_Busy,
       "ward.display " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
@@ -484,6 +528,9 @@ is
      + (((Ward_Display_W + Ward_Bit + Ward_Panel_A) / Ward_Panel_T)
         * Ward_Panel_C);
 
+   pragma Compile_Time_Error
+     (0 > Ward_Display_W,
+      "ward.display " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Ward_Display_Needs > Ward_Display_W,
       "ward.display " & "can take longer than its claimed response time");

@@ -7,11 +7,11 @@ with SPARK_Mode, Pure
 is
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
-   --  two context switches) or transmission, B blocking, R the claimed
-   --  response from the event, W the time claimed from the start of a busy
-   --  period. A is J + T - 1, so that (W + A) / T is the number of releases
-   --  within W. Needs is the demand that arises within W: where it is more,
-   --  W is too short.
+   --  context switches) or transmission, B blocking, R the claimed response
+   --  from the event, W the time claimed from the start of a busy period. A
+   --  is J + T - 1, so that (W + A) / T is the number of releases within W.
+   --  Needs is the demand that arises within W: where it is more, W is too
+   --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Processor_1_R : constant := 625_000;
@@ -75,6 +75,9 @@ is
      Processor_1_C + Processor_1_C_2 + Processor_1_B;
 
    pragma Compile_Time_Error
+     (0 > Processor_1_W,
+      "processor_1 " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
      (Processor_1_Needs > Processor_1_W,
       "processor_1 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
@@ -96,6 +99,9 @@ is
      + (((((Processor_2_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
         * Processor_1_C_2);
 
+   pragma Compile_Time_Error
+     (0 > Processor_2_W,
+      "processor_2 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Processor_2_Needs > Processor_2_W,
       "processor_2 " & "can take longer than its claimed response time");
@@ -121,6 +127,9 @@ is
      + (((((Processor_3_W + Processor_2_A) / Processor_2_T) + (2 - 1)) / 2)
         * Processor_2_C_2);
 
+   pragma Compile_Time_Error
+     (0 > Processor_3_W,
+      "processor_3 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
      (Processor_3_Needs > Processor_3_W,
       "processor_3 " & "can take longer than its claimed response time");

@@ -1,0 +1,80 @@
+"""The ways that values take through messages, ports, rows and data, for chains.
+
+Places are ``message name`` and ``owner.name``. A row leads to what it writes, to the
+ports that it sends on and, where it is a region, to what asks for its state; of several
+shortest ways the one is meant whose places come first in the model.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from .model import Chain, System
+
+Flow = Mapping[str, Sequence[str]]
+"""What values go to from each place, in model order."""
+
+
+def flow_of(system: System) -> Flow:
+    """Where values go from each place of a system."""
+    flow: defaultdict[str, list[str]] = defaultdict(list)
+    for instance in system.instances:
+        component = instance.component
+        known = {port.name for port in component.ports}
+        known |= {item.name for item in component.data}
+        known |= {region.name for region in component.regions}
+        for row in component.runnables():
+            own = f"{instance.name}.{row.name}"
+            for name in row.reads:
+                if name in known and name != row.name:
+                    flow[f"{instance.name}.{name}"].append(own)
+            flow[own] += [f"{instance.name}.{name}" for name in (*row.writes, *row.sends)]
+    for connection in system.connections:
+        flow[str(connection.source)].append(str(connection.target))
+    for message in system.messages:
+        if message.source is not None:
+            flow[str(message.source)].append(f"message {message.name}")
+        flow[f"message {message.name}"] += map(str, message.targets)
+    return flow
+
+
+def routed(system: System) -> System:
+    """The system with the way of each of its chains."""
+    flow = flow_of(system)
+    return replace(system, chains=tuple(_routed(chain, flow) for chain in system.chains))
+
+
+def _routed(chain: Chain, flow: Flow) -> Chain:
+    """A chain with its way, or the gap in it."""
+    nodes = [place if "." in place else f"message {place}" for place in chain.path]
+    way = nodes[:1]
+    for before, after in pairwise(nodes):
+        part = _shortest(flow, before, after)
+        if not part:
+            gap = before.removeprefix("message "), after.removeprefix("message ")
+            return replace(chain, way=(), gap=gap)
+        way += part[1:]
+    return replace(chain, way=tuple(way), gap=None)
+
+
+def _shortest(flow: Flow, first: str, last: str) -> list[str]:
+    """The shortest way between two places, both included; nothing where there is none."""
+    came_from = {first: first}
+    ahead = [first]
+    while ahead and last not in came_from:
+        further = []
+        for place in ahead:
+            for following in flow.get(place, ()):
+                if following not in came_from:
+                    came_from[following] = place
+                    further.append(following)
+        ahead = further
+    if last not in came_from:
+        return []
+    way = [last]
+    while way[-1] != first:
+        way.append(came_from[way[-1]])
+    return way[::-1]

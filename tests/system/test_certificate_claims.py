@@ -1,0 +1,125 @@
+"""Claims that the analysis never makes: the certificate refuses them all the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from analysis.claims import claims_of
+from analysis.timing import Analysis, analyse
+from gen.claims import ChainClaim, Claim, Claims
+from gen.emit.ada_text import print_unit
+from gen.emit.certificate import emit_certificate
+from gen.model import Message, System
+from gen.terms import Ns
+from ravenchart import steps
+from ravenchart.toolchain import ROOT
+from tests.support.certificates import certificate, changed, compiled, numbers
+from tests.support.systems import bus, message, system, task
+from tests.support.timing_models import CHART, KEPT, QUEUE, SEVERAL, analysed
+
+FRAME = 270_000
+"""Eight bytes at 500 kbit/s, in ns."""
+
+
+def claimed(found: Analysis | System, claims: Claims) -> str:
+    """The certificate that makes these claims."""
+    one = found.system if isinstance(found, Analysis) else found
+    return print_unit(emit_certificate(one, claims, ""))
+
+
+def received(name: str, identifier: int, period: int, deadline: int) -> Message:
+    return replace(message(name, identifier, period=period), deadline=Ns(deadline))
+
+
+def of_messages(*messages: Message) -> System:
+    return system([task("t", 1, 100_000, 10_000_000)], (), [bus()], messages)
+
+
+def test_a_busy_period_of_no_time_hides_no_instance(tmp_path: Path) -> None:
+    """Davis et al. 2007: the second instance of the third message is the one that is late."""
+    rest = (FRAME * 7 // 2, FRAME * 13 // 4)
+    one = of_messages(
+        received("a", 1, FRAME * 5 // 2, FRAME * 5 // 2),
+        received("b", 2, FRAME * 7 // 2, FRAME * 7 // 2),
+        received("c", 3, *rest),
+    )
+    claims = claims_of(analyse(one))
+    short = Claim(Ns(3 * FRAME), (Ns(2 * FRAME),), Ns(0))
+    said = compiled(claimed(one, replace(claims, items={**claims.items, "bus.c": short})), tmp_path)
+    assert "bus.c can keep others waiting for longer than claimed" in said
+
+
+def test_negative_times_hold_no_demand(tmp_path: Path) -> None:
+    """Two messages of 60 % each: Ada's quotients of negative numbers would let them pass."""
+    one = of_messages(received("a", 1, 450_000, 900_000), received("b", 2, 450_000, 900_000))
+    found = Claim(Ns(2 * FRAME), (Ns(FRAME),), Ns(-(10**9)))
+    claims = Claims({"t": Claim(Ns(100_000), (Ns(100_000),)), "bus.a": found, "bus.b": found})
+    assert "bus.b can keep others waiting" in compiled(claimed(one, claims), tmp_path)
+
+
+def test_tasks_of_one_priority_cannot_claim_less_than_no_time(tmp_path: Path) -> None:
+    """Three of 60 % each: to each of them the others are more than all of the time."""
+    one = system([task(name, 1, 600, 1_000) for name in ("a", "b", "c")])
+    none = Claim(Ns(-(10**6)), (Ns(-(10**6)),))
+    said = compiled(claimed(one, Claims(dict.fromkeys(("a", "b", "c"), none))), tmp_path)
+    assert "a can take longer than its claimed response time" in said
+
+
+# --- Chains: the model says what a claim is about ---------------------------------------
+
+
+@pytest.fixture(scope="module")
+def robot() -> Analysis:
+    return steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").analysis
+
+
+def test_a_chain_that_is_not_claimed_is_refused(robot: Analysis, tmp_path: Path) -> None:
+    claims = claims_of(robot)
+    said = compiled(claimed(robot, replace(claims, chains={})), tmp_path, "Cartesian_Robot")
+    for chain in robot.system.chains:
+        assert f"chain {chain.name} can have a longer reaction than claimed" in said
+        assert f"chain {chain.name} can have a longer age than claimed" in said
+    short = ChainClaim(Ns(500_000), Ns(500_000))
+    text = claimed(robot, replace(claims, chains={**claims.chains, "status": short}))
+    said = compiled(text, tmp_path, "Cartesian_Robot")
+    assert "chain status can have a longer reaction than claimed" in said
+    assert "x_loop" not in said
+
+
+def test_rows_and_deliveries_of_chains_are_claimed_or_refused(
+    robot: Analysis, tmp_path: Path
+) -> None:
+    text = claimed(robot, replace(claims_of(robot), rows={}, turns={}))
+    said = compiled(text, tmp_path, "Cartesian_Robot")
+    assert "joint_x.position_control can take longer than its claimed response time" in said
+    assert "robot_bus.x_feedback can keep others waiting for longer than claimed" in said
+
+
+def test_waits_in_queues_are_exact(tmp_path: Path) -> None:
+    found = analysed(QUEUE)
+    text = certificate(found)
+    assert compiled(text, tmp_path) == ""
+    made = [n for end in ("_Reaction", "_Age", r"_Wait_\d+") for n in numbers(text, end)]
+    assert len(made) == 3
+    for one in made:
+        assert "chain cmd can" in compiled(changed(text, one, -1), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("model", "problem"),
+    [
+        (CHART, "chain stop can have any reaction: brk.Main"),
+        (SEVERAL, "chain cmd can have any reaction: d.ports"),
+        (QUEUE.replace("period: 100 ms", "period: 5 ms"), "chain cmd can fill a queue"),
+        (KEPT, "chain cmd can have any age: d.look"),
+    ],
+)
+def test_what_has_no_bound_cannot_be_claimed(model: str, problem: str, tmp_path: Path) -> None:
+    found = analysed(model)
+    claims = claims_of(found)
+    long = ChainClaim(Ns(10**8), Ns(10**8), (Ns(10**8),))
+    chains = {chain.name: long for chain in found.system.chains}
+    assert problem in compiled(claimed(found, replace(claims, chains=chains)), tmp_path)
