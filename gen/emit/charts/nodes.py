@@ -77,9 +77,13 @@ class Nodes:
     def __init__(self, shape: RegionShape) -> None:
         self.shape = shape
         self.region = shape.region
+        self._moves = False
 
     def chart(self) -> Package:
-        """The ghost package: all vertices, and the innermost active one of a configuration."""
+        """The ghost package: all vertices, and the innermost active one of a configuration.
+
+        With what the exits and entries given so far need.
+        """
         shape = self.shape
         literals = [leaf for lane in shape.lanes for leaf in shape.literals(lane)]
         composites = [s.name for s in self.region.states if not shape.is_literal(s.name)]
@@ -89,9 +93,9 @@ class Nodes:
         for lane in shape.lanes:
             functions.append(self._innermost(lane, before))
             before += len(shape.literals(lane))
-        return Package(
-            "Chart", (EnumType("Node", (_NOWHERE, *names)), *functions, _MOVED), (_GHOST,)
-        )
+        nodes = EnumType("Node", (_NOWHERE, *names))
+        moved = (_MOVED,) if self._moves else ()
+        return Package("Chart", (nodes, *functions, *moved), (_GHOST,))
 
     def _innermost(self, lane: Lane, before: int) -> Subprogram:
         """A leaf, which stands among the nodes in the order of its type; a number for provers."""
@@ -144,13 +148,17 @@ class Nodes:
     def exit(self, state: str) -> Assign:
         """The exit of a state that does nothing else."""
         active, gone = self.exited(state)
-        return Assign(active.text, call("Chart.Moved", active, node(state), gone))
+        return self._move(active, node(state), gone)
 
     def enter(self, state: str) -> Assign:
         """The entry of a state that does nothing else."""
         active, come = self.entered(state)
         _, around = self.exited(state)
-        return Assign(active.text, call("Chart.Moved", active, around, come))
+        return self._move(active, around, come)
+
+    def _move(self, active: Ref, start: Ref, goal: Ref) -> Assign:
+        self._moves = True
+        return Assign(active.text, call("Chart.Moved", active, start, goal))
 
     def exited(self, state: str) -> tuple[Ref, Ref]:
         """The variable that the exit of a state changes, and its value then."""

@@ -53,13 +53,14 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     more += ["Ravenchart.Event_Count"] if shape.working else []
     more += sorted(shape.compared_in(flows) - shape.compared_in(guards_of(region)))
     moves = Moves(shape)
+    fire = moves.fire()
     return (
         *(UseType(name) for name in more),
         *selectors(shape),
         moves.chart(),
         *notice_bodies(shape),
         *_polling(shape),
-        moves.fire(),
+        fire,
         _step(shape, moves),
     )
 
