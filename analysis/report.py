@@ -11,6 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 
 from gen.model import Bus
+from gen.terms import Ns
 
 from . import advice, plots, units
 from .core.responses import Response
@@ -148,9 +149,25 @@ def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
     return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))
 
 
+def _withheld(analysis: Analysis, late: Ns) -> Ns:
+    """The longest time for which the host may have kept the core, by how late a probe woke.
+
+    A stall can begin right after a probe woke, which sees of it what is left at its next
+    wake-up: up to a period less. A probe within its own bound has seen none.
+    """
+    bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
+    unseen = [
+        node.probe.period
+        for node in analysis.system.nodes
+        if node.probe is not None and late > (bounds.get(f"{node.name}.probe".lower()) or 0)
+    ]
+    return Ns(late + max(unseen, default=0))
+
+
 def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     """Each processor's longest response beside its bound, closest to the bound first."""
     bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
+    withheld = _withheld(analysis, seen.host_latency or Ns(0))
     rows = [
         Comparison(
             name,
@@ -158,7 +175,7 @@ def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
             p.misses,
             p.worst_response,
             bounds.get(name.lower()),
-            seen.host_latency or 0,
+            withheld,
         )
         for name, p in seen.processors.items()
     ]

@@ -21,9 +21,11 @@ from analysis.timing import analyse
 from analysis.units import duration, microseconds
 from analysis.words import binding_lines
 from gen.diagnostics import render as render_diagnostic
+from gen.load import load
 from gen.model import Chain, System
 from gen.terms import Ns
 from gen.ways import routed
+from ravenchart.toolchain import ROOT
 from tests.support.certificates import random_system
 from tests.support.plant_model import plant
 from tests.support.pump import system_of
@@ -303,6 +305,18 @@ def test_observed_times_stand_beside_the_bound_of_the_same_task() -> None:
     (row,) = compare(analyse(plant()), observation())
     assert (row.task, row.observed, row.exceeded) == ("control", 300_000, False)
     assert row.bound == analyse(plant()).response("control").bound
+
+
+@pytest.mark.parametrize(("late", "withheld"), [(35_000, 35_000), (35_001, 1_035_001)])
+def test_a_stall_may_be_longer_by_a_period_than_a_probe_that_saw_it_was_late(
+    late: int, withheld: int
+) -> None:
+    found = load(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
+    assert found is not None
+    analysis = analyse(found)
+    assert analysis.response("controller.probe").bound == 35_000
+    seen = replace(observation(), host_latency=Ns(late))
+    assert {row.withheld for row in compare(analysis, seen)} == {withheld}
 
 
 def test_executions_stand_beside_the_models_claims() -> None:
