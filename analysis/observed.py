@@ -110,6 +110,8 @@ class Observation:
     """The L lines: frames that went well, and everything that was lost."""
     host_latency: Ns | None = None
     """Longest time for which the host withheld the core, where a probe measured it."""
+    stolen: Ns | None = None
+    """Time that a hypervisor took of the core during the whole run, as its kernel counts it."""
     complete: bool = False
 
     @property

@@ -149,11 +149,12 @@ def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
     return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))
 
 
-def _withheld(analysis: Analysis, late: Ns) -> Ns:
-    """The longest time for which the host may have kept the core, by how late a probe woke.
+def _withheld(analysis: Analysis, late: Ns, stolen: Ns) -> Ns:
+    """The longest time for which the host may have kept the core from one response.
 
     A stall can begin right after a probe woke, which sees of it what is left at its next
-    wake-up: up to a period less. A probe within its own bound has seen none.
+    wake-up: up to a period less. Several stalls in one response are no more than was
+    stolen in all. A probe within its own bound has seen none.
     """
     bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
     unseen = [
@@ -161,13 +162,13 @@ def _withheld(analysis: Analysis, late: Ns) -> Ns:
         for node in analysis.system.nodes
         if node.probe is not None and late > (bounds.get(f"{node.name}.probe".lower()) or 0)
     ]
-    return Ns(late + max(unseen, default=0))
+    return Ns(max(late + max(unseen), stolen)) if unseen else late
 
 
 def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     """Each processor's longest response beside its bound, closest to the bound first."""
     bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
-    withheld = _withheld(analysis, seen.host_latency or Ns(0))
+    withheld = _withheld(analysis, seen.host_latency or Ns(0), seen.stolen or Ns(0))
     rows = [
         Comparison(
             name,

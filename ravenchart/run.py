@@ -12,6 +12,7 @@ from analysis.observed import Observation, TraceError, TraceMap, read_map, read_
 from analysis.plots import svg
 from analysis.report import RunReport, compare, executions, render
 from analysis.timing import Analysis
+from gen.terms import Ns
 from hw_can.bench.peer import BenchError, Codec, Peer
 from hw_can.bench.runner import ScenarioResult, run_scenario
 from hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
@@ -208,6 +209,8 @@ def _run(
             finally:
                 ended = process.stop(grace)
     seen = None if problems else _read(trace, trace_map, problems)
+    if seen is not None:
+        seen.stolen = Ns(ended.stolen)
     compared = compare(analysis, seen) if analysis and seen else ()
     executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()

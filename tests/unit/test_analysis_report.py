@@ -307,15 +307,23 @@ def test_observed_times_stand_beside_the_bound_of_the_same_task() -> None:
     assert row.bound == analyse(plant()).response("control").bound
 
 
-@pytest.mark.parametrize(("late", "withheld"), [(35_000, 35_000), (35_001, 1_035_001)])
-def test_a_stall_may_be_longer_by_a_period_than_a_probe_that_saw_it_was_late(
-    late: int, withheld: int
+@pytest.mark.parametrize(
+    ("late", "stolen", "withheld"),
+    [
+        (35_000, 0, 35_000),
+        (35_000, 20_000_000, 35_000),
+        (35_001, 0, 1_035_001),
+        (35_001, 20_000_000, 20_000_000),
+    ],
+)
+def test_stalls_that_a_probe_saw_may_be_longer_than_it_was_late(
+    late: int, stolen: int, withheld: int
 ) -> None:
     found = load(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
     assert found is not None
     analysis = analyse(found)
     assert analysis.response("controller.probe").bound == 35_000
-    seen = replace(observation(), host_latency=Ns(late))
+    seen = replace(observation(), host_latency=Ns(late), stolen=Ns(stolen))
     assert {row.withheld for row in compare(analysis, seen)} == {withheld}
 
 
