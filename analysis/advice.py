@@ -8,15 +8,18 @@ these say what can be changed, `core.changes` how much of it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from .core import changes, holistic
 from .core.changes import Change, Kind, Met, Part
 from .core.holistic import Network
 from .core.sensitivity import NetworkScaling, network_scaling, scaled_network
-from .timing import Analysis
 from .units import microseconds, percent
+
+if TYPE_CHECKING:
+    from .timing import Analysis
 
 ROOM = Fraction(1, 5)
 """With less than that to grow by, a system that meets its deadlines is tight."""
@@ -81,7 +84,7 @@ def of_model(analysis: Analysis) -> Advice | None:
 
     def holds(other: Network) -> bool:
         found = holistic.analyse(other)
-        return found.met and Analysis(system, other, found, found).schedulable
+        return found.met and replace(analysis, network=other, found=found, plain=found).schedulable
 
     choices = Choices(costs, periods, order)
     return advice(network, choices, analysis.scaling, analysis.schedulable, holds)

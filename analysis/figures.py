@@ -62,6 +62,6 @@ def figures(analysis: Analysis) -> Json:
             }
             for item in system.objects
         ],
-        "changes": advice.figures(advice.of_model(analysis)),
+        "changes": advice.figures(analysis.advice),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

@@ -149,14 +149,13 @@ def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
     return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))
 
 
-def _withheld(analysis: Analysis, late: Ns, stolen: Ns) -> Ns:
+def _withheld(analysis: Analysis, bounds: Mapping[str, int | None], late: Ns, stolen: Ns) -> Ns:
     """The longest time for which the host may have kept the core from one response.
 
     A stall can begin right after a probe woke, which sees of it what is left at its next
     wake-up: up to a period less. Several stalls in one response are no more than was
     stolen in all. A probe within its own bound has seen none.
     """
-    bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
     unseen = [
         node.probe.period
         for node in analysis.system.nodes
@@ -168,7 +167,7 @@ def _withheld(analysis: Analysis, late: Ns, stolen: Ns) -> Ns:
 def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     """Each processor's longest response beside its bound, closest to the bound first."""
     bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
-    withheld = _withheld(analysis, seen.host_latency or Ns(0), seen.stolen or Ns(0))
+    withheld = _withheld(analysis, bounds, seen.host_latency or Ns(0), seen.stolen or Ns(0))
     rows = [
         Comparison(
             name,
@@ -214,7 +213,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "good": analysis.schedulable,
         "growth": growth_line(analysis),
         "binding": binding_lines(analysis),
-        "advice": advice.lines(advice.of_model(analysis)),
+        "advice": advice.lines(analysis.advice),
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],

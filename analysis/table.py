@@ -40,7 +40,7 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
     if analysis.limited:
         out.print(_chains(analysis))
     out.print(Text(LEGEND, style="dim"))
-    for line in advice.lines(advice.of_model(analysis)):
+    for line in advice.lines(analysis.advice):
         out.print(Text(line))
 
 

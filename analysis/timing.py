@@ -13,6 +13,7 @@ from gen.model import Task as ModelTask
 from gen.terms import Origin
 
 from . import latencies
+from .advice import Advice, of_model
 from .core import holistic
 from .core.can_response import FrameResponse
 from .core.holistic import Holistic, Network
@@ -130,6 +131,11 @@ class Analysis:
     def short_queues(self) -> tuple[Depth, ...]:
         """The queues that may lose what does not fit."""
         return tuple(one for one in depths(self) if not one.holds)
+
+    @cached_property
+    def advice(self) -> Advice | None:
+        """What to change; None where there is room enough, or too much to look at."""
+        return of_model(self)
 
     @property
     def undelivered(self) -> tuple[Message, ...]:

@@ -94,18 +94,20 @@ class _Maker:
 
 def program(system: System, claims: Claims) -> tuple[Made, ...]:
     """Every Ada unit of the program; ``claims`` are what its certificate shows."""
-    before, after = _without_claims(system)
-    maker = _Maker(system)
+    maker, before, after = _without_claims(system)
     return (*before, *maker.made([emit_certificate(system, claims, maker.header)]), *after)
 
 
 @lru_cache(maxsize=1)
-def _without_claims(system: System) -> tuple[tuple[Made, ...], tuple[Made, ...]]:
-    """The units before and behind the timing certificate: made once, checked and then written."""
+def _without_claims(system: System) -> tuple[_Maker, tuple[Made, ...], tuple[Made, ...]]:
+    """What makes the units, and those before and behind the timing certificate.
+
+    Made once, checked and then written.
+    """
     maker = _Maker(system)
     before = [*emit_codecs(system, maker.header), *emit_instances(system, maker.header)]
     after = emit_deployment(system, maker.header)
-    return (*maker.logic(), *maker.made(before)), tuple(maker.made(after))
+    return maker, (*maker.logic(), *maker.made(before)), tuple(maker.made(after))
 
 
 def simulation(system: System) -> dict[str, str]:
