@@ -9,6 +9,7 @@ from __future__ import annotations
 import socket
 import threading
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
@@ -41,7 +42,8 @@ class BusServer:
         self.confirms = True
         self.refuses: Status | None = None
         """With what the next frames are refused."""
-        self.heard: list[Record] = []
+        self.harm: Callable[[Record], Record | None] = lambda record: record
+        """What a frame becomes on its way; None for nothing."""
         self.clients: dict[int, tuple[socket.socket, bool]] = {}
         self._lock = threading.Lock()
         self._start = time.time_ns()
@@ -100,7 +102,6 @@ class BusServer:
                 self.clients[node] = (link, bool(hello.flags & Flag.FD))
             while (record := _read(link)) is not None:
                 with self._lock:
-                    self.heard.append(record)
                     self._answer(node, record)
         with self._lock:
             self.clients.pop(node, None)
@@ -127,7 +128,9 @@ class BusServer:
             self._to_all(refusal, only=node)
         else:
             now = self.now
-            self._to_all(replace(record, time=now, number=0), but=node)
+            arriving = self.harm(replace(record, time=now, number=0))
+            if arriving is not None:
+                self._to_all(arriving, but=node)
             if self.confirms:
                 confirmation = Record(Kind.CONFIRMATION, time=now, number=record.number)
                 self._to_all(confirmation, only=node)

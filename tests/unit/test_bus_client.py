@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import can
@@ -126,21 +126,24 @@ def test_the_bus_state_follows_the_node(
     server: BusServer, pair: tuple[RavenchartBus, RavenchartBus]
 ) -> None:
     bus, _ = pair
-    assert bus.state is can.BusState.ACTIVE
+
+    def becomes(state: can.BusState) -> bool:
+        return within(lambda: bus.state is state)
+
+    assert becomes(can.BusState.ACTIVE)
     server.inject(Record(Kind.STATE, code=1, transmit_errors=130, receive_errors=3))
-    assert within(lambda: bus.state is can.BusState.PASSIVE)
+    assert becomes(can.BusState.PASSIVE)
     assert bus.error_counters == (130, 3)
     server.inject(Record(Kind.STATE, code=2, transmit_errors=256))
-    assert within(lambda: bus.state is can.BusState.ERROR)
+    assert becomes(can.BusState.ERROR)
     bus.state = can.BusState.ACTIVE
-    assert within(lambda: bus.state is can.BusState.ACTIVE)
+    assert becomes(can.BusState.ACTIVE)
     with pytest.raises(NotImplementedError):
         bus.state = can.BusState.PASSIVE
 
 
-def within(look: object) -> bool:
+def within(look: Callable[[], object]) -> bool:
     """Whether ``look()`` becomes true in time."""
-    assert callable(look)
     end = time.monotonic() + WAIT
     while time.monotonic() < end:
         if look():
@@ -354,4 +357,4 @@ def test_no_server_and_no_channel() -> None:
         {"bitrate": -1},
     ):
         with pytest.raises(ValueError, match="bus protocol"):
-            RavenchartBus(channel, **settings)  # type: ignore[arg-type]
+            RavenchartBus(channel, **settings)
