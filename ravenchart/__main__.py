@@ -1,7 +1,7 @@
 """The `ravenchart` command: check, generate, build, prove, analyse and run any model.
 
 Exit status: 0 done; 1 the model, its proof or its run has errors; 2 the call
-itself is wrong or a program it needs is missing.
+itself is wrong, or a program or bus it needs is missing.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from analysis import report
 from analysis.figures import figures
 from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
+from hw_can.bench.peer import BenchError
 
-from . import allocate, draw, observed, plain, proving, simulate, steps
+from . import allocate, draw, loopback, observed, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -36,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ToolFailed as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return WRONG
-    except (ToolMissing, OSError) as problem:
+    except (ToolMissing, BenchError, OSError) as problem:
         print(f"ravenchart: error: {problem}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
@@ -98,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
     _add_draw(commands)
+    _add_loopback(commands)
     simulation = command("simulate", _simulate, "run the model in virtual time, step by step")
     simulation.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
     simulation.add_argument(
@@ -123,6 +125,13 @@ def _add_draw(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     sub.add_argument("--out", type=Path, metavar="DIR", help="where to (default: drawings/ beside)")
     sub.add_argument("--format", choices=draw.FORMATS, default="svg", help="default: svg")
     sub.set_defaults(command=_draw)
+
+
+def _add_loopback(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    help_text = "test any python-can interface that has two ends on one bus"
+    sub = commands.add_parser("loopback", help=help_text, description=help_text)
+    loopback.add_arguments(sub)
+    sub.set_defaults(command=_loopback)
 
 
 def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
@@ -251,6 +260,10 @@ def _draw(options: argparse.Namespace) -> int:
     draw.write(drawings, folder)
     print(f"{folder}: {len(drawings)} drawings")
     return OK
+
+
+def _loopback(options: argparse.Namespace) -> int:
+    return OK if loopback.tested(options) else WRONG
 
 
 if __name__ == "__main__":

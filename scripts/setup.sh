@@ -55,6 +55,14 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
       say "pip failed (above); is the package index reachable?" >&2
       exit 2
    fi
+   # The entry points of pyproject.toml, by which python-can finds the bus backend.
+   if ! .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+        --no-deps --no-build-isolation --editable .
+   then
+      rm -rf .venv
+      say "pip failed (above) on this checkout" >&2
+      exit 2
+   fi
    # The checkout itself goes on the path; nothing of it is copied.
    site=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
    pwd > "$site/ravenchart-checkout.pth"

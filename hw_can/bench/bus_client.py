@@ -1,0 +1,355 @@
+"""The python-can backend `interface="ravenchart"`: a node of the bus behind a bus server.
+
+It speaks the protocol of docs/bus-protocol.md over TCP; the channel is "HOST:PORT".
+"""
+
+from __future__ import annotations
+
+import copy
+import selectors
+import socket
+import threading
+import time
+from collections import deque
+from contextlib import suppress
+from typing import Any
+
+import can
+
+from .bus_records import (
+    MARK,
+    NUMBER_LAST,
+    RECORD_BYTES,
+    VERSION,
+    Flag,
+    Greeting,
+    Kind,
+    Record,
+    State,
+    Status,
+    decode,
+    encode,
+    greeting_data,
+    greeting_of,
+    message_of,
+    record_of,
+)
+
+PATIENCE = 5.0
+"""Seconds for the greeting, and for the server to take a record."""
+
+SLICE = 0.01
+"""Seconds for which a sender reads before it lets another thread read."""
+
+_STATES = {
+    State.ERROR_ACTIVE: can.BusState.ACTIVE,
+    State.ERROR_PASSIVE: can.BusState.PASSIVE,
+    State.BUS_OFF: can.BusState.ERROR,
+}
+
+
+class RavenchartBus(can.BusABC):
+    """One node. Any thread may send, and any may receive; a frame goes to one of them."""
+
+    def __init__(
+        self,
+        channel: str,
+        can_filters: can.typechecking.CanFilters | None = None,
+        *,
+        receive_own_messages: bool = False,
+        fd: bool = False,
+        bitrate: int = 0,
+        data_bitrate: int = 0,
+        name: str = "python-can",
+        **kwargs: Any,
+    ) -> None:
+        """Join the bus at ``channel``, "HOST:PORT".
+
+        ``fd``: send and receive FD frames; the bus must carry them. ``bitrate`` and
+        ``data_bitrate`` in bit/s, 0 for those of the bus. ``name`` is shown by the server.
+        Raises ValueError for a channel or name of another form, CanInitializationError
+        when there is no such server or it refuses.
+        """
+        address = _address(channel)
+        greeting = Greeting(name, bitrate, data_bitrate)
+        try:
+            hello = encode(
+                Record(
+                    Kind.HELLO,
+                    flags=int(Flag.FD) if fd else 0,
+                    length=len(name),
+                    code=VERSION,
+                    identifier=MARK,
+                    data=greeting_data(greeting),
+                )
+            )
+        except can.CanOperationError as fault:
+            raise ValueError(f"{name!r} at {bitrate}, {data_bitrate} bit/s: {fault}") from None
+        self._echo = receive_own_messages
+        self._writing = threading.Lock()
+        self._reading = threading.Lock()
+        self._settled = threading.Condition()
+        self._arrived: deque[can.Message] = deque()
+        self._open: dict[int, can.Message] = {}
+        self._awaited: dict[int, str | None] = {}
+        self._refusal: str | None = None
+        self._broken: str | None = None
+        self._partial = b""
+        self._number = 0
+        self._start = 0
+        self._errors = (0, 0)
+        self._state = can.BusState.ACTIVE
+        self._link = _connected(channel, address)
+        self._input = self._link.dup()
+        self._input.setblocking(False)
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(self._input, selectors.EVENT_READ)
+        try:
+            self._greet(channel, hello, fd)
+        except BaseException:
+            self._release()
+            raise
+        self._can_protocol = can.CanProtocol.CAN_FD if fd else can.CanProtocol.CAN_20
+        super().__init__(channel, can_filters, **kwargs)
+
+    def fileno(self) -> int:
+        """Readable when a record has come, unless a thread waits in `send` and read it."""
+        return self._input.fileno()
+
+    @property
+    def state(self) -> can.BusState:
+        """ACTIVE, PASSIVE or ERROR (bus-off), as the server said last."""
+        while self._take(0):
+            pass
+        return self._state
+
+    @state.setter
+    def state(self, new_state: can.BusState) -> None:
+        """ACTIVE asks for recovery from bus-off; nothing else can be asked for."""
+        if new_state is not can.BusState.ACTIVE:
+            raise NotImplementedError("a node of this bus only becomes active by request")
+        self._write(encode(Record(Kind.RECOVERY)))
+
+    @property
+    def error_counters(self) -> tuple[int, int]:
+        """Transmit and receive error counter, each 0 .. 256, as the server said last."""
+        while self._take(0):
+            pass
+        return self._errors
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Ask for ``msg`` to be transmitted; with a ``timeout`` > 0 s, wait until it was.
+
+        Raises CanOperationError when it is no frame, was refused, or the bus is gone, and
+        CanTimeoutError after ``timeout``. Without one, a refusal is raised by a later send.
+        """
+        waits = timeout is not None and timeout > 0
+        with self._writing:
+            refusal, self._refusal = self._refusal, None
+            if refusal is not None:
+                raise can.CanOperationError(f"an earlier frame was refused: {refusal}")
+            if msg.is_fd and self._can_protocol is not can.CanProtocol.CAN_FD:
+                raise can.CanOperationError("the bus was not opened for FD frames")
+            number = self._number % NUMBER_LAST + 1
+            octets = encode(record_of(msg, number))
+            self._number = number
+            self._open[number] = copy.deepcopy(msg)
+            if waits:
+                self._awaited[number] = None
+            self._send(octets)
+        if waits:
+            assert timeout is not None
+            self._await(number, timeout)
+
+    def shutdown(self) -> None:
+        """Leave the bus; a second call does nothing."""
+        if not self._is_shutdown:
+            super().shutdown()
+            self._broken = self._broken or "the bus was shut down"
+            self._release()
+
+    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+        """The next frame, and whether no filter is for it: those of errors are."""
+        end = None if timeout is None else time.monotonic() + timeout
+        while True:
+            if self._arrived:
+                message = self._arrived.popleft()
+                return message, message.is_error_frame
+            rest = None if end is None else max(0.0, end - time.monotonic())
+            if not self._take(rest, receiving=True) and rest == 0 and not self._arrived:
+                return None, False
+
+    def _await(self, number: int, timeout: float) -> None:
+        """Until request ``number`` is settled; other threads may read meanwhile."""
+        end = time.monotonic() + timeout
+        try:
+            while (outcome := self._awaited[number]) is None:
+                rest = end - time.monotonic()
+                if rest <= 0:
+                    raise can.CanTimeoutError(f"not transmitted within {timeout:g} s")
+                if self._reading.locked():
+                    with self._settled:
+                        self._settled.wait(min(rest, SLICE))
+                    self._check_usable()
+                else:
+                    self._take(min(rest, SLICE))
+        finally:
+            del self._awaited[number]
+        if outcome:
+            raise can.CanOperationError(f"the frame was refused: {outcome}")
+
+    def _take(self, timeout: float | None, *, receiving: bool = False) -> bool:
+        """Read at most one record within ``timeout`` s and act on it; whether bytes came.
+
+        One who is ``receiving`` reads nothing when a frame has arrived already.
+        """
+        if not self._reading.acquire(timeout=-1 if timeout is None else timeout):
+            return False
+        try:
+            self._check_usable()
+            if receiving and self._arrived:
+                return False
+            octets = self._bytes(timeout)
+            if octets is None:
+                return False
+            self._partial += octets
+            if len(self._partial) == RECORD_BYTES:
+                whole, self._partial = self._partial, b""
+                self._act_on(decode(whole))
+            return True
+        except can.CanOperationError as fault:
+            self._broken = self._broken or str(fault)
+            raise
+        finally:
+            self._reading.release()
+            with self._settled:
+                self._settled.notify_all()
+
+    def _bytes(self, timeout: float | None) -> bytes | None:
+        """What has come of the next record; None after ``timeout`` s."""
+        missing = RECORD_BYTES - len(self._partial)
+        try:
+            try:
+                octets = self._input.recv(missing)
+            except BlockingIOError:
+                if not self._selector.select(timeout):
+                    return None
+                octets = self._input.recv(missing)
+        except BlockingIOError:
+            return None
+        except (OSError, ValueError) as fault:
+            raise can.CanOperationError(f"the bus server is gone: {fault}") from None
+        if not octets:
+            raise can.CanOperationError("the bus server closed the connection")
+        return octets
+
+    def _act_on(self, record: Record) -> None:
+        """What a record from the server means."""
+        match record.kind:
+            case Kind.FRAME | Kind.ERROR_FRAME:
+                self._arrived.append(message_of(record, self._start))
+            case Kind.STATE:
+                self._state = _STATES[State(record.code)]
+                self._errors = (record.transmit_errors, record.receive_errors)
+            case Kind.CONFIRMATION:
+                message = self._close(record.number)
+                if self._echo:
+                    message.timestamp = (self._start + record.time) / 1e9
+                    message.is_rx = False
+                    self._arrived.append(message)
+                if record.number in self._awaited:
+                    self._awaited[record.number] = ""
+            case Kind.STATUS if record.number == 0:
+                raise can.CanOperationError(f"the bus server ends: {Status(record.code).words}")
+            case Kind.STATUS:
+                self._close(record.number)
+                words = Status(record.code).words
+                if record.number in self._awaited:
+                    self._awaited[record.number] = words
+                else:
+                    self._refusal = words
+            case _:
+                raise can.CanOperationError(f"bus protocol: a {record.kind.name.lower()} came")
+
+    def _close(self, number: int) -> can.Message:
+        """The open request of this number, which is open no more."""
+        message = self._open.pop(number, None)
+        if message is None:
+            raise can.CanOperationError(f"bus protocol: no request {number} is open")
+        return message
+
+    def _greet(self, channel: str, hello: bytes, fd: bool) -> None:
+        """Say hello and take the welcome; CanInitializationError when there is none."""
+        try:
+            self._send(hello)
+            welcome = self._welcome()
+            if fd and not Flag.FD & welcome.flags:
+                raise can.CanOperationError("the bus carries no FD frames")
+        except can.CanOperationError as fault:
+            raise can.CanInitializationError(f"{channel}: {fault}") from None
+        greeting = greeting_of(welcome)
+        self._start = greeting.start
+        self.channel_info = f"ravenchart bus {greeting.name} at {channel}, node {welcome.number}"
+
+    def _welcome(self) -> Record:
+        end = time.monotonic() + PATIENCE
+        octets = b""
+        while len(octets) < RECORD_BYTES:
+            self._partial = octets
+            part = self._bytes(max(0.0, end - time.monotonic()))
+            if part is None and time.monotonic() >= end:
+                raise can.CanOperationError(f"no welcome within {PATIENCE:g} s")
+            octets += part or b""
+        self._partial = b""
+        record = decode(octets)
+        if record.kind is Kind.STATUS:
+            raise can.CanOperationError(f"refused: {Status(record.code).words}")
+        if record.kind is not Kind.WELCOME:
+            raise can.CanOperationError(f"bus protocol: {record.kind.name} is no welcome")
+        if record.code != VERSION:
+            raise can.CanOperationError(f"version {record.code} is spoken there, {VERSION} here")
+        return record
+
+    def _check_usable(self) -> None:
+        if self._broken is not None:
+            raise can.CanOperationError(self._broken)
+
+    def _write(self, octets: bytes) -> None:
+        with self._writing:
+            self._send(octets)
+
+    def _send(self, octets: bytes) -> None:
+        """All of ``octets``, or CanOperationError, then and ever after."""
+        self._check_usable()
+        try:
+            self._link.sendall(octets)
+        except OSError as fault:
+            self._broken = f"the bus server is gone: {fault}"
+            raise can.CanOperationError(self._broken) from None
+
+    def _release(self) -> None:
+        """Close everything; a thread that waits for a record is woken first."""
+        with suppress(OSError):  # the server may have been faster
+            self._link.shutdown(socket.SHUT_RDWR)
+        with self._reading:
+            self._selector.close()
+            self._input.close()
+            self._link.close()
+
+
+def _address(channel: str) -> tuple[str, int]:
+    """Host and port of "HOST:PORT"; ValueError when it is not like that."""
+    host, colon, port = str(channel).rpartition(":")
+    if not (colon and host and port.isascii() and port.isdigit() and 0 < int(port) < 65536):
+        raise ValueError(f"{channel!r} is no HOST:PORT")
+    return host.strip("[]"), int(port)
+
+
+def _connected(channel: str, address: tuple[str, int]) -> socket.socket:
+    try:
+        link = socket.create_connection(address, PATIENCE)
+    except OSError as fault:
+        raise can.CanInitializationError(f"no bus server at {channel}: {fault}") from None
+    link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    link.settimeout(PATIENCE)
+    return link

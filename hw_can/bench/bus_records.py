@@ -1,0 +1,315 @@
+"""Records of the bus protocol (docs/bus-protocol.md), to and from their 88 bytes.
+
+Reading is total: any bytes give a record that keeps every rule, which would be written
+with the same bytes again, or a `can.CanOperationError` that says which rule is broken.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from enum import IntEnum, IntFlag
+
+import can
+
+VERSION = 1
+MARK = int.from_bytes(b"RAVN", "little")
+
+_LAYOUT = struct.Struct("<BBBBIQIHH64s")
+_GREETING = struct.Struct("<16sIIQ32x")
+_GREETING_BYTES = 32
+"""What of the data a greeting uses."""
+RECORD_BYTES = _LAYOUT.size
+DATA_BYTES = 64
+NAME_LENGTH = 16
+
+NO_DATA = bytes(DATA_BYTES)
+FD_LENGTHS = frozenset((*range(9), 12, 16, 20, 24, 32, 48, 64))
+"""Bytes that a frame of the FD format can carry (ISO 11898-1, data length code)."""
+
+TIME_LAST = 2**63 - 1
+NUMBER_LAST = 2**32 - 1
+ERROR_PASSIVE = 128
+BUS_OFF = 256
+"""Error counters from which on a node is error-passive, and bus-off (ISO 11898-1)."""
+
+
+class Kind(IntEnum):
+    """What a record is."""
+
+    HELLO = 1
+    WELCOME = 2
+    FRAME = 3
+    ERROR_FRAME = 4
+    STATE = 5
+    CONFIRMATION = 6
+    STATUS = 7
+    RECOVERY = 8
+
+
+class Flag(IntFlag):
+    """Of a frame; FD also in hello and welcome."""
+
+    EXTENDED = 1
+    REMOTE = 2
+    FD = 4
+    BRS = 8
+    ESI = 16
+
+
+class State(IntEnum):
+    """Fault confinement (ISO 11898-1)."""
+
+    ERROR_ACTIVE = 0
+    ERROR_PASSIVE = 1
+    BUS_OFF = 2
+
+
+class Status(IntEnum):
+    """Why a request was refused, or a connection ends."""
+
+    WRONG_VERSION = 1
+    MALFORMED_RECORD = 2
+    NO_ROOM = 3
+    BUS_OFF = 4
+    NOT_SUPPORTED = 5
+    WRONG_BIT_RATE = 6
+    CLOSING = 7
+
+    @property
+    def words(self) -> str:
+        """As a message says it."""
+        return self.name.lower().replace("_", " ")
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One record; ``time`` in ns since the bus was started, ``data`` always 64 bytes."""
+
+    kind: Kind
+    flags: int = 0
+    length: int = 0
+    code: int = 0
+    identifier: int = 0
+    time: int = 0
+    number: int = 0
+    transmit_errors: int = 0
+    receive_errors: int = 0
+    data: bytes = NO_DATA
+
+
+@dataclass(frozen=True, slots=True)
+class Greeting:
+    """The data of hello and welcome: bit rates in bit/s, ``start`` in ns since 1970."""
+
+    name: str
+    nominal_rate: int = 0
+    data_rate: int = 0
+    start: int = 0
+
+
+_IDENTIFIER = (0, 2**29 - 1)
+_TIME = (0, TIME_LAST)
+_NUMBER = (0, NUMBER_LAST)
+_COUNTER = (0, BUS_OFF)
+
+_RANGES: dict[Kind, dict[str, tuple[int, int]]] = {
+    Kind.HELLO: {"length": (1, NAME_LENGTH), "code": (1, 255), "identifier": (MARK, MARK)},
+    Kind.WELCOME: {
+        "length": (1, NAME_LENGTH),
+        "code": (1, 255),
+        "identifier": (MARK, MARK),
+        "time": _TIME,
+        "number": (1, 255),
+    },
+    Kind.FRAME: {
+        "length": (0, DATA_BYTES),
+        "identifier": _IDENTIFIER,
+        "time": _TIME,
+        "number": _NUMBER,
+    },
+    Kind.ERROR_FRAME: {
+        "length": (0, 8),
+        "identifier": _IDENTIFIER,
+        "time": _TIME,
+        "number": _NUMBER,
+    },
+    Kind.STATE: {
+        "code": (0, len(State) - 1),
+        "time": _TIME,
+        "transmit_errors": _COUNTER,
+        "receive_errors": _COUNTER,
+    },
+    Kind.CONFIRMATION: {"time": _TIME, "number": (1, NUMBER_LAST)},
+    Kind.STATUS: {"code": (1, len(Status)), "number": _NUMBER},
+    Kind.RECOVERY: {},
+}
+"""The range of each field that a kind has; the others are 0."""
+
+_FLAGS = {
+    Kind.HELLO: Flag.FD,
+    Kind.WELCOME: Flag.FD,
+    Kind.FRAME: Flag.EXTENDED | Flag.REMOTE | Flag.FD | Flag.BRS | Flag.ESI,
+    Kind.ERROR_FRAME: Flag.EXTENDED,
+}
+
+_NUMBERS = (
+    "length", "code", "identifier", "time", "number", "transmit_errors", "receive_errors"
+)  # fmt: skip
+
+
+def encode(record: Record) -> bytes:
+    """The 88 bytes of ``record``; CanOperationError when it breaks a rule."""
+    _check(record)
+    return _LAYOUT.pack(
+        record.kind,
+        record.flags,
+        record.length,
+        record.code,
+        record.identifier,
+        record.time,
+        record.number,
+        record.transmit_errors,
+        record.receive_errors,
+        record.data,
+    )
+
+
+def decode(octets: bytes) -> Record:
+    """The record in ``octets``; CanOperationError when they are none."""
+    if len(octets) != RECORD_BYTES:
+        raise _broken(f"{len(octets)} bytes are no record of {RECORD_BYTES}")
+    kind, *fields = _LAYOUT.unpack(octets)
+    if kind not in _RANGES:
+        raise _broken(f"there is no kind {kind}")
+    record = Record(Kind(kind), *fields)
+    _check(record)
+    return record
+
+
+def greeting_data(greeting: Greeting) -> bytes:
+    """The data of a hello or welcome; CanOperationError when a figure has no room."""
+    name = greeting.name.encode("ascii", "replace")
+    try:
+        return _GREETING.pack(name, greeting.nominal_rate, greeting.data_rate, greeting.start)
+    except struct.error as fault:
+        raise _broken(f"{greeting}: {fault}") from None
+
+
+def greeting_of(record: Record) -> Greeting:
+    """What a hello or welcome says of itself."""
+    name, nominal, data, start = _GREETING.unpack(record.data)
+    return Greeting(name[: record.length].decode("ascii"), nominal, data, start)
+
+
+def state_of(transmit_errors: int, receive_errors: int) -> State:
+    """The state that goes with these error counters (ISO 11898-1, fault confinement)."""
+    if transmit_errors >= BUS_OFF:
+        return State.BUS_OFF
+    passive = max(transmit_errors, receive_errors) >= ERROR_PASSIVE
+    return State.ERROR_PASSIVE if passive else State.ERROR_ACTIVE
+
+
+def record_of(message: can.Message, number: int) -> Record:
+    """The request that sends ``message``; CanOperationError when no frame is like that."""
+    error, remote = message.is_error_frame, message.is_remote_frame
+    flags = Flag(0)
+    for flag, is_set in (
+        (Flag.EXTENDED, message.is_extended_id),
+        (Flag.REMOTE, remote),
+        (Flag.FD, message.is_fd),
+        (Flag.BRS, message.bitrate_switch),
+        (Flag.ESI, message.error_state_indicator),
+    ):
+        flags |= flag if is_set else Flag(0)
+    if len(message.data) != (0 if remote else message.dlc):
+        raise _broken(f"a length of {message.dlc} does not fit {len(message.data)} bytes of data")
+    record = Record(
+        Kind.ERROR_FRAME if error else Kind.FRAME,
+        flags=int(flags),
+        length=message.dlc,
+        identifier=message.arbitration_id,
+        number=number,
+        data=bytes(message.data).ljust(DATA_BYTES, b"\0"),
+    )
+    _check(record)
+    return record
+
+
+def message_of(record: Record, start: int) -> can.Message:
+    """The frame or error frame; ``start`` is when bus time 0 was, in ns since 1970."""
+    flags = Flag(record.flags)
+    remote = Flag.REMOTE in flags
+    return can.Message(
+        timestamp=(start + record.time) / 1e9,
+        arbitration_id=record.identifier,
+        is_extended_id=Flag.EXTENDED in flags,
+        is_remote_frame=remote,
+        is_error_frame=record.kind is Kind.ERROR_FRAME,
+        dlc=record.length,
+        data=None if remote else record.data[: record.length],
+        is_fd=Flag.FD in flags,
+        bitrate_switch=Flag.BRS in flags,
+        error_state_indicator=Flag.ESI in flags,
+    )
+
+
+def _broken(rule: str) -> can.CanOperationError:
+    return can.CanOperationError(f"bus protocol: {rule}")
+
+
+def _check(record: Record) -> None:
+    """CanOperationError when ``record`` breaks a rule of its kind."""
+    kind, name = record.kind, record.kind.name.lower().replace("_", " ")
+    if record.flags & ~_FLAGS.get(kind, Flag(0)):
+        raise _broken(f"flags {record.flags} in {name}")
+    ranges = _RANGES[kind]
+    for field in _NUMBERS:
+        first, last = ranges.get(field, (0, 0))
+        value = getattr(record, field)
+        if not first <= value <= last:
+            raise _broken(f"{field.replace('_', ' ')} {value} in {name}")
+    if len(record.data) != DATA_BYTES:
+        raise _broken(f"{len(record.data)} bytes of data")
+    if kind in (Kind.HELLO, Kind.WELCOME):
+        _check_greeting(record)
+    elif kind in (Kind.FRAME, Kind.ERROR_FRAME):
+        _check_frame(record)
+    elif any(record.data):
+        raise _broken(f"data in {name}")
+    if kind is Kind.STATE and record.code != state_of(
+        record.transmit_errors, record.receive_errors
+    ):
+        raise _broken(
+            f"state {record.code} with counters {record.transmit_errors}, {record.receive_errors}"
+        )
+
+
+def _check_greeting(record: Record) -> None:
+    name, nominal, data, start = _GREETING.unpack(record.data)
+    if any(not 0x21 <= octet <= 0x7E for octet in name[: record.length]):
+        raise _broken("a name has a character that is not from ! to ~")
+    if any(name[record.length :]) or any(record.data[_GREETING_BYTES:]):
+        raise _broken("data beyond the greeting")
+    if nominal > 1_000_000 or data > 20_000_000:
+        raise _broken(f"bit rates {nominal} and {data}")
+    if start > (TIME_LAST if record.kind is Kind.WELCOME else 0):
+        raise _broken(f"start {start}")
+
+
+def _check_frame(record: Record) -> None:
+    flags = Flag(record.flags)
+    if Flag.EXTENDED not in flags and record.identifier > 0x7FF:
+        raise _broken(f"standard identifier {record.identifier:#x}")
+    if Flag.FD in flags:
+        if Flag.REMOTE in flags:
+            raise _broken("a remote frame in the FD format")
+        if record.length not in FD_LENGTHS:
+            raise _broken(f"length {record.length} in the FD format")
+    elif record.length > 8:
+        raise _broken(f"length {record.length} in the classic format")
+    elif flags & (Flag.BRS | Flag.ESI):
+        raise _broken("BRS or ESI in the classic format")
+    carried = 0 if Flag.REMOTE in flags else record.length
+    if any(record.data[carried:]):
+        raise _broken("data beyond the length")

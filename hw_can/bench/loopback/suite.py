@@ -1,0 +1,103 @@
+"""Runs the cases on two ends of a bus; what cannot be done is skipped, never passed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import can
+
+from .cases import CASES, Case, Failed, Skipped
+from .ends import Ends, Setup, words
+
+Progress = Callable[[str], None]
+
+
+class Verdict(Enum):
+    """How a case ended."""
+
+    PASSED = "passed"
+    FAILED = "FAILED"
+    SKIPPED = "skipped"
+
+
+@dataclass(frozen=True, slots=True)
+class CaseResult:
+    """How one case went: what was seen, or the reason why not."""
+
+    name: str
+    verdict: Verdict
+    detail: str
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class LoopbackResult:
+    """How the suite went. ``latencies`` in ns; ``rate`` in frames per second."""
+
+    setup: Setup
+    cases: tuple[CaseResult, ...]
+    latencies: tuple[int, ...]
+    rate: float | None
+
+    def count(self, verdict: Verdict) -> int:
+        """How many cases ended so."""
+        return sum(case.verdict is verdict for case in self.cases)
+
+    @property
+    def seconds(self) -> float:
+        """Of all cases together."""
+        return sum(case.seconds for case in self.cases)
+
+    @property
+    def passed(self) -> bool:
+        """Nothing failed, and something passed."""
+        return self.count(Verdict.FAILED) == 0 and self.count(Verdict.PASSED) > 0
+
+
+def run(
+    ends: Ends, progress: Progress = lambda name: None, cases: Sequence[Case] = CASES
+) -> LoopbackResult:
+    """Run ``cases`` in order; once the bus is lost the rest is skipped."""
+    results: list[CaseResult] = []
+    lost = False
+    for case in cases:
+        progress(case.name)
+        began = time.monotonic()
+        if lost:
+            verdict, detail = Verdict.SKIPPED, "the bus was lost before"
+        else:
+            verdict, detail = _run_one(ends, case)
+            lost = verdict is Verdict.FAILED and not ends.usable()
+        results.append(CaseResult(case.name, verdict, detail, time.monotonic() - began))
+    return LoopbackResult(ends.setup, tuple(results), tuple(ends.latencies), ends.rate)
+
+
+def _run_one(ends: Ends, case: Case) -> tuple[Verdict, str]:
+    """Verdict and reason. Any exception of a driver is a failure of the case."""
+    try:
+        ends.drain()
+        return Verdict.PASSED, case.run(ends)
+    except Skipped as reason:
+        return Verdict.SKIPPED, str(reason)
+    except Failed as reason:
+        return Verdict.FAILED, str(reason)
+    except NotImplementedError as missing:
+        return Verdict.SKIPPED, f"not implemented there: {words(missing)}"
+    except (can.CanError, OSError) as fault:
+        return Verdict.FAILED, words(fault)
+    except Exception as fault:
+        return Verdict.FAILED, f"the driver raised {words(fault)}"
+
+
+def histogram(latencies: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    """How many of ``latencies`` (ns) are below each power of two in us, and not the last.
+
+    The powers go without a gap from the lowest to the highest that has any.
+    """
+    powers = [(latency // 1_000).bit_length() for latency in latencies]
+    if not powers:
+        return ()
+    return tuple((2**power, powers.count(power)) for power in range(min(powers), max(powers) + 1))

@@ -1,0 +1,150 @@
+"""A stand-in for the bus server: it passes records between its clients, and is no bus.
+
+It knows no bit times, arbitration, acknowledgement or error counters: a frame is over the
+moment it is read, and errors and states are those that a test injects.
+"""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+
+from hw_can.bench.bus_records import (
+    MARK,
+    RECORD_BYTES,
+    VERSION,
+    Flag,
+    Greeting,
+    Kind,
+    Record,
+    Status,
+    decode,
+    encode,
+    greeting_data,
+)
+
+NAME = "stand-in"
+
+
+class BusServer:
+    """Listens on a free port of this machine; one thread for each client."""
+
+    def __init__(self, *, fd: bool = True, version: int = VERSION, first: bytes = b"") -> None:
+        """``first`` is said in place of a welcome."""
+        self._flags = int(Flag.FD) if fd else 0
+        self._version, self._first = version, first
+        self._socket = socket.create_server(("127.0.0.1", 0))
+        self.channel = f"127.0.0.1:{self._socket.getsockname()[1]}"
+        self.confirms = True
+        self.refuses: Status | None = None
+        """With what the next frames are refused."""
+        self.harm: Callable[[Record], Record | None] = lambda record: record
+        """What a frame becomes on its way; None for nothing."""
+        self.clients: dict[int, tuple[socket.socket, bool]] = {}
+        self._lock = threading.Lock()
+        self._start = time.time_ns()
+        self._joined = 0
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    @property
+    def now(self) -> int:
+        """Bus time in ns."""
+        return time.time_ns() - self._start
+
+    def inject(self, record: Record) -> None:
+        """Send ``record`` to every client, as of now."""
+        with self._lock:
+            self._to_all(replace(record, time=self.now))
+
+    def inject_bytes(self, octets: bytes) -> None:
+        """Send any bytes to every client."""
+        with self._lock:
+            for link, _ in self.clients.values():
+                link.sendall(octets)
+
+    def cut(self) -> None:
+        """Drop every client without a word."""
+        with self._lock:
+            for link, _ in self.clients.values():
+                with suppress(OSError):
+                    link.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """End, without a word to anybody."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+        self._socket.close()
+        self.cut()
+
+    def _accept(self) -> None:
+        with suppress(OSError):
+            while True:
+                link, _ = self._socket.accept()
+                link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                threading.Thread(target=self._serve, args=(link,), daemon=True).start()
+
+    def _serve(self, link: socket.socket) -> None:
+        node = 0
+        with link, suppress(OSError):
+            hello = _read(link)
+            if hello is None or hello.kind is not Kind.HELLO:
+                return
+            if hello.code != self._version and not self._first:
+                link.sendall(encode(Record(Kind.STATUS, code=Status.WRONG_VERSION)))
+                return
+            with self._lock:
+                self._joined = node = self._joined + 1
+                link.sendall(self._first or self._welcome(node))
+                self.clients[node] = (link, bool(hello.flags & Flag.FD))
+            while (record := _read(link)) is not None:
+                with self._lock:
+                    self._answer(node, record)
+        with self._lock:
+            self.clients.pop(node, None)
+
+    def _welcome(self, node: int) -> bytes:
+        return encode(
+            Record(
+                Kind.WELCOME,
+                flags=self._flags,
+                length=len(NAME),
+                code=VERSION,
+                identifier=MARK,
+                time=self.now,
+                number=node,
+                data=greeting_data(Greeting(NAME, start=self._start)),
+            )
+        ) + encode(Record(Kind.STATE, time=self.now))
+
+    def _answer(self, node: int, record: Record) -> None:
+        if record.kind is Kind.RECOVERY:
+            self._to_all(Record(Kind.STATE, time=self.now), only=node)
+        elif self.refuses is not None:
+            refusal = Record(Kind.STATUS, code=self.refuses, number=record.number)
+            self._to_all(refusal, only=node)
+        else:
+            now = self.now
+            arriving = self.harm(replace(record, time=now, number=0))
+            if arriving is not None:
+                self._to_all(arriving, but=node)
+            if self.confirms:
+                confirmation = Record(Kind.CONFIRMATION, time=now, number=record.number)
+                self._to_all(confirmation, only=node)
+
+    def _to_all(self, record: Record, *, but: int = 0, only: int = 0) -> None:
+        """To each client but one, or to one only; FD frames to those that take them."""
+        octets = encode(record)
+        for node, (link, fd) in self.clients.items():
+            if node != but and only in (0, node) and (fd or not record.flags & Flag.FD):
+                with suppress(OSError):
+                    link.sendall(octets)
+
+
+def _read(link: socket.socket) -> Record | None:
+    """The next record; None at the end."""
+    octets = link.recv(RECORD_BYTES, socket.MSG_WAITALL)
+    return decode(octets) if len(octets) == RECORD_BYTES else None

@@ -1,0 +1,34 @@
+"""Random CAN frames of every kind."""
+
+from __future__ import annotations
+
+import random
+
+import can
+
+FD_LENGTHS = (*range(9), 12, 16, 20, 24, 32, 48, 64)
+
+
+def mixed_frames(count: int, *, seed: int = 1, errors: bool = True) -> list[can.Message]:
+    """``count`` frames: standard and extended, data, remote, FD, and ``errors``."""
+    chance = random.Random(seed)
+    kinds = ("data", "data", "remote", "fd", "fd") + (("error",) if errors else ())
+    return [_frame(chance, chance.choice(kinds)) for _ in range(count)]
+
+
+def _frame(chance: random.Random, kind: str) -> can.Message:
+    extended = kind == "error" or chance.random() < 0.5
+    identifier = chance.getrandbits(29 if extended else 11)
+    length = chance.choice(FD_LENGTHS) if kind == "fd" else chance.randint(0, 8)
+    return can.Message(
+        arbitration_id=identifier,
+        is_extended_id=extended,
+        is_remote_frame=kind == "remote",
+        is_error_frame=kind == "error",
+        is_fd=kind == "fd",
+        bitrate_switch=kind == "fd" and chance.random() < 0.5,
+        error_state_indicator=kind == "fd" and chance.random() < 0.5,
+        dlc=length,
+        data=None if kind == "remote" else chance.randbytes(length),
+        check=True,
+    )

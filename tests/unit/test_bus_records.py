@@ -1,0 +1,145 @@
+"""The records of the bus protocol: exact both ways, and total on any bytes."""
+
+from __future__ import annotations
+
+import random
+
+import can
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hw_can.bench.bus_records import (
+    MARK,
+    RECORD_BYTES,
+    Flag,
+    Greeting,
+    Kind,
+    Record,
+    State,
+    Status,
+    decode,
+    encode,
+    greeting_data,
+    greeting_of,
+    message_of,
+    record_of,
+    state_of,
+)
+from tests.support.can_frames import mixed_frames
+
+ANY_BYTES = 4_000
+
+
+def valid() -> list[bytes]:
+    """One record of each kind."""
+    greeting = greeting_data(Greeting("bench", 500_000, 2_000_000))
+    return [
+        encode(Record(Kind.HELLO, Flag.FD, 5, 1, MARK, data=greeting)),
+        encode(Record(Kind.WELCOME, Flag.FD, 5, 1, MARK, 7, 2, data=greeting)),
+        encode(record_of(can.Message(arbitration_id=0x123, data=b"abc"), 1)),
+        encode(Record(Kind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=0x88, time=5)),
+        encode(Record(Kind.STATE, code=1, transmit_errors=128)),
+        encode(Record(Kind.CONFIRMATION, time=9, number=3)),
+        encode(Record(Kind.STATUS, code=Status.NO_ROOM, number=3)),
+        encode(Record(Kind.RECOVERY)),
+    ]
+
+
+def accepted(octets: bytes) -> bool:
+    """Whether the bytes are a record, which then is written as the same bytes."""
+    try:
+        record = decode(octets)
+    except can.CanOperationError:
+        return False
+    assert encode(record) == octets
+    return True
+
+
+def test_the_layout_is_that_of_the_page() -> None:
+    octets = encode(
+        Record(Kind.FRAME, 1, 2, 0, 0x1234_5678, 0x0102, 0x0A0B, data=b"\x55\xaa".ljust(64, b"\0"))
+    )
+    assert octets[:26] == bytes.fromhex(
+        "03 01 02 00 78563412 0201000000000000 0b0a0000 0000 0000 55aa"
+    )
+    assert len(octets) == RECORD_BYTES == 88
+    assert encode(Record(Kind.STATE, 0, 0, 2, 0, 0, 0, 256, 0))[20:24] == b"\x00\x01\x00\x00"
+
+
+def test_a_thousand_frames_come_back_as_they_were() -> None:
+    for number, frame in enumerate(mixed_frames(1_000), 1):
+        record = decode(encode(record_of(frame, number)))
+        assert record.number == number
+        assert message_of(record, 0).equals(frame, check_channel=False, timestamp_delta=None)
+
+
+@given(st.binary(max_size=2 * RECORD_BYTES))
+def test_any_bytes_are_a_record_or_refused(octets: bytes) -> None:
+    accepted(octets)
+
+
+def test_changed_records_are_refused_or_mean_what_they_say() -> None:
+    chance, kept = random.Random(5), 0
+    for _ in range(ANY_BYTES):
+        octets = bytearray(chance.choice(valid()))
+        for _ in range(chance.randint(1, 3)):
+            octets[chance.randrange(len(octets))] = chance.choice((0, 1, 8, 0x7F, 0x80, 0xFF))
+        kept += accepted(bytes(octets))
+    assert 0 < kept < ANY_BYTES
+
+
+def test_every_kind_flag_length_and_code() -> None:
+    for octets in valid():
+        for offset in range(4):
+            for value in range(256):
+                accepted(octets[:offset] + bytes([value]) + octets[offset + 1 :])
+
+
+@pytest.mark.parametrize(
+    ("record", "words"),
+    [
+        (Record(Kind.FRAME, identifier=0x800), "standard identifier 0x800"),
+        (Record(Kind.FRAME, Flag.FD | Flag.REMOTE), "a remote frame in the FD format"),
+        (Record(Kind.FRAME, Flag.FD, 9), "length 9 in the FD format"),
+        (Record(Kind.FRAME, 0, 9), "length 9 in the classic format"),
+        (Record(Kind.FRAME, Flag.BRS), "BRS or ESI in the classic format"),
+        (Record(Kind.FRAME, data=b"\1".ljust(64, b"\0")), "data beyond the length"),
+        (Record(Kind.FRAME, code=1), "code 1 in frame"),
+        (Record(Kind.FRAME, time=2**63), f"time {2**63} in frame"),
+        (Record(Kind.ERROR_FRAME, Flag.FD), "flags 4 in error frame"),
+        (Record(Kind.STATE, code=0, transmit_errors=128), "state 0 with counters 128, 0"),
+        (Record(Kind.STATUS, code=0), "code 0 in status"),
+        (Record(Kind.CONFIRMATION), "number 0 in confirmation"),
+        (Record(Kind.RECOVERY, data=b"\1" * 64), "data in recovery"),
+        (Record(Kind.HELLO, 0, 1, 1, MARK), "a name has a character that is not from ! to ~"),
+        (Record(Kind.HELLO, 0, 1, 1, 5), "identifier 5 in hello"),
+    ],
+)
+def test_each_rule_is_said_in_words(record: Record, words: str) -> None:
+    with pytest.raises(can.CanOperationError, match=f"bus protocol: {words}"):
+        encode(record)
+
+
+def test_a_message_that_is_no_frame_is_refused() -> None:
+    for message in (
+        can.Message(arbitration_id=0x800, is_extended_id=False),
+        can.Message(dlc=9, data=bytes(9)),
+        can.Message(dlc=3, data=b"12345"),
+        can.Message(is_fd=True, dlc=11, data=bytes(11)),
+        can.Message(arbitration_id=-1),
+    ):
+        with pytest.raises(can.CanOperationError):
+            record_of(message, 1)
+
+
+def test_the_state_goes_with_the_counters() -> None:
+    assert state_of(127, 127) is State.ERROR_ACTIVE
+    assert state_of(128, 0) is state_of(0, 128) is state_of(255, 0) is State.ERROR_PASSIVE
+    assert state_of(256, 0) is State.BUS_OFF
+
+
+def test_a_greeting_comes_back() -> None:
+    greeting = Greeting("bench", 500_000, 2_000_000, 0)
+    record = decode(encode(Record(Kind.HELLO, 0, 5, 1, MARK, data=greeting_data(greeting))))
+    assert greeting_of(record) == greeting

@@ -1,0 +1,258 @@
+"""The loopback test, over interfaces that work, that cannot do everything, and that fail."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import can
+import pytest
+
+from hw_can.bench.bus_records import NO_DATA, Flag, Kind, Record
+from hw_can.bench.loopback.cases import CASES
+from hw_can.bench.loopback.ends import Ends, Setup, open_ends
+from hw_can.bench.loopback.suite import CaseResult, LoopbackResult, Verdict, histogram, run
+from hw_can.bench.peer import BenchError
+from ravenchart import loopback_files
+from ravenchart.__main__ import main
+from ravenchart.loopback import verdict_line
+from tests.support.bus_server import BusServer
+from tests.support.slcan_relay import SlcanRelay
+
+
+@pytest.fixture
+def server() -> Iterator[BusServer]:
+    one = BusServer()
+    yield one
+    one.close()
+
+
+def on(server: BusServer) -> Ends:
+    """Both ends on the stand-in, with little patience."""
+    setup = Setup("ravenchart", server.channel, "ravenchart", server.channel, fd=True)
+    return open_ends(setup, patience=0.3)
+
+
+def verdicts(result: LoopbackResult) -> dict[str, Verdict]:
+    return {case.name: case.verdict for case in result.cases}
+
+
+def named(verdict: Verdict, result: LoopbackResult) -> set[str]:
+    return {case.name for case in result.cases if case.verdict is verdict}
+
+
+def test_the_own_interface_passes_every_case(
+    server: BusServer, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    junit, page = tmp_path / "loopback.xml", tmp_path / "loopback.html"
+    status = main(
+        ["loopback", "--interface", "ravenchart", "--channel", server.channel, "--fd",
+         "--junit", str(junit), "--html", str(page)]
+    )  # fmt: skip
+    printed = capsys.readouterr().out
+    assert status == 0, printed
+    assert f"PASS: {len(CASES)} passed, 0 failed, 0 skipped" in printed
+    assert max(map(len, printed.splitlines())) <= 80
+    suite = ElementTree.parse(junit).getroot().find("testsuite")
+    assert suite is not None
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("20", "0", "0")
+    html = page.read_text()
+    assert "<strong>PASS</strong>" in html and "Latency" in html
+    assert not any(word in html for word in ("http:", "https:", "src=", "<link"))
+
+
+def test_virtual_passes_and_says_what_it_cannot(capsys: pytest.CaptureFixture[str]) -> None:
+    status = main(["loopback", "--interface", "virtual", "--channel", "loopback"])
+    printed = " ".join(capsys.readouterr().out.split())
+    assert status == 0, printed
+    assert "PASS: 16 passed, 0 failed, 4 skipped" in printed
+    assert "skipped 0.00 the bus was opened without --fd" in printed
+    assert "python-can's virtual tells no state" in printed
+
+
+def test_one_object_with_echo_is_both_ends(capsys: pytest.CaptureFixture[str]) -> None:
+    status = main(["loopback", "--interface", "virtual", "--channel", "echo", "--fd", "--echo"])
+    printed = " ".join(capsys.readouterr().out.split())
+    assert status == 0, printed
+    assert "one bus object has no other way" in printed
+
+
+@pytest.fixture
+def relay() -> Iterator[SlcanRelay]:
+    one = SlcanRelay()
+    yield one
+    one.close()
+
+
+def test_slcan_passes_and_says_what_it_cannot(relay: SlcanRelay) -> None:
+    ends = open_ends(Setup("slcan", relay.channel, "slcan", relay.channel, fd=True))
+    try:
+        result = run(ends)
+    finally:
+        ends.close()
+    assert result.passed, result.cases
+    assert named(Verdict.SKIPPED, result) == {
+        "FD frames, error state indicated", "error frame", "echo", "error state",
+    }  # fmt: skip
+
+
+def test_slcan_that_is_cut_fails_in_words(relay: SlcanRelay) -> None:
+    ends = open_ends(Setup("slcan", relay.channel, "slcan", relay.channel), patience=0.3)
+    try:
+        result = run(ends, lambda name: relay.cut() if name == "burst" else None)
+    finally:
+        ends.close()
+    found = verdicts(result)
+    assert found["every byte value"] is Verdict.PASSED
+    assert found["burst"] is Verdict.FAILED
+    assert found["throughput"] is Verdict.SKIPPED
+    assert not result.passed
+
+
+def test_a_cable_cut_in_the_middle_fails_and_skips_the_rest(server: BusServer) -> None:
+    ends = on(server)
+    result = run(ends, lambda name: server.cut() if name == "burst" else None)
+    ends.close()
+    burst = next(case for case in result.cases if case.name == "burst")
+    assert burst.verdict is Verdict.FAILED
+    assert burst.detail == "the bus server closed the connection"
+    after = result.cases[result.cases.index(burst) + 1 :]
+    assert {case.verdict for case in after} == {Verdict.SKIPPED}
+    assert {case.detail for case in after} == {"the bus was lost before"}
+    assert not result.passed
+
+
+def lost(record: Record) -> Record | None:
+    return None if record.identifier % 16 == 3 else record
+
+
+def changed(record: Record) -> Record:
+    plain = record.kind is Kind.FRAME and not Flag.REMOTE & record.flags and record.length > 1
+    return replace(record, data=b"\xee" + record.data[1:]) if plain else record
+
+
+def without_brs(record: Record) -> Record:
+    return replace(record, flags=record.flags & ~Flag.BRS)
+
+
+def remote_as_data(record: Record) -> Record:
+    return replace(record, flags=record.flags & ~Flag.REMOTE, data=NO_DATA)
+
+
+@pytest.mark.parametrize(
+    ("harm", "failing"),
+    [
+        (lost, {"standard data frames", "burst", "order", "timestamps"}),
+        (changed, {"standard data frames", "every byte value", "burst", "the other way"}),
+        (without_brs, {"FD frames, bit rate switched"}),
+        (remote_as_data, {"standard remote frames", "extended remote frames"}),
+    ],
+)
+def test_a_bus_that_harms_frames_fails(
+    server: BusServer, harm: Callable[[Record], Record | None], failing: set[str]
+) -> None:
+    server.harm = harm
+    ends = on(server)
+    result = run(ends, cases=[case for case in CASES if case.name in failing | {"error state"}])
+    ends.close()
+    assert named(Verdict.PASSED, result) == {"error state"}
+    assert named(Verdict.FAILED, result) == failing
+
+
+def test_frames_that_change_places_fail(server: BusServer) -> None:
+    def swap(record: Record) -> Record:
+        """The 1st and the 65th of the burst have one identifier; each comes as the other."""
+        other = {0: 64, 64: 0}.get(record.data[0])
+        return record if other is None else replace(record, data=bytes([other]).ljust(64, b"\0"))
+
+    server.harm = swap
+    ends = on(server)
+    result = run(ends, cases=[case for case in CASES if case.name == "order"])
+    ends.close()
+    assert result.cases[0].detail == "frames of 100 changed places: [64, 0, 128, 192]"
+
+
+def test_error_frames_and_states_are_seen(server: BusServer) -> None:
+    server_error = Record(Kind.ERROR_FRAME, Flag.EXTENDED, 8, identifier=8)
+    passive = Record(Kind.STATE, code=1, transmit_errors=128)
+    ends = on(server)
+
+    def disturb(name: str) -> None:
+        if name == "error state":
+            server.inject(server_error)
+            server.inject(passive)
+
+    result = run(
+        ends, disturb, [c for c in CASES if c.name in ("error state", "error frames seen")]
+    )
+    ends.close()
+    assert [case.verdict for case in result.cases] == [Verdict.FAILED, Verdict.FAILED]
+    assert result.cases[0].detail == "state PASSIVE, PASSIVE on a sound bus"
+    assert result.cases[1].detail.startswith("2 error frames came, the first 00000008 E [8]")
+
+
+def test_nothing_passed_is_not_a_pass() -> None:
+    setup = Setup("virtual", "x", "virtual", "x")
+    case = CaseResult("burst", Verdict.SKIPPED, "not today", 0.0)
+    result = LoopbackResult(setup, (case,), (), None)
+    assert not result.passed
+    assert verdict_line(result) == "FAIL: 0 passed, 0 failed, 1 skipped"
+    assert '<skipped message="not today"' in loopback_files.junit(result)
+
+
+def test_a_failure_is_told_in_each_form() -> None:
+    setup = Setup("virtual", 'a<b>&"c', "virtual", "x")
+    cases = (CaseResult("burst", Verdict.FAILED, "sent <1> & lost", 0.5),)
+    result = LoopbackResult(setup, cases, (1_500, 1_700, 9_000), 10.0)
+    suite = ElementTree.fromstring(loopback_files.junit(result).encode())
+    failure = suite.find(".//failure")
+    assert failure is not None and failure.get("message") == "sent <1> & lost"
+    page = loopback_files.html(result)
+    assert "sent &lt;1&gt; &amp; lost" in page and "a<b>" not in page
+    assert histogram(result.latencies) == ((2, 2), (4, 0), (8, 0), (16, 1))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--interface", "nowhere", "--channel", "x"], "python-can has no interface 'nowhere'"),
+        (["--interface", "ravenchart", "--channel", "x"], "'x' is no HOST:PORT"),
+        (["--interface", "ravenchart", "--channel", "127.0.0.1:1"], "no bus server at 127.0.0.1:1"),
+        (["--interface", "slcan", "--channel", "/dev/nothing"], "cannot be opened"),
+        (["--interface", "pcan", "--channel", "x"], "cannot be opened"),
+        (
+            ["--interface", "virtual", "--channel", "x", "--echo", "--receive-channel", "y"],
+            "--echo goes without",
+        ),
+        (
+            ["--interface", "virtual", "--channel", "x", "--receive-interface", "nowhere"],
+            "python-can has no interface 'nowhere'",
+        ),
+    ],
+)
+def test_a_bus_that_is_not_there_is_said_in_a_line(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["loopback", *arguments]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("ravenchart: error: ") and words in said
+    assert "Traceback" not in said and len(said.splitlines()) == 1
+
+
+def test_no_permission_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> can.BusABC:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(can, "Bus", refuse)
+    with pytest.raises(BenchError, match="no permission for virtual 'x'"):
+        open_ends(Setup("virtual", "x", "virtual", "x"))
+
+
+@pytest.mark.parametrize("rate", ["0", "-1", "fast", "2000000", "²"])
+def test_a_bit_rate_out_of_range_is_refused(rate: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["loopback", "--interface", "virtual", "--channel", "x", "--bitrate", rate])
+    assert ended.value.code == 2
+    assert "is not 1 .. 1000000 bit/s" in capsys.readouterr().err
