@@ -15,6 +15,7 @@ MAINS = (
     "test_records",
     "test_frames",
     "test_slcan",
+    "test_arbitration",
     "test_processors",
     "test_host",
     "test_controller",
