@@ -16,6 +16,7 @@ MAINS = (
     "test_frames",
     "test_slcan",
     "test_arbitration",
+    "test_wire",
     "test_processors",
     "test_host",
     "test_controller",
