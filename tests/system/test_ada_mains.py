@@ -17,6 +17,7 @@ MAINS = (
     "test_slcan",
     "test_arbitration",
     "test_wire",
+    "test_fault_confinement",
     "test_processors",
     "test_host",
     "test_controller",
