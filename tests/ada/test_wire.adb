@@ -416,15 +416,19 @@ procedure Test_Wire is
             Print ("classic", Format, Size);
          end loop;
          for Code in Length_Code loop
-            for I in 0 .. 255 loop
-               Id    := Some_Id (Format, 8 * I + 7);
-               F     := Fd_Data_Frame
-                 (Id, Format, Length_Of (Code), (others => 0));
-               Bytes := Stuffing (Wire.To_Wire (F));
-               Note
-                 (Wire.To_Wire
-                    (Fd_Data_Frame (Id, Format, F.Length, Bytes)),
-                  Switched_Rate);
+            for I in 0 .. (if Format = Base then 2047 else 255) loop
+               for Sender in Sender_State loop
+                  F     := Fd_Data_Frame
+                    (Some_Id (Format, I), Format, Length_Of (Code),
+                     (others => 0), Switched_Rate, Sender);
+                  Bytes := Stuffing (Wire.To_Wire (F));
+                  Note
+                    (Wire.To_Wire
+                       (Fd_Data_Frame
+                          (F.Id, Format, F.Length, Bytes,
+                           Switched_Rate, Sender)),
+                     Switched_Rate);
+               end loop;
             end loop;
             Print ("fd", Format, F.Length);
          end loop;

@@ -20,9 +20,12 @@ CASES = [
 Measured = dict[tuple[str, bool, int], tuple[int, Bits]]
 """Bits without stuff bits, and the longest frame found, for each case."""
 
+FREE = "x"
+"""Stands for a bit of either value, among bits of fixed value."""
+
 SLACK = 6
-"""Bits by which the bound exceeds the longest frame found: it takes every bit as free, but
-the bits of fixed value around the identifier break the pattern that stuffs most."""
+"""Bits by which the bound of the analysis may exceed the longest frame found: it takes
+every bit as free, but those around the identifier break the pattern that stuffs most."""
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +50,21 @@ def _bits(kind: str, extended: bool, length: int, *, stuffed: bool) -> Bits:
     return formula(length, extended=extended, stuffed=stuffed)
 
 
+def _most_stuff_bits(pattern: str) -> int:
+    """The most stuff bits inside any bits of this pattern; none behind the last."""
+    best = {("", 0): 0}
+    for bit in pattern:
+        longer: dict[tuple[str, int], int] = {}
+        for (last, run), stuffed in best.items():
+            due = run == 5
+            before, count = ("10"[int(last)], 1) if due else (last, run)
+            for sent in "01" if bit == FREE else bit:
+                now = sent, count + 1 if sent == before else 1
+                longer[now] = max(longer.get(now, 0), stuffed + due)
+        best = longer
+    return max(best.values())
+
+
 def test_every_length_was_measured(measured: Measured) -> None:
     assert sorted(measured) == sorted(CASES)
 
@@ -68,3 +86,12 @@ def test_the_bound_holds_and_is_close(
     assert longest.nominal <= bound.nominal
     assert longest.data <= bound.data
     assert longest.nominal + longest.data >= bound.nominal + bound.data - SLACK
+
+
+@pytest.mark.parametrize("length", FD_SIZES)
+def test_the_longest_standard_fd_frame_is_found(measured: Measured, length: int) -> None:
+    """All identifiers are tried, and no CRC is exposed: nothing but the pattern counts."""
+    code = f"{FD_SIZES.index(length):04b}"
+    head = "0" + 11 * FREE + "00" + "101" + FREE + code
+    plain, longest = measured["fd", False, length]
+    assert longest.nominal + longest.data == plain + _most_stuff_bits(head + 8 * length * FREE)
