@@ -49,7 +49,7 @@ is
    --  A bit of the comparison, the first on the bus is 1. The identifier
    --  extension bit (IDE) is in place 13 in both formats.
 
-   function Fields (Format : Frame_Format) return Place
+   function Compared (Format : Frame_Format) return Place
    is (if Format = Can.Standard then 13 else 32)
    with Global => null;
    --  The bits that a frame of this format has there.

@@ -1,6 +1,7 @@
 --  What one bit time on the bus can carry.
 --
---  Guarantees   the bus is a wired AND: one dominant sender is enough
+--  Guarantees   the order of the levels is that of a wired AND: what the bus
+--               carries is the first of the levels that are sent
 --  Tasking      none: levels are values
 --  Timing       constant
 --
@@ -23,10 +24,5 @@ is
    is (if One then Recessive else Dominant)
    with Global => null;
    --  How a bit that is 1, or not, goes over the bus.
-
-   function Together (A, B : Level) return Level
-   is (Level'Min (A, B))
-   with Global => null;
-   --  What the bus carries while one node sends A, another one B.
 
 end Ravenchart.Can.Levels;

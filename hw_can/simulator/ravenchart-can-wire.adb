@@ -285,7 +285,7 @@ is
    begin
       W.Check := Crcs.Start (W.Kind);
       Put (W, Levels.Dominant);
-      for P in 1 .. Arbitration.Fields (C.Format) loop
+      for P in 1 .. Arbitration.Compared (C.Format) loop
          Put (W, Arbitration.Level_At (Rank, P));
          pragma Loop_Invariant
            (Is_Sound (W)

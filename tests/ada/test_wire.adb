@@ -2,8 +2,8 @@
 --
 --  The check values of the CRCs are those of the CRC catalogue of G. Cook
 --  (CRC-15/CAN, CRC-17/CAN-FD, CRC-21/CAN-FD). Lengths and check fields of
---  whole frames are what the frame generators of P. Molinaro's book on CAN
---  compute (repository pierremolinaro/codes-can, state of 14 March 2025).
+--  whole frames are what the frame generators by P. Molinaro give for them
+--  (repository pierremolinaro/codes-can, state of 14 March 2025).
 
 with Ada.Text_IO;
 with Facts;
@@ -175,7 +175,7 @@ procedure Test_Wire is
          Picture : constant Wire.Image := Wire.To_Wire (F);
       begin
          Facts.Check
-           ("classic frame " & Name & " is as published",
+           ("classic frame " & Name & " is as another generator has it",
             Wire.Length (Picture) = Length
             and then Picture.Stuffed = Stuffed
             and then
@@ -248,7 +248,7 @@ procedure Test_Wire is
          Picture : constant Wire.Image := Wire.To_Wire (F);
       begin
          Facts.Check
-           ("CAN FD frame " & Name & " is as published",
+           ("CAN FD frame " & Name & " is as another generator has it",
             Wire.Length (Picture) = Length
             and then Picture.Stuffed = Stuffed
             and then Check_Field (Picture) = Field);
