@@ -53,6 +53,18 @@ is
              then P else Lost_In'Old (I)));
    --  Who reads another level than it sends has lost.
 
+   procedure Ranks_Are_Order (Contenders : Contender_List; First : Contender)
+   with
+     Ghost,
+     Global => null,
+     Post   =>
+       (for all I in Contenders'Range =>
+          (Rank_Of (First) < Rank_Of (Contenders (I)))
+          = Precedes (First, Contenders (I))
+          and then (Rank_Of (First) = Rank_Of (Contenders (I)))
+            = (First = Contenders (I)));
+   --  Rank_Is_Order, for one frame against all.
+
    -------------------
    -- Rank_Is_Order --
    -------------------
@@ -62,6 +74,24 @@ is
       pragma Assert (A.Id = A.Id / 2**18 * 2**18 + A.Id mod 2**18);
       pragma Assert (B.Id = B.Id / 2**18 * 2**18 + B.Id mod 2**18);
    end Rank_Is_Order;
+
+   ---------------------
+   -- Ranks_Are_Order --
+   ---------------------
+
+   procedure Ranks_Are_Order (Contenders : Contender_List; First : Contender)
+   is
+   begin
+      for I in Contenders'Range loop
+         Rank_Is_Order (First, Contenders (I));
+         pragma Loop_Invariant
+           (for all J in Contenders'First .. I =>
+              (Rank_Of (First) < Rank_Of (Contenders (J)))
+              = Precedes (First, Contenders (J))
+              and then (Rank_Of (First) = Rank_Of (Contenders (J)))
+                = (First = Contenders (J)));
+      end loop;
+   end Ranks_Are_Order;
 
    --------------
    -- Read_Bus --
@@ -160,6 +190,7 @@ is
          Read_Bus (Contenders, Lost_In, P, Winner, Bus (P));
          Drop_Losers (Contenders, P, Bus (P), Lost_In);
       end loop;
+      Ranks_Are_Order (Contenders, Contenders (Winner));
    end Arbitrate;
 
 end Ravenchart.Can.Arbitration;

@@ -141,16 +141,16 @@ is
        and then
          (for all I in Contenders'Range =>
             (if Lost_In (I) = 0
-             then Rank_Of (Contenders (I)) = Rank_Of (Contenders (Winner))
-             else Rank_Of (Contenders (I)) > Rank_Of (Contenders (Winner))
+             then Contenders (I) = Contenders (Winner)
+             else Precedes (Contenders (Winner), Contenders (I))
                and then Bus (Lost_In (I)) = Levels.Dominant
                and then
                  Level_At (Rank_Of (Contenders (I)), Lost_In (I))
                  = Levels.Recessive));
    --  Each sends its bits while it reads back what it sends. The winner is
-   --  first in order (Rank_Is_Order); with it stay only frames that are alike
-   --  in all these bits, which ISO 11898-1 leaves to the users to rule out. A
-   --  loser sent a recessive bit where it read a dominant one.
+   --  first in order; with it stay only frames that are alike in all these
+   --  bits, which ISO 11898-1 leaves to the users to rule out. A loser sent a
+   --  recessive bit where it read a dominant one.
 
 private
 
