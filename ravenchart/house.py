@@ -53,7 +53,13 @@ def _runtime(driver: str) -> Target:
         ROOT / "proofs" / "proofs.gpr",
         {"MODE": "checks", "CAN_DRIVER": driver},
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
-        (ROOT / "spark_runtime", ROOT / "hw_can" / "hal", body, ROOT / "proofs" / "instances"),
+        (
+            ROOT / "spark_runtime",
+            ROOT / "hw_can" / "hal",
+            ROOT / "hw_can" / "simulator",
+            body,
+            ROOT / "proofs" / "instances",
+        ),
     )
 
 

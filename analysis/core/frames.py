@@ -56,11 +56,11 @@ def fd_bits(
     """The longest CAN FD frame with ``length`` data bytes; the shortest unless stuffed.
 
     ``length`` is one of `FD_SIZES`. With ``switched`` the data rate holds from the
-    bit after the switch to the CRC. Derived from the layout in ISO 11898-1 (2015),
-    and checked against no tool: the bit of the switch and the CRC delimiter, in the
-    middle of which the rate changes, count as nominal bits, and so do as many stuff
-    bits as can fall before the switch. Tolerated longer delimiters and
-    acknowledgements are not counted.
+    bit after the switch to the CRC. Derived from the layout in ISO 11898-1 (2015);
+    the tests hold it against the bits that `hw_can/simulator` writes. The bit of the
+    switch and the CRC delimiter, in the middle of which the rate changes, count as
+    nominal bits, and so do as many stuff bits as can fall before the switch.
+    Tolerated longer delimiters and acknowledgements are not counted.
     """
     if length not in FD_SIZES:
         raise ValueError(f"length of a CAN FD frame must be one of {FD_SIZES}, not {length!r}")

@@ -1,8 +1,10 @@
---  CAN frames: payloads, bytes, and the way through slcan lines and back.
+--  CAN frames: payloads, bytes, and the way through slcan lines and back;
+--  CAN FD frames and their lengths.
 
 with Facts;
 with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Slcan;
 
 procedure Test_Frames is
@@ -27,6 +29,8 @@ procedure Test_Frames is
    procedure Check_Lines;
 
    procedure Check_Samples;
+
+   procedure Check_Fd_Frames;
 
    function Line_Of (F : Frame) return String;
    --  The line of F as text, without its carriage return.
@@ -156,9 +160,39 @@ procedure Test_Frames is
          Line_Of (Remote_Frame (1, Extended, 0)) = "R000000010");
    end Check_Samples;
 
+   ---------------------
+   -- Check_Fd_Frames --
+   ---------------------
+
+   procedure Check_Fd_Frames is
+      use Ravenchart.Can.Fd_Frames;
+      Full   : constant Fd_Bytes := (others => 16#A5#);
+      F      : Fd_Frame;
+      Cut    : Boolean := True;
+      Longer : Boolean := True;
+   begin
+      for Code in Length_Code loop
+         F   := Fd_Data_Frame (5, Extended, Length_Of (Code), Full);
+         Cut := Cut
+           and then
+             (for all I in Fd_Index =>
+                Byte (F, I) = (if I < F.Length then 16#A5# else 0))
+           and then F = Fd_Data_Frame (5, Extended, F.Length, F.Bytes);
+         if Code > 0 then
+            Longer := Longer
+              and then Length_Of (Code) > Length_Of (Code - 1);
+         end if;
+      end loop;
+      Facts.Check ("a CAN FD payload ends with its length", Cut);
+      Facts.Check
+        ("16 length codes stand for growing lengths up to 64",
+         Longer and then Length_Of (15) = 64);
+   end Check_Fd_Frames;
+
 begin
    Check_Payloads;
    Check_Lines;
    Check_Samples;
+   Check_Fd_Frames;
    Facts.Finish;
 end Test_Frames;

@@ -1,0 +1,103 @@
+--  CAN FD frames as values: up to 64 bytes, no remote frames.
+--
+--  Guarantees   the identifier of an Fd_Frame fits its format, its length is
+--               one that a length code stands for; Byte is 0 beyond it
+--  Tasking      none: frames are values
+--  Timing       constant; Fd_Data_Frame is linear in the room for data
+
+with Interfaces;
+
+package Ravenchart.Can.Fd_Frames
+  with SPARK_Mode, Pure
+is
+   use type Interfaces.Unsigned_8;
+
+   subtype Fd_Length is Natural range 0 .. 64
+   with
+     Static_Predicate =>
+       Fd_Length in 0 .. 8 | 12 | 16 | 20 | 24 | 32 | 48 | 64;
+   --  Bytes in a CAN FD frame.
+
+   type Length_Code is range 0 .. 15;
+   --  The data length code (DLC) of a frame.
+
+   function Code (Length : Fd_Length) return Length_Code
+   is (case Length is
+         when 0 .. 8 => Length_Code (Length),
+         when 12     => 9,
+         when 16     => 10,
+         when 20     => 11,
+         when 24     => 12,
+         when 32     => 13,
+         when 48     => 14,
+         when 64     => 15)
+   with Global => null;
+   --  The code that stands for Length.
+
+   function Length_Of (Code : Length_Code) return Fd_Length
+   is (case Code is
+         when 0 .. 8 => Natural (Code),
+         when 9      => 12,
+         when 10     => 16,
+         when 11     => 20,
+         when 12     => 24,
+         when 13     => 32,
+         when 14     => 48,
+         when 15     => 64)
+   with
+     Global => null,
+     Post   => Fd_Frames.Code (Length_Of'Result) = Code;
+   --  The length that Code stands for.
+
+   subtype Fd_Index is Natural range 0 .. 63;
+   --  Byte 0 goes over the bus first.
+
+   type Fd_Bytes is array (Fd_Index) of Interfaces.Unsigned_8;
+   --  Room for the data of the longest frame.
+
+   type Bit_Rate_Use is (Constant_Rate, Switched_Rate);
+   --  The bit rate switch (BRS): is the data phase sent at the data bit rate?
+
+   type Sender_State is (Active_Sender, Passive_Sender);
+   --  The error state indicator (ESI): is the sender error-passive?
+
+   type Fd_Frame is record
+      Id     : Identifier := 0;
+      Format : Frame_Format := Can.Standard;
+      Rate   : Bit_Rate_Use := Switched_Rate;
+      Sender : Sender_State := Active_Sender;
+      Length : Fd_Length := 0;
+      Bytes  : Fd_Bytes := (others => 0);
+   end record
+   with Predicate => Fits (Id, Format);
+   --  Bytes beyond Length mean nothing: read by Byte.
+
+   function Byte
+     (F : Fd_Frame; Index : Fd_Index) return Interfaces.Unsigned_8
+   is (if Index < F.Length then F.Bytes (Index) else 0)
+   with Global => null;
+   --  One byte of the data; 0 beyond the length.
+
+   function Fd_Data_Frame
+     (Id     : Identifier;
+      Format : Frame_Format;
+      Length : Fd_Length;
+      Bytes  : Fd_Bytes;
+      Rate   : Bit_Rate_Use := Switched_Rate;
+      Sender : Sender_State := Active_Sender) return Fd_Frame
+   with
+     Global => null,
+     Pre    => Fits (Id, Format),
+     Post   =>
+       Fd_Data_Frame'Result.Id = Id
+       and then Fd_Data_Frame'Result.Format = Format
+       and then Fd_Data_Frame'Result.Rate = Rate
+       and then Fd_Data_Frame'Result.Sender = Sender
+       and then Fd_Data_Frame'Result.Length = Length
+       and then
+         (for all I in Fd_Index =>
+            Fd_Data_Frame'Result.Bytes (I)
+            = (if I < Length then Bytes (I) else 0));
+   --  A frame whose unused bytes are 0, so that equal frames are equal.
+
+end Ravenchart.Can.Fd_Frames;
