@@ -18,7 +18,7 @@ from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
 from hw_can.bench.peer import BenchError
 
-from . import allocate, draw, loopback, observed, plain, proving, simulate, steps
+from . import allocate, bus, draw, loopback, observed, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -100,6 +100,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
     _add_draw(commands)
     _add_loopback(commands)
+    _add_bus(commands)
     simulation = command("simulate", _simulate, "run the model in virtual time, step by step")
     simulation.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
     simulation.add_argument(
@@ -132,6 +133,13 @@ def _add_loopback(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     sub = commands.add_parser("loopback", help=help_text, description=help_text)
     loopback.add_arguments(sub)
     sub.set_defaults(command=_loopback)
+
+
+def _add_bus(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    help_text = "put a simulated CAN bus behind a TCP port, for any number of processes"
+    sub = commands.add_parser("bus", help=help_text, description=help_text)
+    bus.add_arguments(sub)
+    sub.set_defaults(command=_bus)
 
 
 def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
@@ -264,6 +272,10 @@ def _draw(options: argparse.Namespace) -> int:
 
 def _loopback(options: argparse.Namespace) -> int:
     return OK if loopback.tested(options) else WRONG
+
+
+def _bus(options: argparse.Namespace) -> int:
+    return bus.serve(bus.words(options))
 
 
 if __name__ == "__main__":

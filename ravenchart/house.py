@@ -2,7 +2,7 @@
 
 check: generated/ is what the models give, and every Ada unit compiles without
 a warning, with contracts executed and without. prove: gnatprove on the runtime
-and the HAL with each driver and on the examples, and the records of it.
+and the HAL with each driver, on the bus server and on the examples, and the records of it.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ PATIENCE = 300.0
 
 EXAMPLES = ("cartesian_robot", "crossing", "pump", "qhsmtst", "three_components")
 DRIVERS = ("loopback", "slcan")
+BUS = "bus"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +37,26 @@ class Target:
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
-    """The runtime with each driver, then the examples; only those named, where some are."""
+    """Runtime with each driver, bus server, examples; only those named, where some are."""
     for driver in DRIVERS:
         if not names or f"runtime-{driver}" in names:
             yield _runtime(driver)
+    if not names or BUS in names:
+        yield _bus()
     for example in EXAMPLES:
         if not names or example in names:
             yield _example(example)
+
+
+def _bus() -> Target:
+    folder, obj = ROOT / "hw_can" / "bus", ROOT / "obj"
+    return Target(
+        BUS,
+        folder / "can_bus.gpr",
+        {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
+        (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
+        (folder,),
+    )
 
 
 def _runtime(driver: str) -> Target:
@@ -106,11 +120,13 @@ def check(_names: Sequence[str]) -> bool:
         for mode in ("checks", "release"):
             steps.build(checked, mode)
             print(f"{example}: builds without a warning ({mode})", flush=True)
-    tests = ROOT / "tests" / "ada" / "tests.gpr"
+    others = (ROOT / "hw_can" / "bus" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")
     for mode in ("checks", "release"):
-        options = ["-p", "-q", "-j0", "-P", tests.name]
-        toolchain.run("gprbuild", options, tests.parent, {"MODE": mode, "CAN_DRIVER": "loopback"})
-        print(f"runtime, HAL and tests: build without a warning ({mode})", flush=True)
+        for project in others:
+            options = ["-p", "-q", "-j0", "-P", project.name]
+            variables = {"MODE": mode, "CAN_DRIVER": DRIVERS[0]}
+            toolchain.run("gprbuild", options, project.parent, variables)
+        print(f"runtime, HAL, bus and tests: build without a warning ({mode})", flush=True)
     return fresh
 
 

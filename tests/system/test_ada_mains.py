@@ -18,6 +18,7 @@ MAINS = (
     "test_arbitration",
     "test_wire",
     "test_fault_confinement",
+    "test_bus",
     "test_processors",
     "test_host",
     "test_controller",
