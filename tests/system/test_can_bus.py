@@ -80,7 +80,7 @@ def test_alone_a_node_becomes_passive_and_is_heard_once_it_is_not(start: Start) 
 
 
 def test_a_bus_held_recessive_drives_the_sender_off_and_it_comes_back(start: Start) -> None:
-    channel = start("event=0:hold_recessive", "event=1500000000:let_go")
+    channel = start("time=virtual", "event=0:hold_recessive", "event=2500000:let_go")
     with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
         with pytest.raises(can.CanOperationError, match="bus off"):
             a.send(can.Message(arbitration_id=1), timeout=WAIT)
@@ -88,7 +88,6 @@ def test_a_bus_held_recessive_drives_the_sender_off_and_it_comes_back(start: Sta
             a.send(can.Message(arbitration_id=2), timeout=WAIT)
         assert a.state is can.BusState.ERROR
         assert b.state is can.BusState.ACTIVE
-        time.sleep(1.6)
         a.state = can.BusState.ACTIVE
         end = time.monotonic() + WAIT
         while a.state is not can.BusState.ACTIVE and time.monotonic() < end:
@@ -99,13 +98,12 @@ def test_a_bus_held_recessive_drives_the_sender_off_and_it_comes_back(start: Sta
 
 
 def test_a_bus_that_is_cut_and_mended(start: Start) -> None:
-    channel = start("event=0:cut:2", "event=1000000000:mend")
+    channel = start("time=virtual", "event=0:cut:2", "event=1000000000:mend")
     with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
-        with pytest.raises(can.CanTimeoutError):
-            a.send(can.Message(arbitration_id=1), timeout=0.3)
-        assert b.recv(0) is None
+        a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        assert a.error_counters == (127, 0)
         message = b.recv(WAIT)
-        assert message is not None and message.arbitration_id == 1
+        assert message is not None and 1.0 <= message.timestamp < 1.001
 
 
 def test_faults_of_a_list_come_with_the_frames_they_name(start: Start) -> None:
@@ -148,7 +146,7 @@ from hw_can.bench.bus_client import RavenchartBus
 with RavenchartBus(sys.argv[1], fd=True) as bus:
     for number in range(100):
         frame = can.Message(arbitration_id=int(sys.argv[2]), data=bytes([number]))
-        bus.send(frame, timeout=10)
+        bus.send(frame, timeout=60)
 """
 
 
@@ -159,8 +157,8 @@ def test_three_processes_share_one_bus(start: Start) -> None:
             subprocess.Popen([sys.executable, "-c", SENDER, channel, str(number)], cwd=ROOT)
             for number in range(3)
         ]
-        got = taken(listener, 300)
-        assert [sender.wait(30) for sender in senders] == [0, 0, 0]
+        got = [message for _ in range(300) if (message := listener.recv(60)) is not None]
+        assert [sender.wait(60) for sender in senders] == [0, 0, 0]
     for number in range(3):
         assert [m.data[0] for m in got if m.arbitration_id == number] == list(range(100))
     assert [m.timestamp for m in got] == sorted(m.timestamp for m in got)
