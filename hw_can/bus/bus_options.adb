@@ -110,11 +110,13 @@ package body Bus_Options is
       Start : constant Nanoseconds := Nanoseconds'Value (Part (Value, 1));
       Node  : constant Natural := Natural'Value (Part (Value, 3));
    begin
-      if Bus.Count > 0 and then Bus.Events (Bus.Count).Start > Start then
+      if Bus.Agenda.Count > 0
+        and then Bus.Agenda.Events (Bus.Agenda.Count).Start > Start
+      then
          raise Constraint_Error;
       end if;
-      Bus.Count := Bus.Count + 1;
-      Bus.Events (Bus.Count) :=
+      Bus.Agenda.Count := Bus.Agenda.Count + 1;
+      Bus.Agenda.Events (Bus.Agenda.Count) :=
         (Kind  => Kind,
          Start => Start,
          Node  => Bus_Nodes.Node_Index (if Node = 0 then 1 else Node),
@@ -138,12 +140,12 @@ package body Bus_Options is
             raise Constraint_Error;
          end if;
       elsif Name = "name" and then Bus_Records.Is_Name (Value) then
-         Bus.Length := Value'Length;
-         Bus.Name (1 .. Value'Length) := Value;
+         Bus.Profile.Length := Value'Length;
+         Bus.Profile.Name (1 .. Value'Length) := Value;
       elsif Name = "bitrate" then
-         Bus.Speed.Nominal := Rate (Value);
+         Bus.Profile.Nominal := Rate (Value);
       elsif Name = "data_bitrate" then
-         Bus.Speed.Data := Rate (Value);
+         Bus.Profile.Data := Rate (Value);
       elsif Name = "time" and then Value in "paced" | "virtual" then
          Paced := Value = "paced";
       elsif Name = "buffer" and then Value in "fifo" | "priority" then
@@ -174,8 +176,8 @@ package body Bus_Options is
       use type Bus_Records.Bit_Rate;
    begin
       Port := 29_536;
-      Bus.Length := 4;
-      Bus.Name (1 .. 4) := "can0";
+      Bus.Profile.Length := 4;
+      Bus.Profile.Name (1 .. 4) := "can0";
       for I in 1 .. Ada.Command_Line.Argument_Count loop
          declare
             Word  : constant String := Ada.Command_Line.Argument (I);
@@ -196,9 +198,9 @@ package body Bus_Options is
          end;
       end loop;
       Bus.Net.Bus.Times.Nominal :=
-        Second / Nanoseconds (Bus.Speed.Nominal);
-      if Bus.Speed.Data > 0 then
-         Bus.Net.Bus.Times.Data := Second / Nanoseconds (Bus.Speed.Data);
+        Second / Nanoseconds (Bus.Profile.Nominal);
+      if Bus.Profile.Data > 0 then
+         Bus.Net.Bus.Times.Data := Second / Nanoseconds (Bus.Profile.Data);
       end if;
    end Read;
 

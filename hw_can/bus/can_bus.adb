@@ -4,6 +4,7 @@
 with Ada.Command_Line;
 with Ada.Text_IO;
 with Bus_Options;
+with Ravenchart.Can.Bus_Clients;
 with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Bus_Records;
 with Ravenchart.Can.Bus_Servers;
@@ -13,7 +14,7 @@ procedure Can_Bus is
    use Ravenchart;
    use Ravenchart.Can;
    use Ravenchart.Can.Bus_Nodes;
-   use type Bus_Servers.Phase;
+   use type Bus_Clients.Phase;
    use type Bus_Sockets.Reading;
    use type Bus_Sockets.Writing;
 
@@ -87,21 +88,22 @@ procedure Can_Bus is
       loop
          Writing := Bus_Sockets.Ready (C);
          exit when Writing /= Bus_Sockets.Done
-           or else not Bus_Servers.Has_Due (Bus, C, Horizon);
+           or else not Bus_Clients.Has_Due (Bus.Clients (C), Horizon);
          Bus_Servers.Hand_Over (Bus, C, Bytes);
          Bus_Sockets.Send (C, Bytes);
       end loop;
       if Writing = Bus_Sockets.Lost
-        or else Bus.Clients (C).State = Bus_Servers.Given_Up
+        or else Bus.Clients (C).State = Bus_Clients.Given_Up
         or else
-          (Bus.Clients (C).State = Bus_Servers.Ending
+          (Bus.Clients (C).State = Bus_Clients.Ending
            and then Writing = Bus_Sockets.Done
-           and then Bus.Clients (C).Count = 0)
+           and then Bus.Clients (C).Queue.Count = 0)
       then
          Bus_Servers.Disconnect (Bus, C);
          Bus_Sockets.Close (C);
       elsif Writing = Bus_Sockets.Done then
-         Next := Nanoseconds'Min (Next, Bus_Servers.Next_Due (Bus, C));
+         Next :=
+           Nanoseconds'Min (Next, Bus_Clients.Next_Due (Bus.Clients (C)));
       end if;
    end Hand_Over;
 
@@ -121,17 +123,17 @@ begin
       return;
    end if;
    if Bus_Options.Is_Paced then
-      Bus.Began := Bus_Sockets.Date;
+      Bus.Profile.Began := Bus_Sockets.Date;
    end if;
    Ada.Text_IO.Put_Line
-     ("bus " & Bus.Name (1 .. Bus.Length) & " at 127.0.0.1:"
+     ("bus " & Bus.Profile.Name (1 .. Bus.Profile.Length) & " at 127.0.0.1:"
       & Port'Image (2 .. Port'Image'Last));
    Ada.Text_IO.Flush;
 
    while not Bus_Sockets.Stop_Requested loop
       Greet;
       for C in Node_Index loop
-         if Bus.Clients (C).State /= Bus_Servers.Unconnected then
+         if Bus.Clients (C).State /= Bus_Clients.Unconnected then
             Listen (C);
          end if;
       end loop;
@@ -140,7 +142,7 @@ begin
       Bus_Servers.Run (Bus, Horizon, Busy);
       Next := Bus_Servers.Next_Start (Bus);
       for C in Node_Index loop
-         if Bus.Clients (C).State /= Bus_Servers.Unconnected then
+         if Bus.Clients (C).State /= Bus_Clients.Unconnected then
             Hand_Over (C, Horizon, Next);
          end if;
       end loop;
@@ -154,7 +156,7 @@ begin
 
    Bus_Servers.Close_All (Bus);
    for C in Node_Index loop
-      if Bus.Clients (C).State /= Bus_Servers.Unconnected then
+      if Bus.Clients (C).State /= Bus_Clients.Unconnected then
          Hand_Over (C, Nanoseconds'Last, Next);
       end if;
    end loop;

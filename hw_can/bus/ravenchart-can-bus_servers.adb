@@ -1,111 +1,176 @@
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Queues;
 with Ravenchart.Can.Buses;
-with Ravenchart.Can.Error_Frames;
+with Ravenchart.Can.Fault_Confinement;
+with Ravenchart.Can.Transmit_Buffers;
 
 package body Ravenchart.Can.Bus_Servers
   with SPARK_Mode
 is
    use type Bus_Frames.Frame_Family;
    use type Buses.Ending;
-   use type Error_Frames.Error_Kind;
    use type Interfaces.Unsigned_32;
 
-   procedure Say
-     (To : in out Client; Bytes : Bus_Records.Image; Due : Nanoseconds)
+   function Is_Due (A : Agenda; Now : Nanoseconds) return Boolean
+   is (A.Next <= A.Count and then A.Events (A.Next).Start <= Now)
    with Global => null;
-   --  Queue a record. Who is too far behind is given up.
+   --  Does something happen to the line by then?
 
-   function Later (A, B : Nanoseconds) return Nanoseconds
-   is (if A < B then B else A)
+   function Holds
+     (B : Transmit_Buffers.Buffer; Tag : Interfaces.Unsigned_32)
+      return Boolean
+   is (for some I in 1 .. B.Count => B.Slots (I).Tag = Tag)
    with Global => null;
-   --  The later of two.
+   --  Is a request of this number still to be sent?
 
-   function Is_Told (S : Server; C : Node_Index) return Boolean
-   is (Fault_Confinement.Transmit_Errors (S.Clients (C).Told)
-       = Fault_Confinement.Transmit_Errors (S.Net.Bus.Nodes (C).Confinement)
-       and then
-         Fault_Confinement.Receive_Errors (S.Clients (C).Told)
-         = Fault_Confinement.Receive_Errors
-             (S.Net.Bus.Nodes (C).Confinement))
+   function Is_Witness
+     (N : Networks.Network; C : Node_Index; Result : Buses.Outcome)
+      return Boolean
+   is (Result.Ended = Buses.Broken
+       and then N.Bus.Nodes (C).Segment = N.Bus.Nodes (Result.Winner).Segment)
    with Global => null;
-   --  Does C know its counters as they are?
+   --  Did node C see an error frame?
 
-   procedure End_With (To : in out Client; Why : Bus_Records.Status)
-   with Global => null;
-   --  Say why, and close.
-
-   procedure Greet
-     (S : in out Server; C : Node_Index; R : Bus_Records.Request;
-      Now : Nanoseconds)
+   procedure Recover (N : in out Networks.Network; C : Node_Index)
    with
      Global => null,
-     Pre    => Is_Sound (S),
-     Post   => Is_Sound (S);
-   --  The first thing that C has said.
+     Pre    => Networks.Is_Sound (N),
+     Post   => Networks.Is_Sound (N);
+   --  Node C shall come back from bus-off.
 
    procedure Ask
-     (S : in out Server; C : Node_Index; R : Bus_Records.Request;
+     (To  : in out Bus_Clients.Client;
+      N   : in out Networks.Network;
+      C   : Node_Index;
+      R   : Bus_Records.Request;
       Now : Nanoseconds)
    with
      Global => null,
-     Pre    => Is_Sound (S),
-     Post   => Is_Sound (S);
-   --  C asks for a frame to be sent.
-
-   procedure Tell_State
-     (S : in out Server; C : Node_Index; Now : Nanoseconds)
-   with
-     Global => null,
-     Pre    => Is_Sound (S),
-     Post   => Is_Sound (S);
-   --  Tell C its counters, where they have changed; when it is bus-off, what
-   --  it had asked for is refused.
+     Pre    => Networks.Is_Sound (N),
+     Post   => Networks.Is_Sound (N);
+   --  Client C asks for a frame to be sent.
 
    procedure Publish
-     (S        : in out Server;
-      C        : Node_Index;
-      Result   : Buses.Outcome;
-      Receipt  : Networks.Receipt;
-      Fault    : Bus_Faults.Fault)
+     (To      : in out Bus_Clients.Client;
+      N       : in out Networks.Network;
+      C       : Node_Index;
+      Result  : Buses.Outcome;
+      Receipt : Networks.Receipt;
+      Fault   : Bus_Faults.Fault)
    with
      Global => null,
-     Pre    => Is_Sound (S),
-     Post   => Is_Sound (S);
-   --  What C is told of what happened on the bus.
+     Pre    => Networks.Is_Sound (N),
+     Post   => Networks.Is_Sound (N);
+   --  What client C is told of what happened on the bus. When it is bus-off,
+   --  what it had asked for is refused.
+
+   procedure Carry
+     (Clients : in out Client_List;
+      N       : in out Networks.Network;
+      Plan    : in out Fault_Plans.Plan;
+      M       : Networks.Moment)
+   with
+     Global => null,
+     Pre    =>
+       Networks.Is_Sound (N)
+       and then
+         M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
+     Post   => Networks.Is_Sound (N);
+   --  What begins on the bus at M, and who is told of it.
+
+   -------------
+   -- Recover --
+   -------------
+
+   procedure Recover (N : in out Networks.Network; C : Node_Index) is
+   begin
+      N.Bus.Nodes (C).Way_Back := Recovers;
+   end Recover;
 
    ---------
-   -- Say --
+   -- Ask --
    ---------
 
-   procedure Say
-     (To : in out Client; Bytes : Bus_Records.Image; Due : Nanoseconds)
+   procedure Ask
+     (To  : in out Bus_Clients.Client;
+      N   : in out Networks.Network;
+      C   : Node_Index;
+      R   : Bus_Records.Request;
+      Now : Nanoseconds)
    is
-      Place : Natural;
+      Status : Send_Status;
    begin
-      if To.Count = Depth then
-         To.Count := 0;
-         To.State := Given_Up;
-      elsif To.State in Greeting | Joined then
-         Place := To.First + To.Count;
-         To.Queue (if Place > Depth then Place - Depth else Place) :=
-           (Bytes => Bytes, Due => Due);
-         To.Count := To.Count + 1;
+      if Holds (N.Buffers (C), R.Number) then
+         Bus_Clients.End_With (To, Bus_Records.Malformed);
+      elsif R.Frame.Family = Bus_Frames.Flexible and then not To.Takes_Fd then
+         Bus_Clients.Refuse (To, R.Number, Bus_Records.Not_Supported);
+      elsif not Takes_Part (N.Bus.Nodes (C)) then
+         Bus_Clients.Refuse (To, R.Number, Bus_Records.Is_Bus_Off);
+      else
+         Networks.Submit
+           (N, C, (Frame => R.Frame, Tag => R.Number, Since => Now), Status);
+         if Status = Rejected_Full then
+            Bus_Clients.Refuse (To, R.Number, Bus_Records.No_Room);
+         end if;
       end if;
-   end Say;
+   end Ask;
 
-   --------------
-   -- End_With --
-   --------------
+   -------------
+   -- Publish --
+   -------------
 
-   procedure End_With (To : in out Client; Why : Bus_Records.Status) is
+   procedure Publish
+     (To      : in out Bus_Clients.Client;
+      N       : in out Networks.Network;
+      C       : Node_Index;
+      Result  : Buses.Outcome;
+      Receipt : Networks.Receipt;
+      Fault   : Bus_Faults.Fault)
+   is
+      Node : constant Fault_Confinement.Node := N.Bus.Nodes (C).Confinement;
    begin
-      Say (To, Bus_Records.Refusal (0, Why), To.Last);
-      if To.State /= Given_Up then
-         To.State := Ending;
+      Bus_Clients.Tell_Frame (To, C, Result, Receipt.Tag, Fault);
+      if not Bus_Clients.Knows (To, Node) then
+         To.Last := Bus_Clients.Time_Heard (To, C, Result, Fault);
+         if Is_Witness (N, C, Result) then
+            Bus_Clients.Tell_Error (To, Result.Error.Kind);
+         end if;
+         Bus_Clients.Tell_State (To, Node);
+         if Fault_Confinement.State (Node) = Bus_Off then
+            Bus_Clients.Refuse_All (To, N.Buffers (C));
+            Networks.Withdraw (N, C);
+         end if;
       end if;
-   end End_With;
+   end Publish;
+
+   -----------
+   -- Carry --
+   -----------
+
+   procedure Carry
+     (Clients : in out Client_List;
+      N       : in out Networks.Network;
+      Plan    : in out Fault_Plans.Plan;
+      M       : Networks.Moment)
+   is
+      Fault    : Bus_Faults.Fault;
+      Result   : Buses.Outcome;
+      Receipts : Networks.Receipt_List;
+   begin
+      Fault_Plans.Draw (Plan, M.Start, Fault);
+      Networks.Step (N, M, Fault, Result, Receipts);
+      if Result.Ended = Buses.Broken then
+         Fault_Plans.Note (Plan, Result.Struck);
+      end if;
+      for C in Node_Index loop
+         pragma Loop_Invariant (Networks.Is_Sound (N));
+         if Clients (C).State = Bus_Clients.Joined then
+            Publish (Clients (C), N, C, Result, Receipts (C), Fault);
+         end if;
+      end loop;
+   end Carry;
 
    -------------
    -- Connect --
@@ -114,14 +179,13 @@ is
    procedure Connect (S : in out Server; C : out Node_Index) is
    begin
       C := 1;
-      while S.Clients (C).State /= Unconnected loop
+      while S.Clients (C).State /= Bus_Clients.Unconnected loop
          pragma Loop_Invariant
-           (for all D in 1 .. C => S.Clients (D).State /= Unconnected);
+           (for all D in 1 .. C =>
+              S.Clients (D).State /= Bus_Clients.Unconnected);
          C := C + 1;
       end loop;
-      S.Clients (C).State := Greeting;
-      S.Clients (C).Last  := 0;
-      S.Clients (C).Count := 0;
+      Bus_Clients.Welcome (S.Clients (C));
    end Connect;
 
    ----------------
@@ -131,85 +195,8 @@ is
    procedure Disconnect (S : in out Server; C : Node_Index) is
    begin
       Line_Events.Leave (S.Net, C);
-      S.Clients (C).State := Unconnected;
-      S.Clients (C).Count := 0;
+      Bus_Clients.Forget (S.Clients (C));
    end Disconnect;
-
-   -----------
-   -- Greet --
-   -----------
-
-   procedure Greet
-     (S : in out Server; C : Node_Index; R : Bus_Records.Request;
-      Now : Nanoseconds)
-   is
-      To : Client renames S.Clients (C);
-   begin
-      case R.Kind is
-         when Bus_Records.Hello         =>
-            if C > Most_Nodes then
-               End_With (To, Bus_Records.No_Room);
-            elsif (R.Nominal /= 0 and then R.Nominal /= S.Speed.Nominal)
-              or else (R.Data /= 0 and then R.Data /= S.Speed.Data)
-            then
-               End_With (To, Bus_Records.Wrong_Bit_Rate);
-            else
-               Line_Events.Join (S.Net, C);
-               To.State    := Joined;
-               To.Takes_Fd := R.Takes_Fd and then S.Speed.Data > 0;
-               To.Told     := S.Net.Bus.Nodes (C).Confinement;
-               To.Last     := Now;
-               Say
-                 (To,
-                  Bus_Records.Welcome
-                    (S.Name (1 .. S.Length), S.Speed.Data > 0,
-                     S.Speed.Nominal, S.Speed.Data, S.Began, Now, C),
-                  Now);
-               Say (To, Bus_Records.State_Record (To.Told, Now), Now);
-            end if;
-         when Bus_Records.Wrong_Version =>
-            End_With (To, Bus_Records.Version_Is_Wrong);
-         when others                    =>
-            End_With (To, Bus_Records.Malformed);
-      end case;
-   end Greet;
-
-   ---------
-   -- Ask --
-   ---------
-
-   procedure Ask
-     (S : in out Server; C : Node_Index; R : Bus_Records.Request;
-      Now : Nanoseconds)
-   is
-      To     : Client renames S.Clients (C);
-      Status : Send_Status;
-   begin
-      for I in 1 .. Networks.Waiting (S.Net, C) loop
-         if S.Net.Buffers (C).Slots (I).Tag = R.Number then
-            End_With (To, Bus_Records.Malformed);
-            return;
-         end if;
-      end loop;
-      if R.Frame.Family = Bus_Frames.Flexible and then not To.Takes_Fd then
-         Say
-           (To, Bus_Records.Refusal (R.Number, Bus_Records.Not_Supported),
-            To.Last);
-      elsif not Takes_Part (S.Net.Bus.Nodes (C)) then
-         Say
-           (To, Bus_Records.Refusal (R.Number, Bus_Records.Is_Bus_Off),
-            To.Last);
-      else
-         Networks.Submit
-           (S.Net, C, (Frame => R.Frame, Tag => R.Number, Since => Now),
-            Status);
-         if Status = Rejected_Full then
-            Say
-              (To, Bus_Records.Refusal (R.Number, Bus_Records.No_Room),
-               To.Last);
-         end if;
-      end if;
-   end Ask;
 
    ----------
    -- Take --
@@ -221,105 +208,29 @@ is
       Bytes : Bus_Records.Image;
       Now   : Nanoseconds)
    is
-      R : constant Bus_Records.Request := Bus_Records.Read (Bytes);
+      R     : constant Bus_Records.Request := Bus_Records.Read (Bytes);
+      Joins : Boolean;
    begin
       case S.Clients (C).State is
-         when Greeting                        =>
-            Greet (S, C, R, Now);
-         when Joined                          =>
+         when Bus_Clients.Greeting =>
+            Bus_Clients.Greet (S.Clients (C), C, S.Profile, R, Now, Joins);
+            if Joins then
+               Line_Events.Join (S.Net, C);
+            end if;
+         when Bus_Clients.Joined   =>
             case R.Kind is
                when Bus_Records.Frame_Request    =>
-                  Ask (S, C, R, Now);
+                  Ask (S.Clients (C), S.Net, C, R, Now);
                when Bus_Records.Recovery_Request =>
-                  S.Net.Bus.Nodes (C).Way_Back := Recovers;
+                  Recover (S.Net, C);
                when others                       =>
-                  End_With (S.Clients (C), Bus_Records.Malformed);
+                  Bus_Clients.End_With
+                    (S.Clients (C), Bus_Records.Malformed);
             end case;
-         when Unconnected | Ending | Given_Up =>
+         when others               =>
             null;
       end case;
    end Take;
-
-   ----------------
-   -- Tell_State --
-   ----------------
-
-   procedure Tell_State
-     (S : in out Server; C : Node_Index; Now : Nanoseconds)
-   is
-      To : Client renames S.Clients (C);
-   begin
-      if not Is_Told (S, C) then
-         To.Told := S.Net.Bus.Nodes (C).Confinement;
-         Say (To, Bus_Records.State_Record (To.Told, Now), Now);
-         if Fault_Confinement.State (To.Told) = Bus_Off then
-            for I in 1 .. Networks.Waiting (S.Net, C) loop
-               Say
-                 (To,
-                  Bus_Records.Refusal
-                    (S.Net.Buffers (C).Slots (I).Tag,
-                     Bus_Records.Is_Bus_Off),
-                  Now);
-            end loop;
-            Networks.Withdraw (S.Net, C);
-         end if;
-      end if;
-   end Tell_State;
-
-   -------------
-   -- Publish --
-   -------------
-
-   procedure Publish
-     (S        : in out Server;
-      C        : Node_Index;
-      Result   : Buses.Outcome;
-      Receipt  : Networks.Receipt;
-      Fault    : Bus_Faults.Fault)
-   is
-      To    : Client renames S.Clients (C);
-      Late  : constant Nanoseconds :=
-        Bus_Faults.Lateness (Fault, Positive (C));
-      Ended : constant Nanoseconds :=
-        Later
-          (To.Last,
-           (if Result.Heard (C)
-              and then Result.Finish <= Nanoseconds'Last - Late
-            then Result.Finish + Late
-            else Result.Finish));
-      Frame : constant Bus_Frames.Bus_Frame :=
-        Bus_Faults.As_Heard (Fault, Positive (C), Result.Frame);
-   begin
-      if Result.Sent (C) then
-         To.Last := Ended;
-         if Receipt.Tag > 0 then
-            Say (To, Bus_Records.Confirmation (Receipt.Tag, Ended), Ended);
-         end if;
-      elsif Result.Heard (C)
-        and then
-          (Frame.Family /= Bus_Frames.Flexible or else To.Takes_Fd)
-      then
-         To.Last := Ended;
-         for I in 1 .. Bus_Faults.Copies_For (Fault, Positive (C)) loop
-            Say (To, Bus_Records.Frame_Record (Frame, Ended), Ended);
-         end loop;
-      end if;
-      if not Is_Told (S, C) then
-         To.Last := Ended;
-         if Result.Ended = Buses.Broken
-           and then S.Net.Bus.Nodes (C).Segment
-             = S.Net.Bus.Nodes (Result.Winner).Segment
-         then
-            Say
-              (To,
-               (if Result.Error.Kind = Error_Frames.Acknowledgement_Error
-                then Bus_Records.Error_Report (16#20#, 0, Ended)
-                else Bus_Records.Error_Report (16#08#, 16#1_0000#, Ended)),
-               Ended);
-         end if;
-         Tell_State (S, C, Ended);
-      end if;
-   end Publish;
 
    ---------
    -- Run --
@@ -327,39 +238,25 @@ is
 
    procedure Run (S : in out Server; Horizon : Nanoseconds; Busy : out Boolean)
    is
-      Moment   : Networks.Moment;
-      Fault    : Bus_Faults.Fault;
-      Result   : Buses.Outcome;
-      Receipts : Networks.Receipt_List;
+      Moment : Networks.Moment;
    begin
       Busy := True;
       for Count in 1 .. Steps loop
          pragma Loop_Invariant (Is_Sound (S));
          Moment := Networks.Next (S.Net);
-         if S.Next <= S.Count
+         if Is_Due (S.Agenda, Horizon)
            and then
              (if Moment.Known
-              then S.Events (S.Next).Start <= Moment.Start
+              then Is_Due (S.Agenda, Moment.Start)
               else not Is_Virtual (S))
-           and then S.Events (S.Next).Start <= Horizon
          then
-            Line_Events.Apply (S.Net, S.Events (S.Next));
-            S.Next := S.Next + 1;
+            Line_Events.Apply (S.Net, S.Agenda.Events (S.Agenda.Next));
+            S.Agenda.Next := S.Agenda.Next + 1;
          elsif Moment.Known
            and then Moment.Start <= Horizon
            and then Moment.Start <= Buses.Last_Start
          then
-            Fault_Plans.Draw (S.Plan, Moment.Start, Fault);
-            Networks.Step (S.Net, Moment, Fault, Result, Receipts);
-            if Result.Ended = Buses.Broken then
-               Fault_Plans.Note (S.Plan, Result.Struck);
-            end if;
-            for C in Node_Index loop
-               pragma Loop_Invariant (Is_Sound (S));
-               if S.Clients (C).State = Joined then
-                  Publish (S, C, Result, Receipts (C), Fault);
-               end if;
-            end loop;
+            Carry (S.Clients, S.Net, S.Plan, Moment);
          else
             Busy := False;
             return;
@@ -373,10 +270,9 @@ is
 
    procedure Close_All (S : in out Server) is
    begin
-      for C in Node_Index loop
-         pragma Loop_Invariant (Is_Sound (S));
-         if S.Clients (C).State in Greeting | Joined then
-            End_With (S.Clients (C), Bus_Records.Closing);
+      for Client of S.Clients loop
+         if Client.State in Bus_Clients.Greeting | Bus_Clients.Joined then
+            Bus_Clients.End_With (Client, Bus_Records.Closing);
          end if;
       end loop;
    end Close_All;
@@ -386,13 +282,10 @@ is
    ---------------
 
    procedure Hand_Over
-     (S : in out Server; C : Node_Index; Bytes : out Bus_Records.Image)
-   is
-      From : Client renames S.Clients (C);
+     (S : in out Server; C : Node_Index; Bytes : out Bus_Records.Image) is
    begin
-      Bytes := From.Queue (From.First).Bytes;
-      From.First := (if From.First = Depth then 1 else From.First + 1);
-      From.Count := From.Count - 1;
+      Bytes := Bus_Queues.Item (S.Clients (C).Queue, 1).Bytes;
+      Bus_Queues.Drop_Head (S.Clients (C).Queue);
    end Hand_Over;
 
    ----------------
@@ -405,8 +298,8 @@ is
         (if Moment.Known then Moment.Start else Nanoseconds'Last);
    begin
       return
-        (if S.Next in 1 .. S.Count and then S.Events (S.Next).Start < Begun
-         then S.Events (S.Next).Start
+        (if Is_Due (S.Agenda, Begun)
+         then S.Agenda.Events (S.Agenda.Next).Start
          else Begun);
    end Next_Start;
 

@@ -7,9 +7,9 @@
 --  Tasking      none: one owner for each Server
 --  Timing       Run: bounded by Steps frames
 
+with Ravenchart.Can.Bus_Clients;
 with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Bus_Records;
-with Ravenchart.Can.Fault_Confinement;
 with Ravenchart.Can.Fault_Plans;
 with Ravenchart.Can.Line_Events;
 with Ravenchart.Can.Networks;
@@ -18,80 +18,48 @@ package Ravenchart.Can.Bus_Servers
   with SPARK_Mode
 is
    use Bus_Nodes;
-
-   Most_Nodes : constant := 15;
-   --  The last client of all is only told that there is no room.
+   use type Bus_Clients.Phase;
 
    Steps : constant := 1_000;
    --  Frames in one call of Run.
 
-   type Phase is (Unconnected, Greeting, Joined, Ending, Given_Up);
-   --  Ending: to be closed when it has been told everything. Given_Up: to be
-   --  closed at once, for it does not read.
+   type Client_List is array (Node_Index) of Bus_Clients.Client;
 
-   Depth : constant := 4_096;
-   --  Records that may wait for one client.
+   Most_Events : constant := 64;
 
-   subtype Waiting_Count is Natural range 0 .. Depth;
+   subtype Event_Total is Natural range 0 .. Most_Events;
 
-   subtype Waiting_Index is Waiting_Count range 1 .. Depth;
-
-   type Outgoing is record
-      Bytes : Bus_Records.Image := (others => 0);
-      Due   : Nanoseconds := 0;
-   end record;
-   --  A record, and the bus time from which it may be handed over.
-
-   type Outgoing_List is array (Waiting_Index) of Outgoing;
-
-   type Client is record
-      State    : Phase := Unconnected;
-      Takes_Fd : Boolean := False;
-      Told     : Fault_Confinement.Node;
-      Last     : Nanoseconds := 0;
-      First    : Waiting_Index := 1;
-      Count    : Waiting_Count := 0;
-      Queue    : Outgoing_List;
-   end record;
-   --  Told: the counters that it knows. Last: the latest time that was said.
-   --  The queue is a ring.
-
-   type Client_List is array (Node_Index) of Client;
-
-   subtype Event_Total is Natural range 0 .. 64;
+   subtype Event_Place is Positive range 1 .. Most_Events + 1;
 
    type Event_List is
-     array (Event_Total range 1 .. 64) of Line_Events.Event;
+     array (Event_Place range 1 .. Most_Events) of Line_Events.Event;
 
-   type Rates is record
-      Nominal : Bus_Records.Bit_Rate range 1 .. 1_000_000 := 500_000;
-      Data    : Bus_Records.Bit_Rate range 0 .. 20_000_000 := 2_000_000;
+   type Agenda is record
+      Events : Event_List;
+      Count  : Event_Total := 0;
+      Next   : Event_Place := 1;
    end record;
-   --  In bit/s; without a data rate the bus carries no FD frames.
+   --  Events in the order of their times; Next is the first to come, behind
+   --  the last one when none is.
 
    type Server is record
       Clients : Client_List;
       Net     : Networks.Network;
       Plan    : Fault_Plans.Plan;
-      Events  : Event_List;
-      Count   : Event_Total := 0;
-      Next    : Event_Total := 1;
-      Name    : String (1 .. 16) := (others => '-');
-      Length  : Bus_Records.Name_Length := 1;
-      Speed   : Rates;
-      Began   : Nanoseconds := 0;
+      Agenda  : Bus_Servers.Agenda;
+      Profile : Bus_Clients.Profile;
    end record;
-   --  Events in the order of their times; Next is the first to come. Began:
-   --  when bus time 0 was, in ns since 1970; 0 in virtual time.
 
    function Is_Sound (S : Server) return Boolean
    is (Networks.Is_Sound (S.Net)
-       and then Bus_Records.Is_Name (S.Name (1 .. S.Length)))
+       and then Bus_Clients.Is_Sound (S.Profile))
    with Global => null;
    --  Is every buffer in order, and has the bus a name?
 
    function Is_Room (S : Server) return Boolean
-   is (for some C in Node_Index => S.Clients (C).State = Unconnected);
+   is (for some C in Node_Index =>
+         S.Clients (C).State = Bus_Clients.Unconnected)
+   with Global => null;
    --  May one more connect?
 
    procedure Connect (S : in out Server; C : out Node_Index)
@@ -99,7 +67,8 @@ is
      Global => null,
      Pre    => Is_Sound (S) and then Is_Room (S),
      Post   =>
-       Is_Sound (S) and then S.Clients (C).State = Greeting;
+       Is_Sound (S)
+       and then S.Clients (C).State = Bus_Clients.Greeting;
    --  Somebody has connected, and is client C from now on.
 
    procedure Disconnect (S : in out Server; C : Node_Index)
@@ -107,7 +76,8 @@ is
      Global => null,
      Pre    => Is_Sound (S),
      Post   =>
-       Is_Sound (S) and then S.Clients (C).State = Unconnected;
+       Is_Sound (S)
+       and then S.Clients (C).State = Bus_Clients.Unconnected;
    --  Its connection is gone: it has left the bus.
 
    procedure Take
@@ -122,7 +92,7 @@ is
    --  A record came from C.
 
    function Is_Virtual (S : Server) return Boolean
-   is (S.Began = 0)
+   is (S.Profile.Began = 0)
    with Global => null;
    --  Does time go on only when something happens on the bus?
 
@@ -147,29 +117,13 @@ is
      Post   => Is_Sound (S);
    --  The server ends: everyone is told.
 
-   function Has_Due
-     (S : Server; C : Node_Index; Now : Nanoseconds) return Boolean
-   is (S.Clients (C).Count > 0
-       and then
-         S.Clients (C).Queue (S.Clients (C).First).Due <= Now)
-   with Global => null;
-   --  Is there something to hand over to C?
-
    procedure Hand_Over
      (S : in out Server; C : Node_Index; Bytes : out Bus_Records.Image)
    with
      Global => null,
-     Pre    => Is_Sound (S) and then S.Clients (C).Count > 0,
+     Pre    => Is_Sound (S) and then S.Clients (C).Queue.Count > 0,
      Post   => Is_Sound (S);
    --  The next record for C.
-
-   function Next_Due (S : Server; C : Node_Index) return Nanoseconds
-   is (if S.Clients (C).Count > 0
-       then S.Clients (C).Queue (S.Clients (C).First).Due
-       else Nanoseconds'Last)
-   with Global => null;
-   --  When something is to be handed over to C; the last of all times if
-   --  never.
 
    function Next_Start (S : Server) return Nanoseconds
    with Global => null;
