@@ -50,10 +50,10 @@ procedure Can_Bus is
    procedure Greet is
       C : Node_Index;
    begin
-      while Bus_Servers.Is_Room (Bus)
+      while Bus_Servers.Is_Room (Bus.Clients)
         and then Bus_Sockets.Somebody_Knocks
       loop
-         Bus_Servers.Connect (Bus, C);
+         Bus_Servers.Connect (Bus.Clients, C);
          Bus_Sockets.Welcome (C);
       end loop;
    end Greet;
@@ -89,7 +89,7 @@ procedure Can_Bus is
          Writing := Bus_Sockets.Ready (C);
          exit when Writing /= Bus_Sockets.Done
            or else not Bus_Clients.Has_Due (Bus.Clients (C), Horizon);
-         Bus_Servers.Hand_Over (Bus, C, Bytes);
+         Bus_Clients.Hand_Over (Bus.Clients (C), Bytes);
          Bus_Sockets.Send (C, Bytes);
       end loop;
       if Writing = Bus_Sockets.Lost
@@ -154,7 +154,7 @@ begin
       end if;
    end loop;
 
-   Bus_Servers.Close_All (Bus);
+   Bus_Servers.Close_All (Bus.Clients);
    for C in Node_Index loop
       if Bus.Clients (C).State /= Bus_Clients.Unconnected then
          Hand_Over (C, Nanoseconds'Last, Next);

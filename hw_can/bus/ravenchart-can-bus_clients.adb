@@ -204,4 +204,15 @@ is
       Say (To, Bus_Records.State_Record (Node, To.Last), To.Last);
    end Tell_State;
 
+   ---------------
+   -- Hand_Over --
+   ---------------
+
+   procedure Hand_Over
+     (To : in out Client; Bytes : out Bus_Records.Image) is
+   begin
+      Bytes := Bus_Queues.Item (To.Queue, 1).Bytes;
+      Bus_Queues.Drop_Head (To.Queue);
+   end Hand_Over;
+
 end Ravenchart.Can.Bus_Clients;

@@ -162,6 +162,11 @@ is
    with Global => null;
    --  Is there something to hand over?
 
+   procedure Hand_Over
+     (To : in out Client; Bytes : out Bus_Records.Image)
+   with Global => null, Pre => To.Queue.Count > 0;
+   --  The next record.
+
    function Next_Due (To : Client) return Nanoseconds
    is (if To.Queue.Count > 0
        then Bus_Queues.Item (To.Queue, 1).Due

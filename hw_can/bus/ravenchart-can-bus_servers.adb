@@ -1,7 +1,6 @@
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
-with Ravenchart.Can.Bus_Queues;
 with Ravenchart.Can.Buses;
 with Ravenchart.Can.Fault_Confinement;
 with Ravenchart.Can.Transmit_Buffers;
@@ -176,16 +175,16 @@ is
    -- Connect --
    -------------
 
-   procedure Connect (S : in out Server; C : out Node_Index) is
+   procedure Connect (Clients : in out Client_List; C : out Node_Index) is
    begin
       C := 1;
-      while S.Clients (C).State /= Bus_Clients.Unconnected loop
+      while Clients (C).State /= Bus_Clients.Unconnected loop
          pragma Loop_Invariant
            (for all D in 1 .. C =>
-              S.Clients (D).State /= Bus_Clients.Unconnected);
+              Clients (D).State /= Bus_Clients.Unconnected);
          C := C + 1;
       end loop;
-      Bus_Clients.Welcome (S.Clients (C));
+      Bus_Clients.Welcome (Clients (C));
    end Connect;
 
    ----------------
@@ -268,25 +267,14 @@ is
    -- Close_All --
    ---------------
 
-   procedure Close_All (S : in out Server) is
+   procedure Close_All (Clients : in out Client_List) is
    begin
-      for Client of S.Clients loop
-         if Client.State in Bus_Clients.Greeting | Bus_Clients.Joined then
-            Bus_Clients.End_With (Client, Bus_Records.Closing);
+      for To of Clients loop
+         if To.State in Bus_Clients.Greeting | Bus_Clients.Joined then
+            Bus_Clients.End_With (To, Bus_Records.Closing);
          end if;
       end loop;
    end Close_All;
-
-   ---------------
-   -- Hand_Over --
-   ---------------
-
-   procedure Hand_Over
-     (S : in out Server; C : Node_Index; Bytes : out Bus_Records.Image) is
-   begin
-      Bytes := Bus_Queues.Item (S.Clients (C).Queue, 1).Bytes;
-      Bus_Queues.Drop_Head (S.Clients (C).Queue);
-   end Hand_Over;
 
    ----------------
    -- Next_Start --

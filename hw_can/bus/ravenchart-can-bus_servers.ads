@@ -56,19 +56,17 @@ is
    with Global => null;
    --  Is every buffer in order, and has the bus a name?
 
-   function Is_Room (S : Server) return Boolean
+   function Is_Room (Clients : Client_List) return Boolean
    is (for some C in Node_Index =>
-         S.Clients (C).State = Bus_Clients.Unconnected)
+         Clients (C).State = Bus_Clients.Unconnected)
    with Global => null;
    --  May one more connect?
 
-   procedure Connect (S : in out Server; C : out Node_Index)
+   procedure Connect (Clients : in out Client_List; C : out Node_Index)
    with
      Global => null,
-     Pre    => Is_Sound (S) and then Is_Room (S),
-     Post   =>
-       Is_Sound (S)
-       and then S.Clients (C).State = Bus_Clients.Greeting;
+     Pre    => Is_Room (Clients),
+     Post   => Clients (C).State = Bus_Clients.Greeting;
    --  Somebody has connected, and is client C from now on.
 
    procedure Disconnect (S : in out Server; C : Node_Index)
@@ -110,20 +108,9 @@ is
    --  Everything that begins on the bus until then; Busy when that is not
    --  all yet.
 
-   procedure Close_All (S : in out Server)
-   with
-     Global => null,
-     Pre    => Is_Sound (S),
-     Post   => Is_Sound (S);
+   procedure Close_All (Clients : in out Client_List)
+   with Global => null;
    --  The server ends: everyone is told.
-
-   procedure Hand_Over
-     (S : in out Server; C : Node_Index; Bytes : out Bus_Records.Image)
-   with
-     Global => null,
-     Pre    => Is_Sound (S) and then S.Clients (C).Queue.Count > 0,
-     Post   => Is_Sound (S);
-   --  The next record for C.
 
    function Next_Start (S : Server) return Nanoseconds
    with Global => null;
