@@ -549,6 +549,17 @@ class System:
     def _instances(self) -> dict[str, Instance]:
         return {i.name.lower(): i for i in self.instances}
 
+    def instances_of(self, component: str) -> frozenset[str]:
+        """The names of the instances of a component."""
+        return self._by_component.get(component, frozenset())
+
+    @cached_property
+    def _by_component(self) -> dict[str, frozenset[str]]:
+        found: dict[str, list[str]] = {}
+        for instance in self.instances:
+            found.setdefault(instance.component.name, []).append(instance.name)
+        return {component: frozenset(names) for component, names in found.items()}
+
     def node(self, name: str) -> Node:
         """The node called ``name``; KeyError where there is none."""
         return named(self.nodes, name)

@@ -83,7 +83,7 @@ def activities_send_once(component: Component, resolved: Resolved) -> Iterator[D
 def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
     """A warning for each event that nothing raises or no region waits for."""
     system = resolved.system
-    instances = {i.name for i in system.instances if i.component.name == component.name}
+    instances = system.instances_of(component.name)
     whole = {"instances", "processors"} <= resolved.sound_sections
     if component.name in resolved.damaged or not whole or not instances:
         return

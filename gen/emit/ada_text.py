@@ -7,6 +7,7 @@ expressions break one item a line (`layout` decides).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from .ada import (
     NULL,
@@ -102,8 +103,9 @@ def _choices(text: str) -> Doc:
     return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
 
 
+@lru_cache(maxsize=8192)
 def expression(expr: Expr) -> Doc:
-    """The layout of one expression."""
+    """The layout of one expression; a program has few that it does not repeat."""
     match expr:
         case Ref(text):
             return _choices(text) if " | " in text else text

@@ -77,24 +77,26 @@ def laid_out(doc: Doc, width: int) -> str:
 
     def put(doc: Parts, column: int, indent: int, broken: bool) -> int:
         """Add a document that begins in ``column``; the column behind it."""
-        if doc.way is _UPRIGHT:
-            broken = True
-        elif doc.way is _ONE_LINE_IF_IT_FITS:
-            broken = broken and len(doc.flat) > width - column
-        if not broken and not doc.has_upright:
-            out.append(doc.flat)
-            return column + len(doc.flat)
         indent += doc.step
         for part in doc.parts:
             if isinstance(part, str):
                 out.append(part)
                 column += len(part)
-            elif part is SOFT and broken:
+                continue
+            on_one_line = not broken
+            if part.way is not _AS_AROUND:
+                on_one_line = part.way is not _UPRIGHT and (
+                    on_one_line or len(part.flat) <= width - column
+                )
+            if on_one_line and not part.has_upright:
+                out.append(part.flat)
+                column += len(part.flat)
+            elif part is SOFT:
                 out.append("\n" + " " * indent)
                 column = indent
             else:
-                column = put(part, column, indent, broken)
+                column = put(part, column, indent, not on_one_line)
         return column
 
-    put(Parts((doc,), 0, _ONE_LINE_IF_IT_FITS), 0, 0, True)
+    put(Parts((group(doc),)), 0, 0, True)
     return "".join(out)

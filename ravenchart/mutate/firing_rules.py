@@ -20,7 +20,7 @@ def _rows(text: str) -> Iterator[tuple[str, list[Span]]]:
     for one in subprograms(text):
         if one.is_expression:
             continue
-        if one.name == "Fire" or one.name.startswith("Leave_"):
+        if one.name == "Fire" or one.name.startswith(("Fire_From_", "Leave_")):
             yield from _nested(text, one.name, one.inner)
         elif one.name.startswith(("Enter_", "Exit_")):
             yield one.name, _working(text, one.inner)
