@@ -1330,59 +1330,61 @@ is
         Pre =>
           Self.Started
           and then In_Source (Chosen, Self.Place)
-          and then (Active_Motor = Chart.Innermost_Motor (Self.Place)
-             and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-             and then Active_Top = Chart.Innermost_Top (Self.Place)),
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
         Post =>
-          (Self.Started
-           and then Self.Place
-             = Target (Chosen, Self.Place'Old, Self.Past'Old)
-           and then Self.Timers (1)
-             = Timer_After
-                 (1,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (1))
-           and then Self.Timers (2)
-             = Timer_After
-                 (2,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (2))
-           and then Self.Timers (3)
-             = Timer_After
-                 (3,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (3))
-           and then (if Self.Started'Old
-                 then Self.Past
-                    = Remembered
-                        (Domain_Of (Chosen),
-                         Self.Place'Old,
-                         Self.Past'Old)
-              else Self.Past = Self.Past'Old)
-           and then (if Chosen
-                 in Defer_New_Portion_In_Loading
-                   | Defer_New_Portion_In_Filling
-                   | Defer_New_Portion_In_Self_Test
-                   | Defer_New_Volume_In_Self_Test
-                   | Defer_New_Portion_In_Alarm
-                 then Deferrals.Is_Appended
-                      (Self.Deferred'Old,
-                       Item,
-                       Self.Deferred)
-                    and then Self.Lost
-                      = (Self.Lost'Old
-                         or (Deferrals.Count (Self.Deferred'Old) = 4))
-              else Self.Deferred = Self.Deferred'Old
-                 and then Self.Lost = Self.Lost'Old))
-          and then (Active_Motor = Chart.Innermost_Motor (Self.Place)
-             and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-             and then Active_Top = Chart.Innermost_Top (Self.Place))
+          Self.Started
+          and then Self.Place
+            = Target (Chosen, Self.Place'Old, Self.Past'Old)
+          and then Self.Timers (1)
+            = Timer_After
+                (1,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (1))
+          and then Self.Timers (2)
+            = Timer_After
+                (2,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (2))
+          and then Self.Timers (3)
+            = Timer_After
+                (3,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (3))
+          and then (if Self.Started'Old
+                then Self.Past
+                   = Remembered
+                       (Domain_Of (Chosen),
+                        Self.Place'Old,
+                        Self.Past'Old)
+             else Self.Past = Self.Past'Old)
+          and then (if Chosen
+                in Defer_New_Portion_In_Loading
+                  | Defer_New_Portion_In_Filling
+                  | Defer_New_Portion_In_Self_Test
+                  | Defer_New_Volume_In_Self_Test
+                  | Defer_New_Portion_In_Alarm
+                then Deferrals.Is_Appended
+                     (Self.Deferred'Old,
+                      Item,
+                      Self.Deferred)
+                   and then Self.Lost
+                     = (Self.Lost'Old
+                        or (Deferrals.Count (Self.Deferred'Old) = 4))
+             else Self.Deferred = Self.Deferred'Old
+                and then Self.Lost = Self.Lost'Old)
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place)
       is
       begin
          case Chosen is
@@ -1569,59 +1571,61 @@ is
         Pre =>
           Self.Started
           and then In_Source (Chosen, Self.Place)
-          and then (Active_Motor = Chart.Innermost_Motor (Self.Place)
-             and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-             and then Active_Top = Chart.Innermost_Top (Self.Place)),
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
         Post =>
-          (Self.Started
-           and then Self.Place
-             = Target (Chosen, Self.Place'Old, Self.Past'Old)
-           and then Self.Timers (1)
-             = Timer_After
-                 (1,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (1))
-           and then Self.Timers (2)
-             = Timer_After
-                 (2,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (2))
-           and then Self.Timers (3)
-             = Timer_After
-                 (3,
-                  Domain_Of (Chosen),
-                  Self.Place'Old,
-                  Self.Place,
-                  Self.Timers'Old (3))
-           and then (if Self.Started'Old
-                 then Self.Past
-                    = Remembered
-                        (Domain_Of (Chosen),
-                         Self.Place'Old,
-                         Self.Past'Old)
-              else Self.Past = Self.Past'Old)
-           and then (if Chosen
-                 in Defer_New_Portion_In_Loading
-                   | Defer_New_Portion_In_Filling
-                   | Defer_New_Portion_In_Self_Test
-                   | Defer_New_Volume_In_Self_Test
-                   | Defer_New_Portion_In_Alarm
-                 then Deferrals.Is_Appended
-                      (Self.Deferred'Old,
-                       Item,
-                       Self.Deferred)
-                    and then Self.Lost
-                      = (Self.Lost'Old
-                         or (Deferrals.Count (Self.Deferred'Old) = 4))
-              else Self.Deferred = Self.Deferred'Old
-                 and then Self.Lost = Self.Lost'Old))
-          and then (Active_Motor = Chart.Innermost_Motor (Self.Place)
-             and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-             and then Active_Top = Chart.Innermost_Top (Self.Place))
+          Self.Started
+          and then Self.Place
+            = Target (Chosen, Self.Place'Old, Self.Past'Old)
+          and then Self.Timers (1)
+            = Timer_After
+                (1,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (1))
+          and then Self.Timers (2)
+            = Timer_After
+                (2,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (2))
+          and then Self.Timers (3)
+            = Timer_After
+                (3,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (3))
+          and then (if Self.Started'Old
+                then Self.Past
+                   = Remembered
+                       (Domain_Of (Chosen),
+                        Self.Place'Old,
+                        Self.Past'Old)
+             else Self.Past = Self.Past'Old)
+          and then (if Chosen
+                in Defer_New_Portion_In_Loading
+                  | Defer_New_Portion_In_Filling
+                  | Defer_New_Portion_In_Self_Test
+                  | Defer_New_Volume_In_Self_Test
+                  | Defer_New_Portion_In_Alarm
+                then Deferrals.Is_Appended
+                     (Self.Deferred'Old,
+                      Item,
+                      Self.Deferred)
+                   and then Self.Lost
+                     = (Self.Lost'Old
+                        or (Deferrals.Count (Self.Deferred'Old) = 4))
+             else Self.Deferred = Self.Deferred'Old
+                and then Self.Lost = Self.Lost'Old)
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place)
       is
       begin
          case Chosen is

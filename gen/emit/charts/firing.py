@@ -105,7 +105,7 @@ class Moves:
         done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"))
         agreed = self.nodes.agreed(self.held)
         ghost = (Aspect("Ghost"),)
-        past: tuple[Decl, ...] = ()
+        past: tuple[Object, ...] = ()
         if self.shape.memories:
             past = (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
         procedures = self.moving.procedures()
@@ -113,9 +113,10 @@ class Moves:
             kept = Ref("Self.Deferred")
             past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
         if len(rows) > MANY:
+            before = [equal(o.value, Ref(o.name)) for o in past if o.value is not None]
             claims = (
-                Aspect("Pre", both(Ref("Self.Started"), sources, agreed)),
-                Aspect("Post", both(done, agreed)),
+                Aspect("Pre", both(*flat([Ref("Self.Started"), sources, *before, agreed]))),
+                Aspect("Post", both(*flat([done, agreed]))),
             )
             batches = [rows[at : at + MANY] for at in range(0, len(rows), MANY)]
             procedures += tuple(d for batch in batches for d in _procedure(batch, claims))
