@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from .calls import callers, readers_through
 from .model import (
     Activity,
     Bus,
@@ -219,6 +220,8 @@ class _Sharing:
                 yield self.made(element, [handler, *readers])
         for data in component.data:
             users = [self.runs(instance.name, name) for name in component.users(data.name)]
+            through = readers_through(self.system, instance.name, data.name)
+            users += [self.system.processor_of(row).name for row in through]
             written = any(data.name in item.writes for item in runnables)
             if written and len(users) > 1:  # otherwise it is a constant, or its writer's own
                 yield self.made(f"{instance.name}.{data.name}", users)
@@ -237,6 +240,15 @@ class _Sharing:
                 users = [own, self.runs(instance.name, activity.name)]
                 yield self.made(f"{instance.name}.{activity.name}.visit", users)
                 yield self.made(f"{instance.name}.{activity.name}.done", users)
+
+    def devices(self) -> Iterable[SharedObject]:
+        """The devices that several tasks call: inside one, a driver works its longest."""
+        for device in self.system.devices:
+            users = [self.system.processor_of(row).name for row in callers(self.system, device)]
+            if device.type is not None and len(set(users)) > 1:
+                made = self.made(device.name, users)
+                longest = max(one.wcet for one in device.provides)
+                yield replace(made, section=max(made.section, longest))
 
     def writers(self, instance: str, port: str) -> Iterable[str]:
         """The processors that put values into an input port's mailbox."""
@@ -299,6 +311,7 @@ def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...
     objects: list[SharedObject] = []
     for instance in system.instances:
         objects.extend(sharing.of_instance(instance))
+    objects.extend(sharing.devices())
     for bus in system.buses:
         senders = [
             system.processor_of(row).name

@@ -32,7 +32,8 @@ from .ada import (
 )
 from .ada import Instance as Instantiation
 from .charts.places import Places
-from .components import leaf_type
+from .components import activity_package, leaf_type
+from .device_calls import call_body, providers
 from .events import event_value, name_of, null_event
 from .instance_rows import Rows
 from .instance_site import Site
@@ -81,10 +82,9 @@ class Glue(Site):
         if self.noted:
             names.add("Ravenchart.Steps")
         names |= {f"{root}.{self.component}.{ada_case(r.name)}" for r in component.regions}
-        if any(a.flow is None for a in component.activities):
-            names.add(f"{root}.{self.component}.Activities")
-        if any(a.flow is not None for a in component.activities):
-            names.add(f"{root}.{self.component}.Flows")
+        for activity in component.activities:
+            names.add(f"{root}.{self.component}.{activity_package(component, activity)}")
+        names |= {f"{root}.{unit}" for unit in providers(self.system, self.instance)}
         for port in component.outputs():
             ends, messages = self._targets(port.name)
             names |= {
@@ -134,7 +134,11 @@ class Glue(Site):
             items.append(self._offer_body())
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
-        items += [self._send_body(p) for p in component.outputs() if p.name in used]
+        items += [
+            self._send_body(p)
+            for p in component.outputs()
+            if p.name in used and not self._is_idle(p)
+        ]
         rows = Rows(self.system, self.instance, self.noted)
         for slot in self._slots():
             match slot.work:
@@ -197,7 +201,7 @@ class Glue(Site):
             initial = value(self.system, data.type, data.initial)
             of_type = type_name(self.system, data.type)
             writer = self._writer(data)
-            if writer is None and not self.instance.component.users(data.name):
+            if data.is_command or (writer is None and not self.instance.component.users(data.name)):
                 continue
             if writer is None:
                 items.append(Object(f"{name}_Own", of_type, initial, constant=True))
@@ -322,6 +326,8 @@ class Glue(Site):
         ]
 
     def _send_body(self, port: Port) -> Subprogram:
+        if port.is_command:
+            return call_body(self.system, self.instance, port)
         ends, messages = self._targets(port.name)
         body: list[Stmt] = [*self._note("Sent", port.name, "port")]
         for end in ends:
