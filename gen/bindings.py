@@ -189,14 +189,17 @@ def _in_use(component: Component, instances: Iterable[Instance]) -> Component:
 def _costs(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
     """What the devices that each row calls add to its budget.
 
-    A region reads once in an execution, and calls once in each of its steps.
+    A region reads once in an execution, and calls once in each of its steps; what serves
+    requests does both for each.
     """
     found: dict[str, Ns] = {}
     for row in component.runnables():
-        steps = row.steps_per_execution if isinstance(row, Region) else 1
+        served = component.served_by(row.name)
+        times = served.depth if served is not None else 1
+        steps = row.steps_per_execution if isinstance(row, Region) else times
         found[row.name] = Ns(
             sum(
-                wcet_of(b.provider, b.need.name) * (1 if b.need.is_read else steps)
+                wcet_of(b.provider, b.need.name) * (times if b.need.is_read else steps)
                 for b in bindings
                 if b.need.name in (row.reads if b.need.is_read else row.sends)
             )

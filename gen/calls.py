@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .commands import Binding, Device, DeviceType, DriverCommand, Server
-from .model import System
+from .commands import Binding, Device, DeviceType, DriverCommand, Provided, Server
+from .model import Component, System
 
 
 def rows_of(system: System, binding: Binding) -> tuple[str, ...]:
@@ -66,3 +66,27 @@ def readers_through(system: System, instance: str, item: str) -> tuple[str, ...]
         elif provider is None and stand_in and binding.instance == instance:
             found += rows_of(system, binding) if stand_in.item == item else ()
     return tuple(found)
+
+
+def callers_of(system: System, instance: str, provided: Provided) -> tuple[Binding, ...]:
+    """The bindings whose calls are requests of a provided interface."""
+    return tuple(
+        b
+        for b in system.bindings
+        if isinstance(b.provider, Server)
+        and (b.provider.instance, b.provider.interface) == (instance, provided)
+        and published_by(b) is None
+    )
+
+
+def repliers(system: System, binding: Binding) -> tuple[str, ...]:
+    """The rows that deliver the replies to a call: whoever makes it, or who serves it."""
+    if isinstance(binding.provider, Server):
+        return (f"{binding.provider.instance}.{binding.provider.interface.server}",)
+    return rows_of(system, binding) if binding.provider is not None else ()
+
+
+def replies_read(component: Component) -> tuple[str, ...]:
+    """The items of last replies that some row looks at."""
+    items = (need.reply_item for need in component.needs)
+    return tuple(item for item in items if item is not None and component.users(item))

@@ -10,7 +10,7 @@ from .chart_structure import structure_errors
 from .charts import region_of
 from .commands import Command, Need
 from .flows import Targets, Use, called, flow_of
-from .interfaces import needs_of, provided_of, stand_ins_agree
+from .interfaces import needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .model import Activity, Component, Direction, StateRef
 from .names import Findings, Scope, meant
@@ -123,6 +123,7 @@ def parts_of(
     )
     if findings.count() == before:
         stand_ins_agree(form, component, findings)
+        servers_serve_once(component, findings)
     if not (component.regions or component.activities or form.damaged or component.port_region):
         message = f"the component {name} has nothing to run: no region, no activity, no input"
         findings.error("RV-0513", form.origin, message)

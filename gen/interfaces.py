@@ -356,3 +356,24 @@ def provided_of(
         tuple(one for one in sound if isinstance(one, Request)),
         tuple(one for one in sound if isinstance(one, Published)),
     )
+
+
+def servers_serve_once(component: Component, findings: Findings) -> None:
+    """An activity executes the requests of one interface."""
+    first: dict[str, Provided] = {}
+    for provided in component.provides:
+        if provided.server is None:
+            continue
+        server = next(a for a in component.activities if a.name == provided.server)
+        for name in server.sends:
+            if not component.port(name).is_command:
+                message = f"{server.name} serves {provided.name} and sends on {name}"
+                notes = [(server.origin, f"{server.name} is declared here")]
+                hint = "a port has one value in an execution: let another activity send it"
+                findings.error("RV-1209", provided.origin, message, notes=notes, hint=hint)
+        other = first.setdefault(provided.server, provided)
+        if other is not provided:
+            message = f"{provided.server} serves {other.name} and {provided.name}"
+            notes = [(other.origin, f"{other.name} is here")]
+            hint = "give each interface an activity of its own"
+            findings.error("RV-1209", provided.origin, message, notes=notes, hint=hint)

@@ -196,7 +196,8 @@ class Component:
         if isinstance(row, Region) or row.while_in is not None:
             return False
         if row.flow is None:
-            return True
+            called = any(port.name == name and port.is_command for port in self.ports)
+            return not called and self.served_by(row.name) is None
         sure = always(row.flow)
         if name in sure:
             return True
@@ -213,6 +214,10 @@ class Component:
         """The do activities that complete a state of a region, each with that state."""
         all_of_them = ((a, a.completes) for a in self.activities)
         return tuple((a, at.state) for a, at in all_of_them if at and at.region == region)
+
+    def served_by(self, activity: str) -> Provided | None:
+        """The provided interface whose requests an activity executes."""
+        return next((one for one in self.provides if one.server == activity), None)
 
     def from_outside(self) -> frozenset[str]:
         """The data that may come to be anything in their types: by a user's body, or a command."""

@@ -27,6 +27,7 @@ from .ada import (
     number,
 )
 from .charts.places import Places
+from .device_calls import request_types, serving_params
 from .events import event_types, null_event
 from .naming import ada_case, component_package, default_value, type_name
 from .terms import Scope, effective, emit_flow, flow_names, flow_operators
@@ -76,6 +77,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
                 ),
             )
         )
+    items += request_types(system, component)
     for region in component.regions:
         items.append(Comment(f"[{component.name}.{region.name}.states]"))
         items.append(Places(region).package_of_states())
@@ -134,7 +136,8 @@ def has_flag(activity: Activity, port: Port) -> bool:
 
 def activity_params(system: System, component: Component, activity: Activity) -> tuple[Param, ...]:
     """The profile of an activity: what it reads, what it writes, what it raises."""
-    params = [
+    params = list(serving_params(system, component, activity.name))
+    params += [
         Param(ada_case(name), "in", reading_type(system, component, name))
         for name in activity.reads
         if name not in activity.writes

@@ -41,6 +41,7 @@ from .components import (
     reading_type,
     send_flag,
 )
+from .device_calls import asked, asked_args, served
 from .events import null_event
 from .instance_site import Site
 from .naming import (
@@ -297,6 +298,10 @@ class Rows(Site):
         args: list[Arg] = []
         after: list[Stmt] = []
         reads = [n for n in activity.reads if n not in activity.writes]
+        provided = component.served_by(activity.name)
+        if provided is not None:
+            declarations += asked(self.system, self.instance, provided)
+            args += asked_args(provided)
         guard: Expr | None = None
         if activity.while_in is not None:
             region = component.region(activity.while_in.region)
@@ -304,17 +309,7 @@ class Rows(Site):
         if activity.completes is not None:
             declarations.append(Object("Visit", "Ravenchart.Event_Count"))
             before.append(do(f"{ada_case(activity.name)}_Visit_Board.Read", Ref("Visit")))
-        for name in reads:
-            read_as = reading_type(self.system, component, name)
-            constant = self._parameter(name)
-            if constant is not None and read_as == "Boolean":
-                #  the compiler warns of a variable that it knows to be true
-                args.append(Arg(ada_case(name), constant))
-                continue
-            local = f"{ada_case(name)}_Value"
-            declarations.append(Object(local, read_as))
-            before.append(self._copy_in(name, local))
-            args.append(Arg(ada_case(name), Ref(local)))
+        self._take_in(reads, declarations, before, args)
         for name in activity.writes:
             own = f"{ada_case(name)}_Own"
             args.append(Arg(ada_case(name), Ref(own)))
@@ -342,6 +337,9 @@ class Rows(Site):
         expected = [p.name for p in activity_params(self.system, component, activity)]
         assert expected == [a.name for a in args], (expected, args)
         body: tuple[Stmt, ...] = (*before, work, *after)
+        if provided is not None:
+            loop = served(self.system, self.instance, provided, body)
+            body = (Loop(f"for Unused in 1 .. {provided.depth}", loop),)
         if guard is not None:
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = Do(f"{region_name}_Board.Read", arguments(Ref(f"{region_name}_Now")))
@@ -349,6 +347,23 @@ class Rows(Site):
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )
+
+    def _take_in(
+        self, reads: list[str], declarations: list[Decl], before: list[Stmt], args: list[Arg]
+    ) -> None:
+        """Copies of what an activity reads."""
+        component = self.instance.component
+        for name in reads:
+            read_as = reading_type(self.system, component, name)
+            constant = self._parameter(name)
+            if constant is not None and read_as == "Boolean":
+                #  the compiler warns of a variable that it knows to be true
+                args.append(Arg(ada_case(name), constant))
+                continue
+            local = f"{ada_case(name)}_Value"
+            declarations.append(Object(local, read_as))
+            before.append(self._copy_in(name, local))
+            args.append(Arg(ada_case(name), Ref(local)))
 
     def _send_from(
         self, activity: Activity, port: Port, declarations: list[Decl], args: list[Arg]

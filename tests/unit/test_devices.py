@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from analysis.timing import analyse
 from behaviour.rules import findings
 from gen.claims import Claims
 from gen.commands import Device
@@ -177,3 +178,80 @@ def test_a_simulation_is_refused(tmp_path: Path) -> None:
     checked = steps.check(tmp_path / "model.yaml")
     with pytest.raises(steps.Refused, match="no devices and no commands yet"):
         simulate.simulated(checked, tmp_path / "events", interpreter=True, as_json=False)
+
+
+REQUESTS = (ROOT / "tests" / "feature" / "requests" / "model.yaml").read_text()
+
+
+def _requests(*changes: tuple[str, str]) -> System:
+    text = REQUESTS
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    made = _loaded(text)
+    assert made.system is not None, [item.message for item in made.diagnostics]
+    return made.system
+
+
+def test_a_queue_of_requests_has_the_ceiling_of_callers_and_server() -> None:
+    queue = _requests().object("mover_1.Motion.queue")
+    assert set(queue.users) == {"moving", "planning", "pushing"}
+    assert queue.ceiling == max(p.priority for p in _requests().processors)
+
+
+def test_a_reply_that_is_looked_at_has_a_board_and_others_have_none() -> None:
+    system = _requests()
+    assert set(system.object("boss_1.Get_Limit_Reply").users) == {"moving", "planning"}
+    assert not system.has_object("boss_1.Home_Reply")
+    text = _text(system)
+    assert "Take_Get_Limit" in text and "Get_Limit_Reply_Board.Write (Reply);" in text
+
+
+def test_who_serves_requests_calls_devices_for_each_of_them() -> None:
+    called = _requests(
+        ("  Mover:\n", "  Mover:\n    requires: {Stop: {commands: [Reset]}}\n"),
+        ("        writes: [Goal]\n", "        writes: [Goal]\n        calls: [Reset]\n"),
+        ("bindings:\n", "bindings:\n  - {from: mover_1.Stop, to: Brake_1}\n"),
+    )
+    assert _budgets(called)["mover_1.Serve"] == 100_000 + 2 * 4_000
+    assert "moving" in called.object("Brake_1").users
+
+
+def test_a_chain_goes_through_a_queue_of_requests() -> None:
+    system = _requests(
+        ("        while: Mood.Calm\n", ""),
+        (
+            "shutdown:",
+            "chains:\n  push: {path: [hurry_1.Push, mover_1.Serve], reaction: 60 ms}\nshutdown:",
+        ),
+    )
+    assert system.chains[0].way == ("hurry_1.Push", "hurry_1.Set_Goal", "mover_1.Serve")
+    reaction = analyse(system).limited[0][1].reaction
+    # a push waits for the next execution of its server: longer than that takes, and no longer
+    # than a period of each and the time that both need
+    assert reaction is not None and 20_000_000 <= reaction <= 26_000_000
+
+
+def test_a_published_item_leads_on_to_who_reads_the_command() -> None:
+    chains = "chains:\n  seen: {path: [mover_1.Move, boss_1.Plan], age: 1 s}\nshutdown:"
+    system = _requests(("shutdown:", chains))
+    assert system.chains[0].way == ("mover_1.Move", "mover_1.Now", "boss_1.Plan")
+
+
+def test_caller_is_the_same_whether_a_command_is_queued_or_direct() -> None:
+    direct = _requests(
+        ("provides: {Reset: 4 us}", "provides: {Reset: 4 us, Set_Goal: 3 us}"),
+        (
+            "  - {from: hurry_1.Motion, to: mover_1.Motion}",
+            "  - {from: hurry_1.Motion, to: Brake_1}",
+        ),
+    )
+    files = [
+        {made.unit.file_name: made.text for made in program(system, Claims())}
+        for system in (_requests(), direct)
+    ]
+    for unit in ("hurry.ads", "hurry-flows.ads", "hurry-flows.adb", "hurry-mood.adb"):
+        name = f"requests_feature-{unit}"
+        assert files[0][name] == files[1][name]
+    spec = "procedure Call_Set_Goal (Item : Requests_Feature.Place) is"
+    assert all(spec in one["requests_feature-hurry_1.adb"] for one in files)
