@@ -22,7 +22,7 @@ SENSED = {
     "position": ("[Boards]", {"Differ", "Presume"}),
     "velocity and force": ("[Amplifiers, Speeds, Wrist]", {"Follow"}),
     "velocity": ("[Amplifiers, Speeds]", {"Follow", "Presume"}),
-    "force": ("[Amplifiers, Wrist]", {"Follow", "Differ", "Presume"}),
+    "force": ("[Amplifiers, Wrist]", {"Follow", "Differ"}),
     "position by the tracker": ("[Amplifiers, Camera]", {"Differ", "Presume"}),
 }
 """What the facade of the robot is then, and which stand-ins are needed."""
