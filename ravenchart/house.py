@@ -79,7 +79,7 @@ def _example(name: str) -> Target:
         steps.project_of(checked),
         steps.scenario(checked, "checks", driver),
         steps.proof_folders(checked, driver)[:1],
-        (checked.folder / "generated", checked.folder / "user"),
+        (checked.folder,),
     )
 
 
