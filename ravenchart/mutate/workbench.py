@@ -19,10 +19,13 @@ from ..steps import Refused
 from ..toolchain import ROOT, ToolFailed, ToolMissing, have
 from .mutants import Files, Mutant
 from .observing import Observer, Simulated
-from .source import choices, subprogram
+from .source import choices, subprogram, subprograms
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
+PATIENCE = 3
+"""Seconds that a prover has for a check of a mutant, and for one of the unbroken program
+before: with the ten of `make prove`, what a mutant falsifies would cost them all, each time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +72,9 @@ class Workbench:
 
     # --- the unbroken program
 
-    def prepare(self, units: Sequence[str]) -> None:
-        """Compile, prove and run the unbroken program; ToolFailed when it is not clean."""
+    def prepare(self) -> None:
+        """Compile and run the unbroken program; ToolFailed when it is not clean."""
         self._compile()
-        if units:
-            self.prove(units)
         self.observer.prepare(self.executable)
 
     @property
@@ -103,9 +104,10 @@ class Workbench:
             return Verdict("compiler", _first(str(failed)))
         try:
             for name in self._focus(mutant):
-                self.prove([_body(mutant.file)], self._place(name, mutant, broken))
+                place = self._place(name, mutant, broken)
+                self.prove([_body(mutant.file)], place, patience=PATIENCE)
             if not self._is_modular(mutant):
-                self.prove(self.units_of(mutant))
+                self.prove(self.units_of(mutant), patience=PATIENCE)
         except ToolFailed as failed:
             return Verdict("gnatprove", _first(str(failed)))
         seen = self.observer.differs(mutant, self.executable)
@@ -135,7 +137,7 @@ class Workbench:
         if mutant.part == "code":
             names = [mutant.place]
             if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
-                names.append("Fire")
+                names += _firing(text)
             return [n for n in names if subprogram(text, n) is not None]
         spec = self.files[mutant.file]
         one = subprogram(spec, mutant.place)
@@ -148,7 +150,7 @@ class Workbench:
                 found = subprogram(text, match.group(1))
                 if found is not None and using.search(found.inner.of(text)):
                     return [found.name]
-        return ["Fire"] if subprogram(text, "Fire") is not None else []
+        return _firing(text)
 
     def _place(self, name: str, mutant: Mutant, broken: str) -> str:
         """Where a subprogram is declared, as gnatprove wants it."""
@@ -176,10 +178,17 @@ class Workbench:
     def _compile(self) -> None:
         self._run(["gprbuild", "-p", "-q", "-j1", "-P", self.project])
 
-    def prove(self, units: Sequence[str], only: str | None = None, *, jobs: int = 1) -> None:
+    def prove(
+        self,
+        units: Sequence[str],
+        only: str | None = None,
+        *,
+        jobs: int = 1,
+        patience: int | None = None,
+    ) -> None:
         """Prove units, or one subprogram of one; ToolFailed with what is left.
 
-        With the switches of the project, as `make prove`.
+        With the switches of the project, as `make prove`, or another time for each prover.
         What earlier runs left unproved would count again: their results go first.
         """
         for old in self.folder.rglob("*.spark"):
@@ -188,6 +197,8 @@ class Workbench:
         command += [f"-j{jobs}", "-u", *units]
         if only is not None:
             command.append(f"--limit-subp={only}")
+        if patience is not None:
+            command.append(f"--timeout={patience}")
         self._run(command)
 
     def _run(self, command: list[str]) -> None:
@@ -209,6 +220,11 @@ class Workbench:
         )
         if done.returncode != 0:
             raise ToolFailed(done.stdout)
+
+
+def _firing(text: str) -> list[str]:
+    """Fire, and the procedures for parts of it where there are many transitions."""
+    return [one.name for one in subprograms(text) if one.fires]
 
 
 def _model_files(model: Path) -> dict[str, str]:

@@ -10,6 +10,7 @@ import threading
 import time
 import tomllib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import can
@@ -149,6 +150,20 @@ def tool_environment(folder: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}
 
 
+def heed_interrupts() -> None:
+    """What runs in the background may have inherited that they are ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def ended(process: subprocess.Popen[bytes]) -> Iterator[None]:
+    """Whatever happens, the process does not go on."""
+    try:
+        yield
+    finally:
+        process.kill()
+
+
 def test_the_tools_of_python_can_log_and_play(channel: str, tmp_path: Path) -> None:
     environment, log = tool_environment(tmp_path), tmp_path / "tool.blf"
     common = ["-i", "ravenchart", "-c", channel, "--fd"]
@@ -160,7 +175,9 @@ def test_the_tools_of_python_can_log_and_play(channel: str, tmp_path: Path) -> N
             env=environment,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
+            preexec_fn=heed_interrupts,
         ) as logger,
+        ended(logger),
     ):
         for frame in frames:
             bus.send(frame, timeout=WAIT)
@@ -190,8 +207,10 @@ while True:
 def test_a_client_killed_in_the_middle_leaves_the_others_alone(channel: str) -> None:
     with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        with subprocess.Popen([sys.executable, "-c", KILLED, channel], env=environment) as p:
+        with (
+            subprocess.Popen([sys.executable, "-c", KILLED, channel], env=environment) as p,
+            ended(p),
+        ):
             assert a.recv(30) is not None
-            p.kill()
         a.send(can.Message(arbitration_id=1), timeout=WAIT)
         assert any(m.arbitration_id == 1 for m in iter(lambda: b.recv(WAIT), None))
