@@ -9,6 +9,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 
 import yaml
 
@@ -26,6 +27,10 @@ LONGEST = 1200
 PATIENCE = 3
 """Seconds that a prover has for a check of a mutant, and for one of the unbroken program
 before: with the ten of `make prove`, what a mutant falsifies would cost them all, each time."""
+
+
+_RULES = Lock()
+"""The solver behind the model rules knows one thread at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +124,8 @@ class Workbench:
         for name, text in _model_files(self.model).items():
             (folder / name).write_text(broken if name == file else text)
         try:
-            checked = steps.check(folder / self.model.name)
+            with _RULES:
+                checked = steps.check(folder / self.model.name)
         except Refused as refused:
             return Verdict("model rules", _first_error(str(refused)))
         seen = self.observer.model_differs(checked.system)
