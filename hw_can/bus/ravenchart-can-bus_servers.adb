@@ -17,6 +17,18 @@ is
    with Global => null;
    --  Does something happen to the line by then?
 
+   function First (A : Agenda; Begun : Nanoseconds) return Nanoseconds
+   is (if Is_Due (A, Begun) then A.Events (A.Next).Start else Begun)
+   with Global => null;
+   --  When something happens to the line, or at Begun if nothing does before.
+
+   procedure Apply_Next (N : in out Networks.Network; A : in out Agenda)
+   with
+     Global => null,
+     Pre    => Networks.Is_Sound (N) and then A.Next <= A.Count,
+     Post   => Networks.Is_Sound (N);
+   --  The next event happens to the line.
+
    function Holds
      (B : Transmit_Buffers.Buffer; Tag : Interfaces.Unsigned_32)
       return Boolean
@@ -78,6 +90,16 @@ is
          M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
      Post   => Networks.Is_Sound (N);
    --  What begins on the bus at M, and who is told of it.
+
+   ----------------
+   -- Apply_Next --
+   ----------------
+
+   procedure Apply_Next (N : in out Networks.Network; A : in out Agenda) is
+   begin
+      Line_Events.Apply (N, A.Events (A.Next));
+      A.Next := A.Next + 1;
+   end Apply_Next;
 
    -------------
    -- Recover --
@@ -249,8 +271,7 @@ is
               then Is_Due (S.Agenda, Moment.Start)
               else not Is_Virtual (S))
          then
-            Line_Events.Apply (S.Net, S.Agenda.Events (S.Agenda.Next));
-            S.Agenda.Next := S.Agenda.Next + 1;
+            Apply_Next (S.Net, S.Agenda);
          elsif Moment.Known
            and then Moment.Start <= Horizon
            and then Moment.Start <= Buses.Last_Start
@@ -282,13 +303,11 @@ is
 
    function Next_Start (S : Server) return Nanoseconds is
       Moment : constant Networks.Moment := Networks.Next (S.Net);
-      Begun  : constant Nanoseconds :=
-        (if Moment.Known then Moment.Start else Nanoseconds'Last);
    begin
       return
-        (if Is_Due (S.Agenda, Begun)
-         then S.Agenda.Events (S.Agenda.Next).Start
-         else Begun);
+        First
+          (S.Agenda,
+           (if Moment.Known then Moment.Start else Nanoseconds'Last));
    end Next_Start;
 
 end Ravenchart.Can.Bus_Servers;
