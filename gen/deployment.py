@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from .components import Parts, timing_of
 from .derive import table_deadline, table_period
+from .identifiers import OPEN
 from .layouts import layout_of, size_of
 from .model import (
     Bus,
@@ -215,9 +216,14 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         if form.has(key):
             message = f"the message {name} has no value, and `{key}` no meaning"
             findings.error("RV-0210", form.at_key(key), message, hint="remove it")
+    if foreign and form.id is None and not form.lost("id"):
+        message = f"the message {name} is sent by others and needs the key `id`"
+        findings.error("RV-0202", form.origin, message)
     period = _message_period(name, form, source, site)
     broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
-    if bus is None or broken or gone or period is None or form.lost("bytes"):
+    if bus is None or broken or gone or period is None:
+        return None
+    if form.lost("bytes") or form.lost("id") or (foreign and form.id is None):
         return None
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
     signals = () if foreign else layout_of(name, form, type_, findings)
@@ -228,7 +234,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         name=name,
         origin=form.origin,
         bus=bus.name,
-        identifier=form.id,
+        identifier=OPEN if form.id is None else form.id,
         extended=form.extended,
         type=type_,
         signals=signals,

@@ -22,6 +22,7 @@ from .deployment import (
     processor_of,
     shutdown_of,
 )
+from .identifiers import identified
 from .model import Connection, Shutdown, System
 from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
 from .schema import ModelFile
@@ -252,6 +253,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     damaged = {part.component.name for part in parts.sound() if part.is_damaged}
     for part in parts.sound():
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
+    frames = identified(messages.sound())
     system = System(
         name=name,
         origin=model.files[0].at_key("system"),
@@ -262,8 +264,8 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         buses=buses.sound(),
         instances=instances.sound(),
         connections=connections,
-        messages=tuple(m for m in messages.sound() if not m.is_foreign),
-        traffic=tuple(m for m in messages.sound() if m.is_foreign),
+        messages=tuple(m for m in frames if not m.is_foreign),
+        traffic=tuple(m for m in frames if m.is_foreign),
         processors=processors.sound(),
         shutdown=stop,
         chains=chains.sound(),

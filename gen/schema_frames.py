@@ -89,7 +89,11 @@ class MessageForm(Element):
     """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
     bus: Reference = key("The bus.")
-    id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
+    id: int | None = optional(
+        "CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`; by deadline unless "
+        "given, counted from 1, the shortest deadline first.",
+        ge=0,
+    )
     extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
     format: Literal["classic", "fd"] = PydanticField(
         default="classic",
