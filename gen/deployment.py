@@ -140,7 +140,11 @@ def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
     parts = site.parts.find(instance.component.name)
     if parts is None:
         return None
-    named = Scope(f"port of {instance.component.name}", parts.members.ports.items)
+    ports = parts.members.ports.items.items()
+    named = Scope(
+        f"port of {instance.component.name}",
+        {key: at for key, at in ports if at[2] is None or not at[2].is_command},
+    )
     named.open = parts.members.ports.open
     port = named.look_up(pair[1], origin, site.findings)
     return None if port is None else (End(instance.name, port.name), port)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from .calls import callers, callers_of, readers_through, repliers, replies_read, rows_of
 from .model import (
     Activity,
     Bus,
@@ -219,9 +220,12 @@ class _Sharing:
                 yield self.made(element, [handler, *readers])
         for data in component.data:
             users = [self.runs(instance.name, name) for name in component.users(data.name)]
+            through = readers_through(self.system, instance.name, data.name)
+            users += [self.system.processor_of(row).name for row in through]
             written = any(data.name in item.writes for item in runnables)
             if written and len(users) > 1:  # otherwise it is a constant, or its writer's own
                 yield self.made(f"{instance.name}.{data.name}", users)
+        yield from self.of_commands(instance)
         for region in component.regions:
             own = self.runs(instance.name, region.name)
             readers = [
@@ -237,6 +241,37 @@ class _Sharing:
                 users = [own, self.runs(instance.name, activity.name)]
                 yield self.made(f"{instance.name}.{activity.name}.visit", users)
                 yield self.made(f"{instance.name}.{activity.name}.done", users)
+
+    def of_commands(self, instance: Instance) -> Iterable[SharedObject]:
+        """The queues of requests of an instance, and the boards of replies to its own."""
+        for provided in instance.component.provides:
+            if provided.server is not None:
+                server = self.runs(instance.name, provided.server)
+                rows = [
+                    row
+                    for b in callers_of(self.system, instance.name, provided)
+                    for row in rows_of(self.system, b)
+                ]
+                users = [self.system.processor_of(row).name for row in rows]
+                yield self.made(f"{instance.name}.{provided.name}.queue", [*users, server])
+        for item in replies_read(instance.component):
+            binding = next(
+                b
+                for b in self.system.bindings
+                if b.instance == instance.name and b.need.reply_item == item
+            )
+            users = [self.runs(instance.name, name) for name in instance.component.users(item)]
+            writers = (self.system.processor_of(r).name for r in repliers(self.system, binding))
+            yield self.made(f"{instance.name}.{item}", [*writers, *users])
+
+    def devices(self) -> Iterable[SharedObject]:
+        """The devices that several tasks call: inside one, a driver works its longest."""
+        for device in self.system.devices:
+            users = [self.system.processor_of(row).name for row in callers(self.system, device)]
+            if device.type is not None and len(set(users)) > 1:
+                made = self.made(device.name, users)
+                longest = max(one.wcet for one in device.provides)
+                yield replace(made, section=max(made.section, longest))
 
     def writers(self, instance: str, port: str) -> Iterable[str]:
         """The processors that put values into an input port's mailbox."""
@@ -262,6 +297,14 @@ class _Sharing:
                 yield self.runs(instance.name, item.name)
                 if item.name != region.name:
                     yield from self.raisers_once(instance, item)
+        for need in component.needs:
+            binding = self.system.bound[instance.name, need.name]
+            if need.on_full in named:
+                rows = rows_of(self.system, binding)
+                yield from (self.system.processor_of(row).name for row in rows)
+            if need.on_reply in named:
+                rows = repliers(self.system, binding)
+                yield from (self.system.processor_of(row).name for row in rows)
         for port in component.inputs():
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
                 yield self.runs(instance.name, "ports")
@@ -299,6 +342,7 @@ def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...
     objects: list[SharedObject] = []
     for instance in system.instances:
         objects.extend(sharing.of_instance(instance))
+    objects.extend(sharing.devices())
     for bus in system.buses:
         senders = [
             system.processor_of(row).name

@@ -32,6 +32,7 @@ GROUPS: Mapping[str, str] = {
     "09": "Deadlines",
     "10": "Simulation",
     "11": "Behaviour",
+    "12": "Commands and devices",
 }
 
 CODES: Mapping[str, str] = {
@@ -173,6 +174,19 @@ CODES: Mapping[str, str] = {
     "RV-1108": "What an invariant excludes does happen.",
     "RV-1109": "What an invariant excludes is not shown to be impossible.",
     "RV-1110": "The check of behaviour was not finished.",
+    "RV-1201": "A command in the dictionary lacks a type that its kind needs, or has one more.",
+    "RV-1202": "A command is per axis and has no scalar type that there could be one of per axis.",
+    "RV-1203": "A required interface is bound to nothing, or twice.",
+    "RV-1204": "What an interface is bound to does not provide a command that is required.",
+    "RV-1205": "A required interface works on another number of axes than what it is bound to.",
+    "RV-1206": "A command is called that is read, or called with an argument too many or too few.",
+    "RV-1207": "What is to stand in for a command cannot.",
+    "RV-1208": "A key has no meaning for a command of that kind.",
+    "RV-1209": "A provided interface is incomplete, or answers a command in the wrong way.",
+    "RV-1210": "A device is not exactly one of a piece of equipment, an array and a facade.",
+    "RV-1211": "An array is made of other things than devices of one kind.",
+    "RV-1212": "Two members of a facade provide a command, or the wrong one is chosen.",
+    "RV-1213": "The replies of the members of an array cannot be given as one.",
 }
 """Every code with what it says; docs/errors.md is written from this table."""
 

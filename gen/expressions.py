@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 from lark import Lark, Token, Transformer, UnexpectedInput, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedToken
@@ -161,6 +162,7 @@ FOREIGN = {
 """What other languages write, and what this one does."""
 
 
+@lru_cache(maxsize=4096)
 def parse(text: str) -> Term | Malformed:
     """The term that a text stands for, or why there is none."""
     if len(text) > LONGEST_TEXT:

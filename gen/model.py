@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
+from .commands import Binding, Device, Need, Provided
 from .signals import Signal
 from .statechart import DONE, Overflow, Region, Timing
 from .terms import (
@@ -66,6 +67,10 @@ class Port:
     on_stale: str | None = None
     on_overflow: str | None = None
     """Events of the component, raised by the port's handler."""
+    is_command: bool = False
+    """An output port that is a required command: what is sent is the argument of a call."""
+    is_void: bool = False
+    """A command without argument: nothing but that it is called is sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +101,8 @@ class Data:
     origin: Origin
     type: Type
     initial: Value
+    is_command: bool = False
+    """A read command or the last reply to a call: somebody else writes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +165,8 @@ class Component:
     regions: tuple[Region, ...]
     activities: tuple[Activity, ...]
     invariants: tuple[Invariant, ...] = ()
+    needs: tuple[Need, ...] = ()
+    provides: tuple[Provided, ...] = ()
 
     def inputs(self) -> tuple[Port, ...]:
         """The input ports, in model order."""
@@ -188,7 +197,8 @@ class Component:
         if isinstance(row, Region) or row.while_in is not None:
             return False
         if row.flow is None:
-            return True
+            called = any(port.name == name and port.is_command for port in self.ports)
+            return not called and self.served_by(row.name) is None
         sure = always(row.flow)
         if name in sure:
             return True
@@ -205,6 +215,15 @@ class Component:
         """The do activities that complete a state of a region, each with that state."""
         all_of_them = ((a, a.completes) for a in self.activities)
         return tuple((a, at.state) for a, at in all_of_them if at and at.region == region)
+
+    def served_by(self, activity: str) -> Provided | None:
+        """The provided interface whose requests an activity executes."""
+        return next((one for one in self.provides if one.server == activity), None)
+
+    def from_outside(self) -> frozenset[str]:
+        """The data that may come to be anything in their types: by a user's body, or a command."""
+        written = {name for a in self.activities if a.flow is None for name in a.writes}
+        return frozenset(written | {data.name for data in self.data if data.is_command})
 
     def users(self, data: str) -> tuple[str, ...]:
         """The regions and activities that read or write ``data``, in model order."""
@@ -519,6 +538,9 @@ class System:
     chains: tuple[Chain, ...] = ()
     traffic: tuple[Message, ...] = ()
     """Frames of the buses that are none of the system's ``messages``."""
+    devices: tuple[Device, ...] = ()
+    """Those that some command is bound to, pieces of an array before it."""
+    bindings: tuple[Binding, ...] = ()
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
 
@@ -534,6 +556,22 @@ class System:
     @cached_property
     def _instances(self) -> dict[str, Instance]:
         return {i.name.lower(): i for i in self.instances}
+
+    def instances_of(self, component: str) -> frozenset[str]:
+        """The names of the instances of a component."""
+        return self._by_component.get(component, frozenset())
+
+    @cached_property
+    def _by_component(self) -> dict[str, frozenset[str]]:
+        found: dict[str, list[str]] = {}
+        for instance in self.instances:
+            found.setdefault(instance.component.name, []).append(instance.name)
+        return {component: frozenset(names) for component, names in found.items()}
+
+    @cached_property
+    def bound(self) -> dict[tuple[str, str], Binding]:
+        """What provides each required command, by instance and command."""
+        return {(b.instance, b.need.name): b for b in self.bindings}
 
     def node(self, name: str) -> Node:
         """The node called ``name``; KeyError where there is none."""

@@ -144,7 +144,7 @@ def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
             used.add((item.source.instance, item.source.port))
     for instance in resolved.system.instances:
         for port in instance.component.outputs():
-            if (instance.name, port.name) not in used:
+            if (instance.name, port.name) not in used and not port.is_command:
                 message = f"{instance.name}.{port.name} leads nowhere: what it sends is lost"
                 notes = [(port.origin, f"`{port.name}` is declared here")]
                 yield warning("RV-0604", instance.origin, message, notes=notes)
@@ -385,7 +385,8 @@ def outputs_are_sent(resolved: Resolved) -> Iterator[Diagnostic]:
         sent = {name for item in component.runnables() for name in item.sends}
         for port in component.ports:
             if port.direction is Direction.OUT and port.name not in sent:
-                message = f"nothing in {component.name} sends on `{port.name}`"
+                verb = "calls" if port.is_command else "sends on"
+                message = f"nothing in {component.name} {verb} `{port.name}`"
                 yield warning("RV-0512", port.origin, message)
 
 

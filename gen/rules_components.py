@@ -83,12 +83,13 @@ def activities_send_once(component: Component, resolved: Resolved) -> Iterator[D
 def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
     """A warning for each event that nothing raises or no region waits for."""
     system = resolved.system
-    instances = {i.name for i in system.instances if i.component.name == component.name}
+    instances = system.instances_of(component.name)
     whole = {"instances", "processors"} <= resolved.sound_sections
     if component.name in resolved.damaged or not whole or not instances:
         return
     raised = {e for item in component.runnables() for e in item.raises}
     raised |= {e for p in component.ports for e in (p.on_arrival, p.on_stale, p.on_overflow) if e}
+    raised |= {e for need in component.needs for e in (need.on_reply, need.on_full) if e}
     raised |= {region.on_overflow for region in component.regions if region.on_overflow}
     outside = [pair for processor in system.processors for pair in processor.raises]
     raised |= {e for owner, e in (*outside, *system.shutdown.raises) if owner in instances}

@@ -26,6 +26,14 @@ from .schema_base import (
     optional,
     shaped,
 )
+from .schema_devices import (
+    BindingForm,
+    CommandForm,
+    DeviceForm,
+    DeviceTypeForm,
+    ProvidedForm,
+    RequiredForm,
+)
 from .schema_frames import BusForm, MessageForm
 
 # --- Types -----------------------------------------------------------------------
@@ -108,6 +116,15 @@ class SendForm(Element):
     )
 
 
+class CallForm(Element):
+    """Call a required command."""
+
+    call: Reference = key("The command: `void`, `write` or `qualified_read`.")
+    with_: Carried | None = optional(
+        "Its argument: an expression, or for a record one for each field.", alias="with"
+    )
+
+
 class RaiseForm(Element):
     """Raise an event of the component; in a do activity also `done`."""
 
@@ -132,9 +149,10 @@ class IfForm(Element):
 ActionForm = Annotated[
     Annotated[SetForm, Tag("<set>")]
     | Annotated[SendForm, Tag("<send>")]
+    | Annotated[CallForm, Tag("<call>")]
     | Annotated[RaiseForm, Tag("<raise>")]
     | Annotated[IfForm, Tag("<if>")],
-    _one_of("an action", "set", "send", "raise", "if"),
+    _one_of("an action", "set", "send", "call", "raise", "if"),
 ]
 
 
@@ -321,9 +339,12 @@ class ActivityForm(Element):
     while_: OwnedReference | None = optional(
         "`Region.State`: it works only while that state is active.", alias="while"
     )
-    reads: list[Reference] | None = optional("Data, parameters, input ports and regions it reads.")
+    reads: list[Reference] | None = optional(
+        "Data, parameters, input ports, regions and read commands it reads."
+    )
     writes: list[Reference] | None = optional("Data items it writes.")
     sends: list[Reference] | None = optional("Output ports it sends on.")
+    calls: list[Reference] | None = optional("Required commands it calls.")
     raises: list[Reference] | None = optional(
         "Events it raises; with `while` also `done`, which completes the state."
     )
@@ -331,7 +352,7 @@ class ActivityForm(Element):
         Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],
         shaped("`user` or a list of actions"),
     ] = key(
-        "`user` for a procedure written by hand, or a list of actions; the four lists above may "
+        "`user` for a procedure written by hand, or a list of actions; the five lists above may "
         "then be left out."
     )
 
@@ -360,6 +381,8 @@ class ComponentForm(Element):
         ]
         | None
     ) = optional("Events, each offered to every region that names it.")
+    requires: dict[Name, RequiredForm] | None = optional("Interfaces it calls the commands of.")
+    provides: dict[Name, ProvidedForm] | None = optional("Interfaces whose commands it executes.")
     data: dict[Name, DataForm] | None = optional("Data items.")
     regions: dict[Name, RegionForm] | None = optional("State machines, run side by side.")
     activities: dict[Name, ActivityForm] | None = optional("Activities.")
@@ -492,6 +515,10 @@ class ModelFile(Element):
         "Files whose sections belong to the model, relative to this file."
     )
     types: dict[Name, TypeForm] | None = optional("Types of data, ports and parameters.")
+    commands: dict[Name, CommandForm] | None = optional("The command dictionary.")
+    device_types: dict[Name, DeviceTypeForm] | None = optional("Types of devices.")
+    devices: dict[Name, DeviceForm] | None = optional("Devices, and composites of them.")
+    bindings: list[BindingForm] | None = optional("What provides the required interfaces.")
     components: dict[Name, ComponentForm] | None = optional("Components.")
     nodes: dict[Name, NodeForm] | None = optional("Nodes; exactly one in this version.")
     buses: dict[Name, BusForm] | None = optional("CAN buses; at most one in this version.")

@@ -299,6 +299,14 @@ class Region:
 
     def lane(self, vertex: str) -> Lane:
         """The lane that a state or pseudostate stands in."""
+        return self._lanes[vertex.lower()]
+
+    @cached_property
+    def _lanes(self) -> dict[str, Lane]:
+        names = [*(s.name for s in self.states), *(p.name for p in self.pseudostates)]
+        return {name.lower(): self._lane_of(name) for name in names}
+
+    def _lane_of(self, vertex: str) -> Lane:
         at: str | None = vertex
         while at is not None:
             pseudo = self.pseudostate(at)

@@ -20,7 +20,14 @@ RECORDS = ROOT / "proofs" / "records"
 PATIENCE = 300.0
 """Seconds of processor time for the rules of behaviour: here they shall come to their end."""
 
-EXAMPLES = ("cartesian_robot", "crossing", "pump", "qhsmtst", "three_components")
+EXAMPLES = (
+    "cartesian_robot",
+    "crossing",
+    "pump",
+    "qhsmtst",
+    "surgical_robot",
+    "three_components",
+)
 DRIVERS = ("loopback", "slcan")
 
 
@@ -72,7 +79,7 @@ def _example(name: str) -> Target:
         steps.project_of(checked),
         steps.scenario(checked, "checks", driver),
         steps.proof_folders(checked, driver)[:1],
-        (checked.folder / "generated", checked.folder / "user"),
+        (checked.folder,),
     )
 
 

@@ -112,6 +112,8 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Reco
 
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
     """The trace of a model under the stimuli of a file, one step a line."""
+    if checked.system.bindings:
+        raise Refused(f"{checked.path}: error: a simulation has no devices and no commands yet")
     stimuli = stimuli_of(checked.system, events)
     if interpreter:
         records = simulated_by_interpreter(checked.system, stimuli)

@@ -17,7 +17,7 @@ from analysis.timing import Analysis, analyse
 from gen.claims import Claims
 from gen.diagnostics import Diagnostic, render
 from gen.emit.naming import ada_case
-from gen.generate import generate, user_units
+from gen.generate import generate, simulated_drivers, source_folders, user_units
 from gen.load import Loaded, load
 from gen.model import System
 from gen.unready import unready
@@ -129,10 +129,13 @@ def write_program(checked: Checked) -> Written:
     for name in old:
         if name not in files and Path(name).name == name:
             (folder / name).unlink(missing_ok=True)
-    user = checked.folder / "user"
-    if user_units(checked.system):
-        user.mkdir(exist_ok=True)
-    missing = tuple(user / n for n in user_units(checked.system) if not (user / n).is_file())
+    for place in source_folders(checked.system):
+        (checked.folder / place).mkdir(parents=True, exist_ok=True)
+    for name, text in simulated_drivers(checked.system).items():
+        if not (checked.folder / name).exists():
+            replace_file(checked.folder / name, text)
+    units = (checked.folder / name for name in user_units(checked.system))
+    missing = tuple(unit for unit in units if not unit.is_file())
     return Written(folder, len(files), changed, missing)
 
 

@@ -264,6 +264,16 @@ class Package:
 
 
 @dataclass(frozen=True, slots=True)
+class Protected:
+    """A single protected object: its spec with what it holds, or without that its body."""
+
+    name: str
+    items: tuple[Subprogram, ...]
+    kept: tuple[Object, ...] = ()
+    aspects: tuple[Aspect, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Rename:
     """``package name renames other;``"""
 
@@ -286,6 +296,7 @@ Decl = (
     | Subprogram
     | Instance
     | Package
+    | Protected
     | Rename
     | UseType
     | Pragma

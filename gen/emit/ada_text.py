@@ -7,6 +7,7 @@ expressions break one item a line (`layout` decides).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from .ada import (
     NULL,
@@ -35,6 +36,7 @@ from .ada import (
     PlainType,
     Pragma,
     Prefix,
+    Protected,
     RecordType,
     Ref,
     Rename,
@@ -102,8 +104,9 @@ def _choices(text: str) -> Doc:
     return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
 
 
+@lru_cache(maxsize=8192)
 def expression(expr: Expr) -> Doc:
-    """The layout of one expression."""
+    """The layout of one expression; a program has few that it does not repeat."""
     match expr:
         case Ref(text):
             return _choices(text) if " | " in text else text
@@ -277,6 +280,8 @@ def _declaration(decl: Decl) -> Doc:
             return group(head, nest(SOFT, _args(args), by=2), ";")
         case Package():
             return _package(decl)
+        case Protected():
+            return _protected(decl)
         case Rename(name, other):
             return f"package {name} renames {other};"
         case UseType(name):
@@ -320,6 +325,16 @@ def _package(package: Package) -> Doc:
     head = f"{keyword} {package.name}"
     aspects = cat(_aspects(package.aspects), SOFT, "is") if package.aspects else " is"
     return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name};")
+
+
+def _protected(decl: Protected) -> Doc:
+    operations = _lines(_items(decl.items))
+    if not decl.kept:
+        return upright(f"protected body {decl.name} is", operations, SOFT, f"end {decl.name};")
+    head = cat(_aspects(decl.aspects), SOFT, "is")
+    kept = _lines(_items(decl.kept))
+    parts = (f"protected {decl.name}", head, operations, SOFT, "private", kept)
+    return upright(*parts, SOFT, f"end {decl.name};")
 
 
 def print_item(unit: Unit) -> str:

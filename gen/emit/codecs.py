@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from ..model import Message, System
 from ..signals import ByteOrder, Signal, bits_of, signals_of
-from ..terms import RecordType
+from ..terms import RecordType, default
 from .ada import (
     SPARK,
     TRUE,
@@ -44,7 +44,7 @@ from .ada import (
     number,
 )
 from .coding import WORD, Coding, all_of, container, literal_name, placed, within_width, word_bits
-from .naming import ada_case, default, default_value, scalar, type_name
+from .naming import ada_case, default_value, scalar, type_name
 
 WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
 """The words of a CAN FD frame."""

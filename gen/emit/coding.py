@@ -8,6 +8,7 @@ type; those with a coding given in the model have their own.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ..model import System
 from ..signals import Signal, automatic
@@ -19,8 +20,10 @@ from .ada import (
     Chain,
     Expr,
     IfExpr,
+    Object,
     Param,
     Ref,
+    Return,
     Subprogram,
     both,
     call,
@@ -147,13 +150,23 @@ class Coding:
         if self.signal.codes:
             taken = CaseExpr(Ref("Item"), tuple(self._by_literal()))
         same = equal(call(NUMBER, result), raw)
-        return Subprogram(
+        made = Subprogram(
             self.bits_of,
             (Param("Item", "in", self.ada_type),),
             self.container,
             aspects=(Aspect("Post", all_of(self.valid(result), same)),),
-            expression=taken,
         )
+        if not isinstance(raw, IfExpr):
+            return replace(made, expression=taken)
+        #  bits of one number: of two, provers lose what they stand for
+        whole = Object("Whole", f"{NUMBER} range 0 .. {self._last:_}", raw, constant=True)
+        back = Return(call(self.container, Ref("Whole")))
+        return replace(made, declarations=(whole,), body=(back,))
+
+    @property
+    def _last(self) -> int:
+        """The highest pattern."""
+        return (1 << self.signal.width) - 1
 
     def _value(self) -> Subprogram:
         signal = self.signal

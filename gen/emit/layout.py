@@ -18,18 +18,22 @@ class _Way(Enum):
     UPRIGHT = 2
 
 
+#  read by the million in a large program, and a member of an enumeration is found slowly
+_AS_AROUND, _ONE_LINE_IF_IT_FITS, _UPRIGHT = _Way
+
+
 class Parts:
     """Documents one after the other; use `cat`, `nest`, `group` and `upright` to make them."""
 
     __slots__ = ("flat", "has_upright", "parts", "step", "way")
 
-    def __init__(self, parts: tuple[Doc, ...], step: int = 0, way: _Way = _Way.AS_AROUND) -> None:
+    def __init__(self, parts: tuple[Doc, ...], step: int = 0, way: _Way = _AS_AROUND) -> None:
         """Parts indented by ``step`` columns after each break."""
         self.parts = parts
         self.step = step
         self.way = way
         flat = ""
-        has_upright = way is _Way.UPRIGHT
+        has_upright = way is _UPRIGHT
         for part in parts:
             if isinstance(part, str):
                 flat += part
@@ -59,12 +63,12 @@ def nest(*docs: Doc, by: int = STEP) -> Doc:
 
 def group(*docs: Doc) -> Doc:
     """On one line where it fits; otherwise every soft place that no inner group holds breaks."""
-    return Parts(docs, 0, _Way.ONE_LINE_IF_IT_FITS)
+    return Parts(docs, 0, _ONE_LINE_IF_IT_FITS)
 
 
 def upright(*docs: Doc) -> Doc:
     """Every soft place that no inner group holds breaks."""
-    return Parts(docs, 0, _Way.UPRIGHT)
+    return Parts(docs, 0, _UPRIGHT)
 
 
 def laid_out(doc: Doc, width: int) -> str:
@@ -73,24 +77,26 @@ def laid_out(doc: Doc, width: int) -> str:
 
     def put(doc: Parts, column: int, indent: int, broken: bool) -> int:
         """Add a document that begins in ``column``; the column behind it."""
-        if doc.way is _Way.UPRIGHT:
-            broken = True
-        elif doc.way is _Way.ONE_LINE_IF_IT_FITS:
-            broken = broken and len(doc.flat) > width - column
-        if not broken and not doc.has_upright:
-            out.append(doc.flat)
-            return column + len(doc.flat)
         indent += doc.step
         for part in doc.parts:
             if isinstance(part, str):
                 out.append(part)
                 column += len(part)
-            elif part is SOFT and broken:
+                continue
+            on_one_line = not broken
+            if part.way is not _AS_AROUND:
+                on_one_line = part.way is not _UPRIGHT and (
+                    on_one_line or len(part.flat) <= width - column
+                )
+            if on_one_line and not part.has_upright:
+                out.append(part.flat)
+                column += len(part.flat)
+            elif part is SOFT:
                 out.append("\n" + " " * indent)
                 column = indent
             else:
-                column = put(part, column, indent, broken)
+                column = put(part, column, indent, not on_one_line)
         return column
 
-    put(Parts((doc,), 0, _Way.ONE_LINE_IF_IT_FITS), 0, 0, True)
+    put(Parts((group(doc),)), 0, 0, True)
     return "".join(out)

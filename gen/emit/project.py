@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..model import System
 from .naming import ada_case
 
@@ -15,7 +17,7 @@ project {name} is
    Build := external ("RAVENCHART_BUILD", "../build");
    --  Where objects and the program go.
 
-   for Source_Dirs use ({sources});
+   for Source_Dirs use{sources};
    for Object_Dir use Build & "/" & Ravenchart.Mode;
    for Exec_Dir use Build;
    for Create_Missing_Dirs use "True";
@@ -38,12 +40,17 @@ end {name};
 """
 
 
-def project_text(system: System, *, has_user_code: bool) -> str:
-    """The project file; it finds the runtime through GPR_PROJECT_PATH."""
-    sources = '".", "../user"' if has_user_code else '"."'
+def project_text(system: System, folders: Sequence[str]) -> str:
+    """The project file; it finds the runtime through GPR_PROJECT_PATH.
+
+    ``folders`` have the sources that are not generated, beside the generated ones' folder.
+    """
+    gap = ", " if len(folders) < 2 else ",\n      "
+    sources = gap.join(('"."', *(f'"../{folder}"' for folder in folders)))
+    start = " " if len(folders) < 2 else "\n     "
     name = ada_case(system.name)
     main = f"{name.lower()}_main"
-    return _TEXT.format(model=system.name, name=name, main=main, sources=sources)
+    return _TEXT.format(model=system.name, name=name, main=main, sources=f"{start}({sources})")
 
 
 _SIMULATION = """\

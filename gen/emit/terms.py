@@ -287,6 +287,8 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
             return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
         case m.Send(_, port, values):
             slot, flag = scope.sent(port)
+            if scope.component.port(port).is_void:
+                return (Assign(flag, TRUE),)
             given = _given(scope, scope.component.port(port).type, values)
             return (Assign(slot, given), Assign(flag, TRUE))
         case m.Raise(_, event, values):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from .mutants import NOTE, Edit, Files, Found, replaced, swapped
-from .source import Branch, Span, Subprogram, arms, choices, statements, subprogram, subprograms
+from .source import Span, Subprogram, arms, choices, statements, subprogram, subprograms
 
 _MOVE = re.compile(r"^(Exit|Leave|Enter)_\w+;$")
 _GHOST = re.compile(r"^(pragma |Active(_\w+)? :=)")
@@ -20,7 +20,7 @@ def _rows(text: str) -> Iterator[tuple[str, list[Span]]]:
     for one in subprograms(text):
         if one.is_expression:
             continue
-        if one.name == "Fire" or one.name.startswith("Leave_"):
+        if one.fires or one.name.startswith("Leave_"):
             yield from _nested(text, one.name, one.inner)
         elif one.name.startswith(("Enter_", "Exit_")):
             yield one.name, _working(text, one.inner)
@@ -67,9 +67,10 @@ def target_in_code(file: str, files: Files) -> Iterator[Found]:
     """Another state that is entered last, or another leaf that an entry sets."""
     text = files[file]
     entries = _named(text, "Enter_")
+    firing = {one.name for one in subprograms(text) if one.fires}
     for place, row in _rows(text):
         last = row[-1].of(text) if row else ""
-        if place == "Fire" and last.startswith("Enter_"):
+        if place in firing and last.startswith("Enter_"):
             name = last.removesuffix(";")
             following = entries[(entries.index(name) + 1) % len(entries)]
             if following != name:
@@ -77,7 +78,7 @@ def target_in_code(file: str, files: Files) -> Iterator[Found]:
     found = [
         (one.name, match)
         for one in subprograms(text)
-        if one.name == "Fire" or one.name.startswith("Enter_")
+        if one.fires or one.name.startswith("Enter_")
         for match in re.compile(r"Self\.(Leaf|Place(?:\.\w+)?) := ([\w.]+);").finditer(
             text, one.inner.start, one.inner.end
         )
@@ -193,21 +194,15 @@ def history_in_code(file: str, files: Files) -> Iterator[Found]:
         if other := _next(match.group(2), same):
             yield place, "remember", replaced(Span(*match.span(2)), other)
         yield place, "forget", replaced(Span(*match.span()), "null;")
-    fire = subprogram(text, "Fire")
-    if fire is None:
-        return
-    known = re.compile(r"\bif (Past\.Known_\w+) then")
-    for match in known.finditer(text, fire.inner.start, fire.inner.end):
-        yield "Fire", "known", replaced(Span(*match.span(1)), f"not {match.group(1)}")
-    for case in re.compile(r"\bcase Past\.\w+ is").finditer(text, fire.inner.start, fire.inner.end):
-        rows = arms(text, Span(case.start(), fire.inner.end))
-        yield from _exchanged(text, rows)
-
-
-def _exchanged(text: str, rows: list[Branch]) -> Iterator[Found]:
-    for one, other in pairwise(rows):
-        if one.body.of(text) != other.body.of(text):
-            yield "Fire", "restore", swapped(text, one.body, other.body)
+    for fire in (one for one in subprograms(text) if one.fires):
+        known = re.compile(r"\bif (Past\.Known_\w+) then")
+        for match in known.finditer(text, fire.inner.start, fire.inner.end):
+            yield fire.name, "known", replaced(Span(*match.span(1)), f"not {match.group(1)}")
+        cases = re.compile(r"\bcase Past\.\w+ is")
+        for case in cases.finditer(text, fire.inner.start, fire.inner.end):
+            for row, after in pairwise(arms(text, Span(case.start(), fire.inner.end))):
+                if row.body.of(text) != after.body.of(text):
+                    yield fire.name, "restore", swapped(text, row.body, after.body)
 
 
 def history_declared(file: str, files: Files) -> Iterator[Found]:
@@ -228,8 +223,8 @@ def history_declared(file: str, files: Files) -> Iterator[Found]:
 def deferral(file: str, files: Files) -> Iterator[Found]:
     """A deferred event that is taken too early, twice, never, or not kept."""
     text = files[file]
-    for one in (subprogram(text, "Poll"), subprogram(text, "Fire")):
-        if one is not None:
+    for one in subprograms(text):
+        if one.fires or one.name == "Poll":
             yield from _edits(text, one, "early", r"\bif (not )Is_Deferred\b", "")
             yield from _edits(text, one, "twice", r"(Deferrals\.Remove [^;]*;)", "null;")
             element = r"Deferrals\.Element \(Self\.Deferred, (I)\)"

@@ -35,6 +35,11 @@ class Subprogram:
     inner: Span
     is_expression: bool
 
+    @property
+    def fires(self) -> bool:
+        """Is it Fire, or one of the procedures that do a part of it in a large region?"""
+        return self.name == "Fire" or self.name.startswith("Fire_From_")
+
 
 @dataclass(frozen=True, slots=True)
 class Branch:

@@ -19,7 +19,7 @@ from ..steps import Refused
 from ..toolchain import ROOT, ToolFailed, ToolMissing, have
 from .mutants import Files, Mutant
 from .observing import Observer, Simulated
-from .source import choices, subprogram
+from .source import choices, subprogram, subprograms
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
@@ -135,7 +135,7 @@ class Workbench:
         if mutant.part == "code":
             names = [mutant.place]
             if mutant.place.startswith(("Enter_", "Exit_", "Leave_")):
-                names.append("Fire")
+                names += _firing(text)
             return [n for n in names if subprogram(text, n) is not None]
         spec = self.files[mutant.file]
         one = subprogram(spec, mutant.place)
@@ -148,7 +148,7 @@ class Workbench:
                 found = subprogram(text, match.group(1))
                 if found is not None and using.search(found.inner.of(text)):
                     return [found.name]
-        return ["Fire"] if subprogram(text, "Fire") is not None else []
+        return _firing(text)
 
     def _place(self, name: str, mutant: Mutant, broken: str) -> str:
         """Where a subprogram is declared, as gnatprove wants it."""
@@ -209,6 +209,11 @@ class Workbench:
         )
         if done.returncode != 0:
             raise ToolFailed(done.stdout)
+
+
+def _firing(text: str) -> list[str]:
+    """Fire, and the procedures for parts of it where there are many transitions."""
+    return [one.name for one in subprograms(text) if one.fires]
 
 
 def _model_files(model: Path) -> dict[str, str]:

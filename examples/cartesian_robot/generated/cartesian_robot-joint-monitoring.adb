@@ -38,7 +38,7 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Watching, Alarmed);
+      type Node is (Nowhere, Watching, Alarmed, Disorder);
 
       function Innermost (Leaf : Monitoring_States.Leaf) return Node is
         (Node'Val (Monitoring_States.Leaf'Pos (Leaf) + 1));
@@ -48,8 +48,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -101,30 +100,30 @@ is
       with Ghost;
       procedure Exit_Alarmed
       with
-        Pre => Active = Chart.Alarmed,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Nowhere
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Alarmed, Chart.Nowhere)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Nowhere;
+         Active := Chart.Moved (Active, Chart.Alarmed, Chart.Nowhere);
       end Exit_Alarmed;
       procedure Enter_Alarmed
       with
-        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Monitoring_States.Alarmed
-          and then Active = Chart.Alarmed
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Alarmed)
           and then Self.Timers (1) = Ravenchart.Timers.Started (50)
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Monitoring_States.Alarmed;
          Ravenchart.Timers.Arm (Self.Timers (1), 50);
-         Active := Chart.Alarmed;
+         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Alarmed);
       end Enter_Alarmed;
    begin
       case Chosen is

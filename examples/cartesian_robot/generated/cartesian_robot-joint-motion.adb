@@ -163,7 +163,8 @@ is
          Operational,
          Homing,
          Moving,
-         Fault);
+         Fault,
+         Disorder);
 
       function Innermost (Leaf : Motion_States.Leaf) return Node is
         (Node'Val (Motion_States.Leaf'Pos (Leaf) + 1));
@@ -173,8 +174,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -223,16 +223,16 @@ is
       with Ghost;
       procedure Exit_Homing
       with
-        Pre => Active = Chart.Homing,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Operational
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Homing, Chart.Operational)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Operational;
+         Active := Chart.Moved (Active, Chart.Homing, Chart.Operational);
       end Exit_Homing;
       procedure Leave_Fault
       with
@@ -325,71 +325,71 @@ is
       end Leave_Operational;
       procedure Enter_Idle
       with
-        Pre => Active = Chart.Operational,
         Post =>
           Self.Leaf = Motion_States.Idle
-          and then Active = Chart.Idle
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Operational, Chart.Idle)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Idle;
-         Active := Chart.Idle;
+         Active := Chart.Moved (Active, Chart.Operational, Chart.Idle);
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
       end Enter_Idle;
       procedure Enter_Homing
       with
-        Pre => Active = Chart.Operational,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Homing
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Operational, Chart.Homing)
           and then Self.Timers (1) = Ravenchart.Timers.Started (1_000)
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (1), 1_000);
-         Active := Chart.Homing;
+         Active := Chart.Moved (Active, Chart.Operational, Chart.Homing);
       end Enter_Homing;
       procedure Enter_Seeking
       with
-        Pre => Active = Chart.Homing,
         Post =>
           Self.Leaf = Motion_States.Seeking
-          and then Active = Chart.Seeking
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Homing, Chart.Seeking)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Seeking;
-         Active := Chart.Seeking;
+         Active := Chart.Moved (Active, Chart.Homing, Chart.Seeking);
          Self.Data.Homed := False;
          Self.Data.Goal.Wanted := Cartesian_Robot.Seek_Low_End;
       end Enter_Seeking;
       procedure Enter_Backing_Off
       with
-        Pre => Active = Chart.Homing,
         Post =>
           Self.Leaf = Motion_States.Backing_Off
-          and then Active = Chart.Backing_Off
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Homing, Chart.Backing_Off)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Motion_States.Backing_Off;
-         Active := Chart.Backing_Off;
+         Active := Chart.Moved (Active, Chart.Homing, Chart.Backing_Off);
          Self.Data.Goal.Wanted := Cartesian_Robot.Leave_Low_End;
       end Enter_Backing_Off;
       procedure Enter_Moving
       with
-        Pre => Active = Chart.Operational,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Moving
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Operational, Chart.Moving)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active := Chart.Moving;
+         Active := Chart.Moved (Active, Chart.Operational, Chart.Moving);
          Self.Data.Goal.Target :=
            Cartesian_Robot.Unit_Um'Min
              (Cartesian_Robot.Unit_Um'Max (Ins.Order.Value.Target, 0),
@@ -398,15 +398,15 @@ is
       end Enter_Moving;
       procedure Enter_Fault
       with
-        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Fault
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Fault)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active := Chart.Fault;
+         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Fault);
          Self.Data.Goal.Wanted := Cartesian_Robot.Hold;
          Self.Data.Homed := False;
       end Enter_Fault;

@@ -141,7 +141,8 @@ is
          Shut_Down,
          Active,
          Travelling,
-         Stopped);
+         Stopped,
+         Disorder);
 
       function Innermost (Leaf : Mission_States.Leaf) return Node is
         (Node'Val (Mission_States.Leaf'Pos (Leaf) + 1));
@@ -151,8 +152,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -205,16 +205,16 @@ is
       with Ghost;
       procedure Exit_Departing
       with
-        Pre => Active = Chart.Departing,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Travelling
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Departing, Chart.Travelling)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Travelling;
+         Active := Chart.Moved (Active, Chart.Departing, Chart.Travelling);
       end Exit_Departing;
       procedure Leave_Travelling
       with
@@ -269,16 +269,16 @@ is
       end Leave_Active;
       procedure Enter_Homing
       with
-        Pre => Active = Chart.Active,
         Post =>
           Self.Leaf = Mission_States.Homing
-          and then Active = Chart.Homing
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Active, Chart.Homing)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Homing;
-         Active := Chart.Homing;
+         Active := Chart.Moved (Active, Chart.Active, Chart.Homing);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Home,
             Target => 0);
@@ -294,15 +294,15 @@ is
       end Enter_Homing;
       procedure Enter_Travelling
       with
-        Pre => Active = Chart.Active,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Travelling
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Active, Chart.Travelling)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active := Chart.Travelling;
+         Active := Chart.Moved (Active, Chart.Active, Chart.Travelling);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Move,
             Target => Ins.Command.Value.X);
@@ -318,29 +318,29 @@ is
       end Enter_Travelling;
       procedure Enter_Departing
       with
-        Pre => Active = Chart.Travelling,
         Post =>
           Self.Leaf = Mission_States.Departing
-          and then Active = Chart.Departing
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Travelling, Chart.Departing)
           and then Self.Timers (1) = Ravenchart.Timers.Started (5)
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Mission_States.Departing;
          Ravenchart.Timers.Arm (Self.Timers (1), 5);
-         Active := Chart.Departing;
+         Active := Chart.Moved (Active, Chart.Travelling, Chart.Departing);
       end Enter_Departing;
       procedure Enter_Stopped
       with
-        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Stopped
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Stopped)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active := Chart.Stopped;
+         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Stopped);
          Box.Order_X :=
            Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Halt,
             Target => 0);

@@ -126,7 +126,8 @@ is
          Red,
          Green,
          Dont_Walk,
-         On_The_Road);
+         On_The_Road,
+         Disorder);
 
       function Innermost_Cars
         (Place : Lights_States.Configuration)
@@ -153,8 +154,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -267,10 +267,10 @@ is
       with Ghost;
       procedure Exit_Blinking
       with
-        Pre => Active_Top = Chart.Blinking,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Nowhere
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Blinking, Chart.Nowhere)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -278,14 +278,15 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active_Top := Chart.Nowhere;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Blinking, Chart.Nowhere);
       end Exit_Blinking;
       procedure Exit_Stopping
       with
-        Pre => Active_Cars = Chart.Stopping,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Red
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Stopping, Chart.Red)
           and then Self.Timers (2) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -293,27 +294,28 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active_Cars := Chart.Red;
+         Active_Cars :=
+           Chart.Moved (Active_Cars, Chart.Stopping, Chart.Red);
       end Exit_Stopping;
       procedure Exit_Held
       with
-        Pre => Active_Cars = Chart.Held,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Red
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Held, Chart.Red)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Data.Cars_Stopped := False;
-         Active_Cars := Chart.Red;
+         Active_Cars := Chart.Moved (Active_Cars, Chart.Held, Chart.Red);
       end Exit_Held;
       procedure Exit_Red_Yellow
       with
-        Pre => Active_Cars = Chart.Red_Yellow,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Nowhere
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Red_Yellow, Chart.Nowhere)
           and then Self.Timers (3) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -321,14 +323,15 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active_Cars := Chart.Nowhere;
+         Active_Cars :=
+           Chart.Moved (Active_Cars, Chart.Red_Yellow, Chart.Nowhere);
       end Exit_Red_Yellow;
       procedure Exit_Least
       with
-        Pre => Active_Cars = Chart.Least,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Green
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Least, Chart.Green)
           and then Self.Timers (4) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -336,14 +339,14 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (4));
-         Active_Cars := Chart.Green;
+         Active_Cars := Chart.Moved (Active_Cars, Chart.Least, Chart.Green);
       end Exit_Least;
       procedure Exit_Yellow
       with
-        Pre => Active_Cars = Chart.Yellow,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Nowhere
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Yellow, Chart.Nowhere)
           and then Self.Timers (5) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -351,14 +354,18 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (5));
-         Active_Cars := Chart.Nowhere;
+         Active_Cars :=
+           Chart.Moved (Active_Cars, Chart.Yellow, Chart.Nowhere);
       end Exit_Yellow;
       procedure Exit_On_The_Road
       with
-        Pre => Active_Walkers = Chart.On_The_Road,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.Nowhere
+          and then Active_Walkers
+            = Chart.Moved
+                (Active_Walkers'Old,
+                 Chart.On_The_Road,
+                 Chart.Nowhere)
           and then Self.Timers (7) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -367,14 +374,18 @@ is
       begin
          Self.Data.Road_Free := True;
          Ravenchart.Timers.Disarm (Self.Timers (7));
-         Active_Walkers := Chart.Nowhere;
+         Active_Walkers :=
+           Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Nowhere);
       end Exit_On_The_Road;
       procedure Exit_Walking
       with
-        Pre => Active_Walkers = Chart.Walking,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.On_The_Road
+          and then Active_Walkers
+            = Chart.Moved
+                (Active_Walkers'Old,
+                 Chart.Walking,
+                 Chart.On_The_Road)
           and then Self.Timers (6) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -382,7 +393,8 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (6));
-         Active_Walkers := Chart.On_The_Road;
+         Active_Walkers :=
+           Chart.Moved (Active_Walkers, Chart.Walking, Chart.On_The_Road);
       end Exit_Walking;
       procedure Leave_On_The_Road
       with
@@ -581,13 +593,13 @@ is
       end Leave_Walkers;
       procedure Enter_Blinking
       with
-        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place
           = (Top => Lights_States.Blinking,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Self.Place'Old.In_Cars)
-          and then Active_Top = Chart.Blinking
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Blinking)
           and then Self.Timers (1) = Ravenchart.Timers.Started (5, 5)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -596,33 +608,41 @@ is
       begin
          Self.Place.Top := Lights_States.Blinking;
          Ravenchart.Timers.Arm (Self.Timers (1), 5, 5);
-         Active_Top := Chart.Blinking;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Nowhere, Chart.Blinking);
          Self.Data.Cars_See := Crossing_System.Slow;
          Self.Data.Walkers_See := Crossing_System.Dark;
       end Enter_Blinking;
       procedure Enter_Red
       with
-        Pre =>
-          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Red
+          and then Active_Cars
+            = (if Active_Top = Chart.Working
+                  then Chart.Moved
+                       (Active_Cars'Old,
+                        Chart.Nowhere,
+                        Chart.Red)
+               else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active_Cars := Chart.Red;
+         Active_Cars :=
+           (if Active_Top = Chart.Working
+               then Chart.Moved (Active_Cars, Chart.Nowhere, Chart.Red)
+            else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Stop;
       end Enter_Red;
       procedure Enter_Stopping
       with
-        Pre => Active_Cars = Chart.Red,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Stopping)
-          and then Active_Cars = Chart.Stopping
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Stopping)
           and then Self.Timers (2) = Ravenchart.Timers.Started (20)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -631,35 +651,40 @@ is
       begin
          Self.Place.In_Cars := Lights_States.Stopping;
          Ravenchart.Timers.Arm (Self.Timers (2), 20);
-         Active_Cars := Chart.Stopping;
+         Active_Cars :=
+           Chart.Moved (Active_Cars, Chart.Red, Chart.Stopping);
       end Enter_Stopping;
       procedure Enter_Held
       with
-        Pre => Active_Cars = Chart.Red,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Held)
-          and then Active_Cars = Chart.Held
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Held)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Held;
-         Active_Cars := Chart.Held;
+         Active_Cars := Chart.Moved (Active_Cars, Chart.Red, Chart.Held);
          Self.Data.Cars_Stopped := True;
       end Enter_Held;
       procedure Enter_Red_Yellow
       with
-        Pre =>
-          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Red_Yellow)
-          and then Active_Cars = Chart.Red_Yellow
+          and then Active_Cars
+            = (if Active_Top = Chart.Working
+                  then Chart.Moved
+                       (Active_Cars'Old,
+                        Chart.Nowhere,
+                        Chart.Red_Yellow)
+               else Chart.Disorder)
           and then Self.Timers (3) = Ravenchart.Timers.Started (10)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -668,32 +693,45 @@ is
       begin
          Self.Place.In_Cars := Lights_States.Red_Yellow;
          Ravenchart.Timers.Arm (Self.Timers (3), 10);
-         Active_Cars := Chart.Red_Yellow;
+         Active_Cars :=
+           (if Active_Top = Chart.Working
+               then Chart.Moved
+                    (Active_Cars,
+                     Chart.Nowhere,
+                     Chart.Red_Yellow)
+            else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Ready;
       end Enter_Red_Yellow;
       procedure Enter_Green
       with
-        Pre =>
-          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Cars = Chart.Green
+          and then Active_Cars
+            = (if Active_Top = Chart.Working
+                  then Chart.Moved
+                       (Active_Cars'Old,
+                        Chart.Nowhere,
+                        Chart.Green)
+               else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active_Cars := Chart.Green;
+         Active_Cars :=
+           (if Active_Top = Chart.Working
+               then Chart.Moved (Active_Cars, Chart.Nowhere, Chart.Green)
+            else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Go;
       end Enter_Green;
       procedure Enter_Least
       with
-        Pre => Active_Cars = Chart.Green,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Least)
-          and then Active_Cars = Chart.Least
+          and then Active_Cars
+            = Chart.Moved (Active_Cars'Old, Chart.Green, Chart.Least)
           and then Self.Timers (4) = Ravenchart.Timers.Started (100)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -702,18 +740,22 @@ is
       begin
          Self.Place.In_Cars := Lights_States.Least;
          Ravenchart.Timers.Arm (Self.Timers (4), 100);
-         Active_Cars := Chart.Least;
+         Active_Cars := Chart.Moved (Active_Cars, Chart.Green, Chart.Least);
       end Enter_Least;
       procedure Enter_Yellow
       with
-        Pre =>
-          Active_Cars = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Self.Place'Old.In_Walkers,
              In_Cars => Lights_States.Yellow)
-          and then Active_Cars = Chart.Yellow
+          and then Active_Cars
+            = (if Active_Top = Chart.Working
+                  then Chart.Moved
+                       (Active_Cars'Old,
+                        Chart.Nowhere,
+                        Chart.Yellow)
+               else Chart.Disorder)
           and then Self.Timers (5) = Ravenchart.Timers.Started (30)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -722,64 +764,89 @@ is
       begin
          Self.Place.In_Cars := Lights_States.Yellow;
          Ravenchart.Timers.Arm (Self.Timers (5), 30);
-         Active_Cars := Chart.Yellow;
+         Active_Cars :=
+           (if Active_Top = Chart.Working
+               then Chart.Moved (Active_Cars, Chart.Nowhere, Chart.Yellow)
+            else Chart.Disorder);
          Self.Data.Cars_See := Crossing_System.Slow;
       end Enter_Yellow;
       procedure Enter_Dont_Walk
       with
-        Pre =>
-          Active_Walkers = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.Dont_Walk
+          and then Active_Walkers
+            = (if Active_Top = Chart.Working
+                  then Chart.Moved
+                       (Active_Walkers'Old,
+                        Chart.Nowhere,
+                        Chart.Dont_Walk)
+               else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
-         Active_Walkers := Chart.Dont_Walk;
+         Active_Walkers :=
+           (if Active_Top = Chart.Working
+               then Chart.Moved
+                    (Active_Walkers,
+                     Chart.Nowhere,
+                     Chart.Dont_Walk)
+            else Chart.Disorder);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Dont_Walk;
       procedure Enter_Nobody
       with
-        Pre => Active_Walkers = Chart.Dont_Walk,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Nobody,
              In_Cars => Self.Place'Old.In_Cars)
-          and then Active_Walkers = Chart.Nobody
+          and then Active_Walkers
+            = Chart.Moved
+                (Active_Walkers'Old,
+                 Chart.Dont_Walk,
+                 Chart.Nobody)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Nobody;
-         Active_Walkers := Chart.Nobody;
+         Active_Walkers :=
+           Chart.Moved (Active_Walkers, Chart.Dont_Walk, Chart.Nobody);
          Self.Data.Requested := False;
       end Enter_Nobody;
       procedure Enter_Waiting
       with
-        Pre => Active_Walkers = Chart.Dont_Walk,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Waiting,
              In_Cars => Self.Place'Old.In_Cars)
-          and then Active_Walkers = Chart.Waiting
+          and then Active_Walkers
+            = Chart.Moved
+                (Active_Walkers'Old,
+                 Chart.Dont_Walk,
+                 Chart.Waiting)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Waiting;
-         Active_Walkers := Chart.Waiting;
+         Active_Walkers :=
+           Chart.Moved (Active_Walkers, Chart.Dont_Walk, Chart.Waiting);
          Self.Data.Requested := True;
       end Enter_Waiting;
       procedure Enter_On_The_Road
       with
-        Pre =>
-          Active_Walkers = Chart.Nowhere and then Active_Top = Chart.Working,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.On_The_Road
+          and then Active_Walkers
+            = (if Active_Top = Chart.Working
+                  then Chart.Moved
+                       (Active_Walkers'Old,
+                        Chart.Nowhere,
+                        Chart.On_The_Road)
+               else Chart.Disorder)
           and then Self.Timers (7) = Ravenchart.Timers.Started (100)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -787,18 +854,27 @@ is
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
-         Active_Walkers := Chart.On_The_Road;
+         Active_Walkers :=
+           (if Active_Top = Chart.Working
+               then Chart.Moved
+                    (Active_Walkers,
+                     Chart.Nowhere,
+                     Chart.On_The_Road)
+            else Chart.Disorder);
          Self.Data.Road_Free := False;
       end Enter_On_The_Road;
       procedure Enter_Walking
       with
-        Pre => Active_Walkers = Chart.On_The_Road,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Walking,
              In_Cars => Self.Place'Old.In_Cars)
-          and then Active_Walkers = Chart.Walking
+          and then Active_Walkers
+            = Chart.Moved
+                (Active_Walkers'Old,
+                 Chart.On_The_Road,
+                 Chart.Walking)
           and then Self.Timers (6) = Ravenchart.Timers.Started (60)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -807,24 +883,29 @@ is
       begin
          Self.Place.In_Walkers := Lights_States.Walking;
          Ravenchart.Timers.Arm (Self.Timers (6), 60);
-         Active_Walkers := Chart.Walking;
+         Active_Walkers :=
+           Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Walking);
          Self.Data.Walkers_See := Crossing_System.Walk;
       end Enter_Walking;
       procedure Enter_Leaving
       with
-        Pre => Active_Walkers = Chart.On_The_Road,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Walkers => Lights_States.Leaving,
              In_Cars => Self.Place'Old.In_Cars)
-          and then Active_Walkers = Chart.Leaving
+          and then Active_Walkers
+            = Chart.Moved
+                (Active_Walkers'Old,
+                 Chart.On_The_Road,
+                 Chart.Leaving)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Place.In_Walkers := Lights_States.Leaving;
-         Active_Walkers := Chart.Leaving;
+         Active_Walkers :=
+           Chart.Moved (Active_Walkers, Chart.On_The_Road, Chart.Leaving);
          Self.Data.Walkers_See := Crossing_System.Wait;
       end Enter_Leaving;
    begin
@@ -877,7 +958,13 @@ is
          when Into_Service =>
             Exit_Blinking;
             Active_Top :=
-              Chart.Moved (Active_Top, Chart.Nowhere, Chart.Working);
+              (if Active_Cars = Chart.Nowhere
+                  and then Active_Walkers = Chart.Nowhere
+                  then Chart.Moved
+                       (Active_Top,
+                        Chart.Nowhere,
+                        Chart.Working)
+               else Chart.Disorder);
             Self.Place.Top := Lights_States.Working;
             Self.Place.In_Cars := Lights_States.Stopping;
             Self.Place.In_Walkers := Lights_States.Nobody;
@@ -889,7 +976,13 @@ is
             Leave_Cars;
             Leave_Walkers;
             Active_Top :=
-              Chart.Moved (Active_Top, Chart.Working, Chart.Nowhere);
+              (if Active_Cars = Chart.Nowhere
+                  and then Active_Walkers = Chart.Nowhere
+                  then Chart.Moved
+                       (Active_Top,
+                        Chart.Working,
+                        Chart.Nowhere)
+               else Chart.Disorder);
             Enter_Blinking;
          when Blink =>
             Self.Data.Cars_See :=

@@ -362,7 +362,8 @@ is
          Infusing,
          Running,
          Giving,
-         Alarm);
+         Alarm,
+         Disorder);
 
       function Innermost_Motor
         (Place : Infusion_States.Configuration)
@@ -390,8 +391,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Notice_Turning
@@ -565,13 +565,16 @@ is
       Kept : constant Deferrals.List := Self.Deferred with Ghost;
       procedure Exit_Self_Test
       with
-        Pre =>
-          Active_Top = Chart.Self_Test
-          and then Active_Motor = Chart.Nowhere
-          and then Active_Sensor = Chart.Nowhere,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Nowhere
+          and then Active_Top
+            = (if Active_Motor = Chart.Nowhere
+                  and then Active_Sensor = Chart.Nowhere
+                  then Chart.Moved
+                       (Active_Top'Old,
+                        Chart.Self_Test,
+                        Chart.Nowhere)
+               else Chart.Disorder)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -583,14 +586,18 @@ is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Self.Completed_Self_Test := False;
-         Active_Top := Chart.Nowhere;
+         Active_Top :=
+           (if Active_Motor = Chart.Nowhere
+               and then Active_Sensor = Chart.Nowhere
+               then Chart.Moved (Active_Top, Chart.Self_Test, Chart.Nowhere)
+            else Chart.Disorder);
       end Exit_Self_Test;
       procedure Exit_Turning
       with
-        Pre => Active_Motor = Chart.Turning,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Motor = Chart.Nowhere
+          and then Active_Motor
+            = Chart.Moved (Active_Motor'Old, Chart.Turning, Chart.Nowhere)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -600,14 +607,15 @@ is
       begin
          Self.Data.Speed := 0;
          Self.Completed_Turning := False;
-         Active_Motor := Chart.Nowhere;
+         Active_Motor :=
+           Chart.Moved (Active_Motor, Chart.Turning, Chart.Nowhere);
       end Exit_Turning;
       procedure Exit_Infusing
       with
-        Pre => Active_Top = Chart.Infusing,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Nowhere
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Nowhere)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -616,14 +624,15 @@ is
       is
       begin
          Self.Data.Speed := 0;
-         Active_Top := Chart.Nowhere;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Infusing, Chart.Nowhere);
       end Exit_Infusing;
       procedure Exit_Running
       with
-        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Infusing
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Infusing)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -632,14 +641,15 @@ is
       is
       begin
          Self.Completed_Running := False;
-         Active_Top := Chart.Infusing;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Running, Chart.Infusing);
       end Exit_Running;
       procedure Exit_Filling
       with
-        Pre => Active_Top = Chart.Filling,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Running
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Filling, Chart.Running)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Filling,
@@ -652,14 +662,15 @@ is
          Self.Completed_Filling := False;
          Self.Past.Last_In_Infusing := Infusion_States.Filling;
          Self.Past.Known_In_Infusing := True;
-         Active_Top := Chart.Running;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Filling, Chart.Running);
       end Exit_Filling;
       procedure Exit_Giving
       with
-        Pre => Active_Top = Chart.Giving,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Running
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Running)
           and then Self.Timers (2) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -670,14 +681,15 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
-         Active_Top := Chart.Running;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Giving, Chart.Running);
       end Exit_Giving;
       procedure Exit_Loading
       with
-        Pre => Active_Top = Chart.Loading,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Giving
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Loading, Chart.Giving)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Loading,
@@ -689,14 +701,15 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Loading;
          Self.Past.Known_In_Infusing := True;
-         Active_Top := Chart.Giving;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Loading, Chart.Giving);
       end Exit_Loading;
       procedure Exit_Maintaining
       with
-        Pre => Active_Top = Chart.Maintaining,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Giving
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Maintaining, Chart.Giving)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Maintaining,
@@ -708,14 +721,15 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Maintaining;
          Self.Past.Known_In_Infusing := True;
-         Active_Top := Chart.Giving;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Maintaining, Chart.Giving);
       end Exit_Maintaining;
       procedure Exit_All_Given
       with
-        Pre => Active_Top = Chart.All_Given,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Running
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.All_Given, Chart.Running)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.All_Given,
@@ -727,14 +741,15 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.All_Given;
          Self.Past.Known_In_Infusing := True;
-         Active_Top := Chart.Running;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.All_Given, Chart.Running);
       end Exit_All_Given;
       procedure Exit_Trickling
       with
-        Pre => Active_Top = Chart.Trickling,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Infusing
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Trickling, Chart.Infusing)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Trickling,
@@ -746,14 +761,15 @@ is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Trickling;
          Self.Past.Known_In_Infusing := True;
-         Active_Top := Chart.Infusing;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Trickling, Chart.Infusing);
       end Exit_Trickling;
       procedure Exit_Alarm
       with
-        Pre => Active_Top = Chart.Alarm,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Nowhere
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Nowhere)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -762,14 +778,14 @@ is
       is
       begin
          Self.Data.Buzzer := False;
-         Active_Top := Chart.Nowhere;
+         Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Nowhere);
       end Exit_Alarm;
       procedure Exit_Silent
       with
-        Pre => Active_Top = Chart.Silent,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Alarm
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Silent, Chart.Alarm)
           and then Self.Timers (3) = Ravenchart.Timers.Stopped
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -780,7 +796,7 @@ is
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
-         Active_Top := Chart.Alarm;
+         Active_Top := Chart.Moved (Active_Top, Chart.Silent, Chart.Alarm);
       end Exit_Silent;
       procedure Leave_Alarm
       with
@@ -954,16 +970,19 @@ is
       end Leave_Sensor;
       procedure Enter_Self_Test
       with
-        Pre =>
-          Active_Top = Chart.Nowhere
-          and then Active_Motor = Chart.Nowhere
-          and then Active_Sensor = Chart.Nowhere,
         Post =>
           Self.Place
           = (Top => Infusion_States.Self_Test,
              In_Sensor => Infusion_States.Listening,
              In_Motor => Infusion_States.Turning)
-          and then Active_Top = Chart.Self_Test
+          and then Active_Top
+            = (if Active_Motor = Chart.Nowhere
+                  and then Active_Sensor = Chart.Nowhere
+                  then Chart.Moved
+                       (Active_Top'Old,
+                        Chart.Nowhere,
+                        Chart.Self_Test)
+               else Chart.Disorder)
           and then Self.Timers (1) = Ravenchart.Timers.Started (100)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -977,19 +996,27 @@ is
          Self.Place.In_Motor := Infusion_States.Turning;
          Self.Place.In_Sensor := Infusion_States.Listening;
          Ravenchart.Timers.Arm (Self.Timers (1), 100);
-         Active_Top := Chart.Self_Test;
+         Active_Top :=
+           (if Active_Motor = Chart.Nowhere
+               and then Active_Sensor = Chart.Nowhere
+               then Chart.Moved (Active_Top, Chart.Nowhere, Chart.Self_Test)
+            else Chart.Disorder);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Self_Test;
       procedure Enter_Turning
       with
-        Pre =>
-          Active_Motor = Chart.Nowhere and then Active_Top = Chart.Self_Test,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Infusion_States.Turning)
-          and then Active_Motor = Chart.Turning
+          and then Active_Motor
+            = (if Active_Top = Chart.Self_Test
+                  then Chart.Moved
+                       (Active_Motor'Old,
+                        Chart.Nowhere,
+                        Chart.Turning)
+               else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1000,19 +1027,26 @@ is
          Self.Place.In_Motor := Infusion_States.Turning;
          Self.Visits_Turning := Ravenchart.Next (Self.Visits_Turning);
          Self.Done_In.Turning := False;
-         Active_Motor := Chart.Turning;
+         Active_Motor :=
+           (if Active_Top = Chart.Self_Test
+               then Chart.Moved (Active_Motor, Chart.Nowhere, Chart.Turning)
+            else Chart.Disorder);
          Self.Data.Speed := 10;
       end Enter_Turning;
       procedure Enter_Motor_Good
       with
-        Pre =>
-          Active_Motor = Chart.Nowhere and then Active_Top = Chart.Self_Test,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Infusion_States.Motor_Good)
-          and then Active_Motor = Chart.Motor_Good
+          and then Active_Motor
+            = (if Active_Top = Chart.Self_Test
+                  then Chart.Moved
+                       (Active_Motor'Old,
+                        Chart.Nowhere,
+                        Chart.Motor_Good)
+               else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1021,22 +1055,31 @@ is
       is
       begin
          Self.Place.In_Motor := Infusion_States.Motor_Good;
-         Active_Motor := Chart.Motor_Good;
+         Active_Motor :=
+           (if Active_Top = Chart.Self_Test
+               then Chart.Moved
+                    (Active_Motor,
+                     Chart.Nowhere,
+                     Chart.Motor_Good)
+            else Chart.Disorder);
          if Self.Place.In_Sensor = Infusion_States.Sensor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Motor_Good;
       procedure Enter_Sensor_Good
       with
-        Pre =>
-          Active_Sensor = Chart.Nowhere
-          and then Active_Top = Chart.Self_Test,
         Post =>
           Self.Place
           = (Top => Self.Place'Old.Top,
              In_Sensor => Infusion_States.Sensor_Good,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Sensor = Chart.Sensor_Good
+          and then Active_Sensor
+            = (if Active_Top = Chart.Self_Test
+                  then Chart.Moved
+                       (Active_Sensor'Old,
+                        Chart.Nowhere,
+                        Chart.Sensor_Good)
+               else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1045,20 +1088,26 @@ is
       is
       begin
          Self.Place.In_Sensor := Infusion_States.Sensor_Good;
-         Active_Sensor := Chart.Sensor_Good;
+         Active_Sensor :=
+           (if Active_Top = Chart.Self_Test
+               then Chart.Moved
+                    (Active_Sensor,
+                     Chart.Nowhere,
+                     Chart.Sensor_Good)
+            else Chart.Disorder);
          if Self.Place.In_Motor = Infusion_States.Motor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Sensor_Good;
       procedure Enter_Programming
       with
-        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place
           = (Top => Infusion_States.Programming,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Programming
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Programming)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1067,15 +1116,16 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Programming;
-         Active_Top := Chart.Programming;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Nowhere, Chart.Programming);
          Self.Data.Lamp := Infusion_System.Dark;
       end Enter_Programming;
       procedure Enter_Infusing
       with
-        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Infusing
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Infusing)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1083,18 +1133,19 @@ is
           and then Self.Lost = Self.Lost'Old
       is
       begin
-         Active_Top := Chart.Infusing;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Nowhere, Chart.Infusing);
          Self.Data.Lamp := Infusion_System.Steady;
       end Enter_Infusing;
       procedure Enter_Filling
       with
-        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place
           = (Top => Infusion_States.Filling,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Filling
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Filling)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1105,15 +1156,16 @@ is
          Self.Place.Top := Infusion_States.Filling;
          Self.Visits_Filling := Ravenchart.Next (Self.Visits_Filling);
          Self.Done_In.Filling := False;
-         Active_Top := Chart.Filling;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Running, Chart.Filling);
          Self.Data.Speed := 100;
       end Enter_Filling;
       procedure Enter_Giving
       with
-        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Giving
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Giving)
           and then Self.Timers (2) = Ravenchart.Timers.Started (20, 20)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -1124,17 +1176,18 @@ is
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (2), 20, 20);
-         Active_Top := Chart.Giving;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Running, Chart.Giving);
       end Enter_Giving;
       procedure Enter_Loading
       with
-        Pre => Active_Top = Chart.Giving,
         Post =>
           Self.Place
           = (Top => Infusion_States.Loading,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Loading
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Loading)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1143,19 +1196,20 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Loading;
-         Active_Top := Chart.Loading;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Giving, Chart.Loading);
          Self.Data.Speed :=
            Infusion_System.Unit_Ul'Min (2 * Self.Data.Portion, 500);
       end Enter_Loading;
       procedure Enter_Maintaining
       with
-        Pre => Active_Top = Chart.Giving,
         Post =>
           Self.Place
           = (Top => Infusion_States.Maintaining,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Maintaining
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Maintaining)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1164,18 +1218,19 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Maintaining;
-         Active_Top := Chart.Maintaining;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Giving, Chart.Maintaining);
          Self.Data.Speed := Self.Data.Portion;
       end Enter_Maintaining;
       procedure Enter_All_Given
       with
-        Pre => Active_Top = Chart.Running,
         Post =>
           Self.Place
           = (Top => Infusion_States.All_Given,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.All_Given
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Running, Chart.All_Given)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1184,18 +1239,19 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.All_Given;
-         Active_Top := Chart.All_Given;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Running, Chart.All_Given);
          Self.Completed_Running := True;
       end Enter_All_Given;
       procedure Enter_Trickling
       with
-        Pre => Active_Top = Chart.Infusing,
         Post =>
           Self.Place
           = (Top => Infusion_States.Trickling,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Trickling
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Trickling)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1204,15 +1260,16 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Trickling;
-         Active_Top := Chart.Trickling;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Infusing, Chart.Trickling);
          Self.Data.Speed := Ins.Trickle;
       end Enter_Trickling;
       procedure Enter_Alarm
       with
-        Pre => Active_Top = Chart.Nowhere,
         Post =>
           Self.Place = Self.Place'Old
-          and then Active_Top = Chart.Alarm
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Alarm)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1220,18 +1277,18 @@ is
           and then Self.Lost = Self.Lost'Old
       is
       begin
-         Active_Top := Chart.Alarm;
+         Active_Top := Chart.Moved (Active_Top, Chart.Nowhere, Chart.Alarm);
          Self.Data.Lamp := Infusion_System.Flashing;
       end Enter_Alarm;
       procedure Enter_Sounding
       with
-        Pre => Active_Top = Chart.Alarm,
         Post =>
           Self.Place
           = (Top => Infusion_States.Sounding,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Sounding
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Sounding)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
           and then Self.Started = Self.Started'Old
@@ -1240,18 +1297,19 @@ is
       is
       begin
          Self.Place.Top := Infusion_States.Sounding;
-         Active_Top := Chart.Sounding;
+         Active_Top :=
+           Chart.Moved (Active_Top, Chart.Alarm, Chart.Sounding);
          Self.Data.Buzzer := True;
       end Enter_Sounding;
       procedure Enter_Silent
       with
-        Pre => Active_Top = Chart.Alarm,
         Post =>
           Self.Place
           = (Top => Infusion_States.Silent,
              In_Sensor => Self.Place'Old.In_Sensor,
              In_Motor => Self.Place'Old.In_Motor)
-          and then Active_Top = Chart.Silent
+          and then Active_Top
+            = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Silent)
           and then Self.Timers (3) = Ravenchart.Timers.Started (600)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
@@ -1263,9 +1321,349 @@ is
       begin
          Self.Place.Top := Infusion_States.Silent;
          Ravenchart.Timers.Arm (Self.Timers (3), 600);
-         Active_Top := Chart.Silent;
+         Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Silent);
          Self.Data.Buzzer := False;
       end Enter_Silent;
+      subtype From_Turned is Selection range Turned .. Give_Up;
+      procedure Fire_From_Turned (Chosen : From_Turned)
+      with
+        Pre =>
+          Self.Started
+          and then In_Source (Chosen, Self.Place)
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
+        Post =>
+          Self.Started
+          and then Self.Place
+            = Target (Chosen, Self.Place'Old, Self.Past'Old)
+          and then Self.Timers (1)
+            = Timer_After
+                (1,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (1))
+          and then Self.Timers (2)
+            = Timer_After
+                (2,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (2))
+          and then Self.Timers (3)
+            = Timer_After
+                (3,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (3))
+          and then (if Self.Started'Old
+                then Self.Past
+                   = Remembered
+                       (Domain_Of (Chosen),
+                        Self.Place'Old,
+                        Self.Past'Old)
+             else Self.Past = Self.Past'Old)
+          and then (if Chosen
+                in Defer_New_Portion_In_Loading
+                  | Defer_New_Portion_In_Filling
+                  | Defer_New_Portion_In_Self_Test
+                  | Defer_New_Volume_In_Self_Test
+                  | Defer_New_Portion_In_Alarm
+                then Deferrals.Is_Appended
+                     (Self.Deferred'Old,
+                      Item,
+                      Self.Deferred)
+                   and then Self.Lost
+                     = (Self.Lost'Old
+                        or (Deferrals.Count (Self.Deferred'Old) = 4))
+             else Self.Deferred = Self.Deferred'Old
+                and then Self.Lost = Self.Lost'Old)
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place)
+      is
+      begin
+         case Chosen is
+            when Turned =>
+               Exit_Turning;
+               Enter_Motor_Good;
+            when Heard =>
+               Active_Sensor :=
+                 Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
+               Enter_Sensor_Good;
+            when Loaded =>
+               Exit_Loading;
+               Enter_Maintaining;
+            when Change =>
+               Exit_Maintaining;
+               pragma Assert
+                 (Active_Top = Chart.Giving
+                  and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+                  and then Active_Sensor
+                    = Chart.Innermost_Sensor (Self.Place));
+               Self.Data.Portion := Item.Value_Portion;
+               Enter_Maintaining;
+            when Defer_New_Portion_In_Loading =>
+               if Deferrals.Count (Self.Deferred) = 4 then
+                  Self.Lost := True;
+               else
+                  Deferrals.Append (Self.Deferred, Item);
+               end if;
+            when Filled_Up =>
+               Exit_Filling;
+               Enter_Giving;
+               Enter_Loading;
+            when Beat =>
+               Self.Data.Given :=
+                 Infusion_System.Unit_Ul'Min
+                   (Self.Data.Given + Self.Data.Speed,
+                    Self.Data.Volume);
+            when Enough =>
+               Leave_Giving;
+               Exit_Giving;
+               Enter_All_Given;
+            when Defer_New_Portion_In_Filling =>
+               if Deferrals.Count (Self.Deferred) = 4 then
+                  Self.Lost := True;
+               else
+                  Deferrals.Append (Self.Deferred, Item);
+               end if;
+            when Finished =>
+               Leave_Running;
+               Exit_Running;
+               Enter_Trickling;
+            when Hush =>
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Sounding, Chart.Alarm);
+               Enter_Silent;
+            when Remind =>
+               Exit_Silent;
+               Enter_Sounding;
+            when Restore_Where_It_Was =>
+               Active_Top :=
+                 Chart.Moved
+                   (Active_Top,
+                    Chart.Where_It_Was,
+                    Chart.Infusing);
+               if Past.Known_In_Infusing then
+                  case Past.Last_In_Infusing is
+                     when Infusion_States.Filling =>
+                        Active_Top :=
+                          Chart.Moved
+                            (Active_Top,
+                             Chart.Infusing,
+                             Chart.Running);
+                        Enter_Filling;
+                     when Infusion_States.Loading =>
+                        Active_Top :=
+                          Chart.Moved
+                            (Active_Top,
+                             Chart.Infusing,
+                             Chart.Running);
+                        Enter_Giving;
+                        Enter_Loading;
+                     when Infusion_States.Maintaining =>
+                        Active_Top :=
+                          Chart.Moved
+                            (Active_Top,
+                             Chart.Infusing,
+                             Chart.Running);
+                        Enter_Giving;
+                        Enter_Maintaining;
+                     when Infusion_States.All_Given =>
+                        Active_Top :=
+                          Chart.Moved
+                            (Active_Top,
+                             Chart.Infusing,
+                             Chart.Running);
+                        Enter_Filling;
+                     when Infusion_States.Trickling =>
+                        Enter_Trickling;
+                     when Infusion_States.Where_It_Was =>
+                        Active_Top :=
+                          Chart.Moved
+                            (Active_Top,
+                             Chart.Infusing,
+                             Chart.Running);
+                        Enter_Filling;
+                  end case;
+               else
+                  Active_Top :=
+                    Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
+                  Enter_Filling;
+               end if;
+            when Default_Of_Where_It_Was =>
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Where_It_Was, Chart.Running);
+               Enter_Filling;
+            when Ready =>
+               Leave_Motor;
+               Leave_Sensor;
+               Exit_Self_Test;
+               Enter_Programming;
+            when Again =>
+               Leave_Motor;
+               Leave_Sensor;
+               Exit_Self_Test;
+               Enter_Self_Test;
+               Enter_Turning;
+               Active_Sensor :=
+                 (if Active_Top = Chart.Self_Test
+                     then Chart.Moved
+                          (Active_Sensor,
+                           Chart.Nowhere,
+                           Chart.Listening)
+                  else Chart.Disorder);
+               Self.Place.In_Sensor := Infusion_States.Listening;
+            when Order_Portion =>
+               Self.Data.Portion := Item.Value_Portion;
+            when Order_Volume =>
+               Self.Data.Volume := Item.Value_Volume;
+            when Start =>
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Programming, Chart.Nowhere);
+               pragma Assert
+                 (Active_Top = Chart.Nowhere
+                  and then Active_Motor = Chart.Nowhere
+                  and then Active_Sensor = Chart.Nowhere);
+               Self.Data.Given := 0;
+               Enter_Infusing;
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
+               Enter_Filling;
+            when Stop =>
+               Leave_Infusing;
+               Exit_Infusing;
+               Enter_Programming;
+            when Lost =>
+               Leave_Infusing;
+               Exit_Infusing;
+               Enter_Alarm;
+               Enter_Sounding;
+            when Trouble =>
+               Leave_Infusing;
+               Exit_Infusing;
+               Enter_Alarm;
+               Enter_Sounding;
+            when Resume =>
+               Leave_Alarm;
+               Exit_Alarm;
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.Nowhere, Chart.May_Go_On);
+               Self.Place.Top := Infusion_States.May_Go_On;
+            when Give_Up =>
+               Leave_Alarm;
+               Exit_Alarm;
+               Enter_Programming;
+         end case;
+      end Fire_From_Turned;
+      subtype From_Defer_New_Portion_In_Self_Test is
+        Selection
+        range Defer_New_Portion_In_Self_Test
+        .. Not_Yet;
+      procedure Fire_From_Defer_New_Portion_In_Self_Test
+        (Chosen : From_Defer_New_Portion_In_Self_Test)
+      with
+        Pre =>
+          Self.Started
+          and then In_Source (Chosen, Self.Place)
+          and then Self.Past = Past
+          and then Self.Deferred = Kept
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place),
+        Post =>
+          Self.Started
+          and then Self.Place
+            = Target (Chosen, Self.Place'Old, Self.Past'Old)
+          and then Self.Timers (1)
+            = Timer_After
+                (1,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (1))
+          and then Self.Timers (2)
+            = Timer_After
+                (2,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (2))
+          and then Self.Timers (3)
+            = Timer_After
+                (3,
+                 Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Self.Place,
+                 Self.Timers'Old (3))
+          and then (if Self.Started'Old
+                then Self.Past
+                   = Remembered
+                       (Domain_Of (Chosen),
+                        Self.Place'Old,
+                        Self.Past'Old)
+             else Self.Past = Self.Past'Old)
+          and then (if Chosen
+                in Defer_New_Portion_In_Loading
+                  | Defer_New_Portion_In_Filling
+                  | Defer_New_Portion_In_Self_Test
+                  | Defer_New_Volume_In_Self_Test
+                  | Defer_New_Portion_In_Alarm
+                then Deferrals.Is_Appended
+                     (Self.Deferred'Old,
+                      Item,
+                      Self.Deferred)
+                   and then Self.Lost
+                     = (Self.Lost'Old
+                        or (Deferrals.Count (Self.Deferred'Old) = 4))
+             else Self.Deferred = Self.Deferred'Old
+                and then Self.Lost = Self.Lost'Old)
+          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+          and then Active_Top = Chart.Innermost_Top (Self.Place)
+      is
+      begin
+         case Chosen is
+            when Defer_New_Portion_In_Self_Test =>
+               if Deferrals.Count (Self.Deferred) = 4 then
+                  Self.Lost := True;
+               else
+                  Deferrals.Append (Self.Deferred, Item);
+               end if;
+            when Defer_New_Volume_In_Self_Test =>
+               if Deferrals.Count (Self.Deferred) = 4 then
+                  Self.Lost := True;
+               else
+                  Deferrals.Append (Self.Deferred, Item);
+               end if;
+            when Defer_New_Portion_In_Alarm =>
+               if Deferrals.Count (Self.Deferred) = 4 then
+                  Self.Lost := True;
+               else
+                  Deferrals.Append (Self.Deferred, Item);
+               end if;
+            when Go_On =>
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
+               Enter_Infusing;
+               Active_Top :=
+                 Chart.Moved
+                   (Active_Top,
+                    Chart.Infusing,
+                    Chart.Where_It_Was);
+               Self.Place.Top := Infusion_States.Where_It_Was;
+            when Not_Yet =>
+               Active_Top :=
+                 Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
+               Enter_Alarm;
+               Enter_Sounding;
+         end case;
+      end Fire_From_Defer_New_Portion_In_Self_Test;
    begin
       case Chosen is
          when Initial_Entry =>
@@ -1273,200 +1671,17 @@ is
             Enter_Self_Test;
             Enter_Turning;
             Active_Sensor :=
-              Chart.Moved (Active_Sensor, Chart.Nowhere, Chart.Listening);
+              (if Active_Top = Chart.Self_Test
+                  then Chart.Moved
+                       (Active_Sensor,
+                        Chart.Nowhere,
+                        Chart.Listening)
+               else Chart.Disorder);
             Self.Place.In_Sensor := Infusion_States.Listening;
-         when Turned =>
-            Exit_Turning;
-            Enter_Motor_Good;
-         when Heard =>
-            Active_Sensor :=
-              Chart.Moved (Active_Sensor, Chart.Listening, Chart.Nowhere);
-            Enter_Sensor_Good;
-         when Loaded =>
-            Exit_Loading;
-            Enter_Maintaining;
-         when Change =>
-            Exit_Maintaining;
-            pragma Assert
-              (Active_Top = Chart.Giving
-               and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-               and then Active_Sensor = Chart.Innermost_Sensor (Self.Place));
-            Self.Data.Portion := Item.Value_Portion;
-            Enter_Maintaining;
-         when Defer_New_Portion_In_Loading =>
-            if Deferrals.Count (Self.Deferred) = 4 then
-               Self.Lost := True;
-            else
-               Deferrals.Append (Self.Deferred, Item);
-            end if;
-         when Filled_Up =>
-            Exit_Filling;
-            Enter_Giving;
-            Enter_Loading;
-         when Beat =>
-            Self.Data.Given :=
-              Infusion_System.Unit_Ul'Min
-                (Self.Data.Given + Self.Data.Speed,
-                 Self.Data.Volume);
-         when Enough =>
-            Leave_Giving;
-            Exit_Giving;
-            Enter_All_Given;
-         when Defer_New_Portion_In_Filling =>
-            if Deferrals.Count (Self.Deferred) = 4 then
-               Self.Lost := True;
-            else
-               Deferrals.Append (Self.Deferred, Item);
-            end if;
-         when Finished =>
-            Leave_Running;
-            Exit_Running;
-            Enter_Trickling;
-         when Hush =>
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Sounding, Chart.Alarm);
-            Enter_Silent;
-         when Remind =>
-            Exit_Silent;
-            Enter_Sounding;
-         when Restore_Where_It_Was =>
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Where_It_Was, Chart.Infusing);
-            if Past.Known_In_Infusing then
-               case Past.Last_In_Infusing is
-                  when Infusion_States.Filling =>
-                     Active_Top :=
-                       Chart.Moved
-                         (Active_Top,
-                          Chart.Infusing,
-                          Chart.Running);
-                     Enter_Filling;
-                  when Infusion_States.Loading =>
-                     Active_Top :=
-                       Chart.Moved
-                         (Active_Top,
-                          Chart.Infusing,
-                          Chart.Running);
-                     Enter_Giving;
-                     Enter_Loading;
-                  when Infusion_States.Maintaining =>
-                     Active_Top :=
-                       Chart.Moved
-                         (Active_Top,
-                          Chart.Infusing,
-                          Chart.Running);
-                     Enter_Giving;
-                     Enter_Maintaining;
-                  when Infusion_States.All_Given =>
-                     Active_Top :=
-                       Chart.Moved
-                         (Active_Top,
-                          Chart.Infusing,
-                          Chart.Running);
-                     Enter_Filling;
-                  when Infusion_States.Trickling =>
-                     Enter_Trickling;
-                  when Infusion_States.Where_It_Was =>
-                     Active_Top :=
-                       Chart.Moved
-                         (Active_Top,
-                          Chart.Infusing,
-                          Chart.Running);
-                     Enter_Filling;
-               end case;
-            else
-               Active_Top :=
-                 Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
-               Enter_Filling;
-            end if;
-         when Default_Of_Where_It_Was =>
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Where_It_Was, Chart.Running);
-            Enter_Filling;
-         when Ready =>
-            Leave_Motor;
-            Leave_Sensor;
-            Exit_Self_Test;
-            Enter_Programming;
-         when Again =>
-            Leave_Motor;
-            Leave_Sensor;
-            Exit_Self_Test;
-            Enter_Self_Test;
-            Enter_Turning;
-            Active_Sensor :=
-              Chart.Moved (Active_Sensor, Chart.Nowhere, Chart.Listening);
-            Self.Place.In_Sensor := Infusion_States.Listening;
-         when Order_Portion =>
-            Self.Data.Portion := Item.Value_Portion;
-         when Order_Volume =>
-            Self.Data.Volume := Item.Value_Volume;
-         when Start =>
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Programming, Chart.Nowhere);
-            pragma Assert
-              (Active_Top = Chart.Nowhere
-               and then Active_Motor = Chart.Nowhere
-               and then Active_Sensor = Chart.Nowhere);
-            Self.Data.Given := 0;
-            Enter_Infusing;
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);
-            Enter_Filling;
-         when Stop =>
-            Leave_Infusing;
-            Exit_Infusing;
-            Enter_Programming;
-         when Lost =>
-            Leave_Infusing;
-            Exit_Infusing;
-            Enter_Alarm;
-            Enter_Sounding;
-         when Trouble =>
-            Leave_Infusing;
-            Exit_Infusing;
-            Enter_Alarm;
-            Enter_Sounding;
-         when Resume =>
-            Leave_Alarm;
-            Exit_Alarm;
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Nowhere, Chart.May_Go_On);
-            Self.Place.Top := Infusion_States.May_Go_On;
-         when Give_Up =>
-            Leave_Alarm;
-            Exit_Alarm;
-            Enter_Programming;
-         when Defer_New_Portion_In_Self_Test =>
-            if Deferrals.Count (Self.Deferred) = 4 then
-               Self.Lost := True;
-            else
-               Deferrals.Append (Self.Deferred, Item);
-            end if;
-         when Defer_New_Volume_In_Self_Test =>
-            if Deferrals.Count (Self.Deferred) = 4 then
-               Self.Lost := True;
-            else
-               Deferrals.Append (Self.Deferred, Item);
-            end if;
-         when Defer_New_Portion_In_Alarm =>
-            if Deferrals.Count (Self.Deferred) = 4 then
-               Self.Lost := True;
-            else
-               Deferrals.Append (Self.Deferred, Item);
-            end if;
-         when Go_On =>
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
-            Enter_Infusing;
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.Infusing, Chart.Where_It_Was);
-            Self.Place.Top := Infusion_States.Where_It_Was;
-         when Not_Yet =>
-            Active_Top :=
-              Chart.Moved (Active_Top, Chart.May_Go_On, Chart.Nowhere);
-            Enter_Alarm;
-            Enter_Sounding;
+         when Turned .. Give_Up =>
+            Fire_From_Turned (Chosen);
+         when Defer_New_Portion_In_Self_Test .. Not_Yet =>
+            Fire_From_Defer_New_Portion_In_Self_Test (Chosen);
       end case;
       pragma Assert
         (Active_Motor = Chart.Innermost_Motor (Self.Place)

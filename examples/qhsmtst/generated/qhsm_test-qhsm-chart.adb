@@ -157,7 +157,8 @@ is
          S,
          S1,
          S2,
-         S21);
+         S21,
+         Disorder);
 
       function Innermost (Leaf : Chart_States.Leaf) return Node is
         (Node'Val (Chart_States.Leaf'Pos (Leaf) + 1));
@@ -167,8 +168,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is

@@ -22,7 +22,7 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Listening);
+      type Node is (Nowhere, Listening, Disorder);
 
       function Innermost (Leaf : Keys_States.Leaf) return Node is
         (Node'Val (Keys_States.Leaf'Pos (Leaf) + 1));
@@ -32,8 +32,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is

@@ -19,7 +19,7 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Before, After_Start);
+      type Node is (Nowhere, Before, After_Start, Disorder);
 
       function Innermost (Leaf : Starting_States.Leaf) return Node is
         (Node'Val (Starting_States.Leaf'Pos (Leaf) + 1));
@@ -29,8 +29,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -83,30 +82,30 @@ is
       with Ghost;
       procedure Exit_Before
       with
-        Pre => Active = Chart.Before,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Nowhere
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Before, Chart.Nowhere)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Nowhere;
+         Active := Chart.Moved (Active, Chart.Before, Chart.Nowhere);
       end Exit_Before;
       procedure Enter_Before
       with
-        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Starting_States.Before
-          and then Active = Chart.Before
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Before)
           and then Self.Timers (1) = Ravenchart.Timers.Started (2)
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Starting_States.Before;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Chart.Before;
+         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Before);
       end Enter_Before;
    begin
       case Chosen is

@@ -19,7 +19,7 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Quiet, Busy);
+      type Node is (Nowhere, Quiet, Busy, Disorder);
 
       function Innermost (Leaf : Watching_States.Leaf) return Node is
         (Node'Val (Watching_States.Leaf'Pos (Leaf) + 1));
@@ -29,8 +29,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Tick (Self : in out Region) is
@@ -79,30 +78,30 @@ is
       with Ghost;
       procedure Exit_Busy
       with
-        Pre => Active = Chart.Busy,
         Post =>
           Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Nowhere
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Busy, Chart.Nowhere)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Nowhere;
+         Active := Chart.Moved (Active, Chart.Busy, Chart.Nowhere);
       end Exit_Busy;
       procedure Enter_Busy
       with
-        Pre => Active = Chart.Nowhere,
         Post =>
           Self.Leaf = Watching_States.Busy
-          and then Active = Chart.Busy
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Busy)
           and then Self.Timers (1) = Ravenchart.Timers.Started (2)
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Watching_States.Busy;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Chart.Busy;
+         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Busy);
       end Enter_Busy;
    begin
       case Chosen is

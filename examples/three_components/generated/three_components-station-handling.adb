@@ -19,7 +19,7 @@ is
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Empty, Holding);
+      type Node is (Nowhere, Empty, Holding, Disorder);
 
       function Innermost (Leaf : Handling_States.Leaf) return Node is
         (Node'Val (Handling_States.Leaf'Pos (Leaf) + 1));
@@ -29,8 +29,7 @@ is
          From_Node : Node;
          To_Node : Node)
         return Node is
-        (To_Node)
-      with Pre => Active_Node = From_Node;
+        (if Active_Node = From_Node then To_Node else Disorder);
    end Chart;
 
    procedure Poll (Self : Region; Now : out Occurrence) is

@@ -8,6 +8,8 @@ else. The order then follows from the preconditions.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...statechart import PseudoKind
 from ...terms import Flow
 from ..ada import (
@@ -25,6 +27,7 @@ from ..ada import (
     Object,
     Package,
     Param,
+    PlainType,
     Pragma,
     Prefix,
     Ref,
@@ -46,6 +49,28 @@ from .moving import Moving
 from .nodes import NODES, Nodes, joined
 from .places import flat
 from .shape import START, RegionShape, behaviour_names
+
+MANY = 24
+"""More transitions than so many are fired by procedures of so many each: what the prover
+must see at a time stays small."""
+
+_Row = tuple[str, tuple[Stmt, ...]]
+
+
+def _range(rows: Sequence[_Row]) -> str:
+    return f"{rows[0][0]} .. {rows[-1][0]}"
+
+
+def _procedure(rows: Sequence[_Row], claims: tuple[Aspect, ...]) -> tuple[Decl, Decl]:
+    """A procedure for some transitions, and their type."""
+    own = PlainType(f"From_{rows[0][0]}", f"Selection range {_range(rows)}", subtype=True)
+    body = (Case(Ref("Chosen"), tuple(rows)),)
+    chosen = Param("Chosen", "in", own.name)
+    return own, Subprogram(f"Fire_{own.name}", (chosen,), aspects=claims, body=body)
+
+
+def _call(rows: Sequence[_Row]) -> _Row:
+    return _range(rows), (Do(f"Fire_From_{rows[0][0]}", arguments(Ref("Chosen"))),)
 
 
 class Moves:
@@ -69,23 +94,33 @@ class Moves:
     def fire(self) -> Subprogram:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
         shape = self.shape
-        start = (START, (Assign("Self.Started", TRUE), *joined(self._steps(shape.start))))
+        start = (Assign("Self.Started", TRUE), *joined(self._steps(shape.start)))
         rows = [(ada_case(f.name), self._row(f)) for f in shape.firings]
+        sources = call("In_Source", Ref("Chosen"), Ref(self.held))
         ready = IfExpr(
             ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
-            both(Ref("Self.Started"), call("In_Source", Ref("Chosen"), Ref(self.held))),
+            both(Ref("Self.Started"), sources),
         )
         moved = equal(Ref(self.held), shape.target("Chosen"))
         done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"))
         agreed = self.nodes.agreed(self.held)
         ghost = (Aspect("Ghost"),)
-        past: tuple[Decl, ...] = ()
+        past: tuple[Object, ...] = ()
         if self.shape.memories:
             past = (Object("Past", "Memory", Ref("Self.Past"), constant=True),)
         procedures = self.moving.procedures()
         if self.shape.deferring and procedures:
             kept = Ref("Self.Deferred")
             past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
+        if len(rows) > MANY:
+            before = [equal(o.value, Ref(o.name)) for o in past if o.value is not None]
+            claims = (
+                Aspect("Pre", both(*flat([Ref("Self.Started"), sources, *before, agreed]))),
+                Aspect("Post", both(*flat([done, agreed]))),
+            )
+            batches = [rows[at : at + MANY] for at in range(0, len(rows), MANY)]
+            procedures += tuple(d for batch in batches for d in _procedure(batch, claims))
+            rows = [_call(batch) for batch in batches]
         return Subprogram(
             "Fire",
             self.fire_params(),
@@ -96,7 +131,10 @@ class Moves:
                 *past,
                 *procedures,
             ),
-            body=(Case(Ref("Chosen"), (start, *rows)), Pragma("Assert", (agreed,))),
+            body=(
+                Case(Ref("Chosen"), ((START, start), *rows)),
+                Pragma("Assert", (agreed,)),
+            ),
         )
 
     def fire_params(self) -> tuple[Param, ...]:

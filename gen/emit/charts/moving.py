@@ -73,14 +73,6 @@ class Moving:
             return (Do(f"Enter_{ada_case(vertex)}"),)
         return (self.nodes.enter(vertex), *self._place(vertex), *self._noted(vertex, "entry"))
 
-    def _gone(self, state: str) -> Assign:
-        variable, value = self.nodes.exited(state)
-        return Assign(variable.text, value)
-
-    def _come(self, state: str) -> Assign:
-        variable, value = self.nodes.entered(state)
-        return Assign(variable.text, value)
-
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
         if place not in self._left:
@@ -106,18 +98,14 @@ class Moving:
         return equal(Ref(self.held), Ref(f"{self.held}'Old"))
 
     def _exit(self, state: str) -> Subprogram:
-        after = equal(*self.nodes.exited(state))
-        ready = self.nodes.ready_to_exit(state)
+        after = self.nodes.after_exit(state)
         return Subprogram(
             f"Exit_{ada_case(state)}",
-            aspects=(
-                Aspect("Pre", chain("and then", ready)),
-                Aspect("Post", both(self._kept(), after, *self.lasting.exited(state))),
-            ),
+            aspects=(Aspect("Post", both(self._kept(), after, *self.lasting.exited(state))),),
             body=(
                 *self._noted(state, "exit"),
                 *self._work_of_exit(state),
-                self._gone(state),
+                self.nodes.exit(state),
             ),
         )
 
@@ -148,17 +136,13 @@ class Moving:
         moved = self._kept()
         if leaves:
             moved = equal(Ref(self.held), self.shape.configuration(leaves, f"{self.held}'Old"))
-        ready = both(*flat(self.nodes.ready_to_enter(vertex)))
-        active = equal(*self.nodes.entered(vertex))
+        active = self.nodes.after_entry(vertex)
         first, then = self._work_of_entry(vertex)
         noted = self._noted(vertex, "entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
-            aspects=(
-                Aspect("Pre", ready),
-                Aspect("Post", both(moved, active, *self.lasting.entered(vertex))),
-            ),
-            body=(*self._place(vertex), *first, self._come(vertex), *noted, *then),
+            aspects=(Aspect("Post", both(moved, active, *self.lasting.entered(vertex))),),
+            body=(*self._place(vertex), *first, self.nodes.enter(vertex), *noted, *then),
         )
 
     def _place(self, vertex: str) -> tuple[Stmt, ...]:

@@ -4,7 +4,9 @@ In each lane the active states are a path, from the outermost to the innermost, 
 innermost one says which they are; it may be a pseudostate that is passed. To exit a
 state, it must be the innermost; to enter one, the state around it must be, or nothing
 where it stands outermost in its lane. What is active in other lanes below an orthogonal
-state is left before it and entered after it.
+state is left before it and entered after it. What is exited or entered otherwise brings
+disorder, and nothing leads out of that: where a configuration is claimed afterwards,
+everything before it was in order.
 """
 
 from __future__ import annotations
@@ -39,16 +41,19 @@ from .shape import RegionShape
 NODES = "Chart.Node"
 _GHOST = Aspect("Ghost")
 _NOWHERE = "Nowhere"
-
+_DISORDER = "Disorder"
+_NONE_ACTIVE = Ref(f"Chart.{_NOWHERE}")
+_NO_ORDER = Ref(f"Chart.{_DISORDER}")
 
 _MOVED = Subprogram(
     "Moved",
     tuple(Param(name, "in", "Node") for name in ("Active_Node", "From_Node", "To_Node")),
     "Node",
-    aspects=(Aspect("Pre", equal(Ref("Active_Node"), Ref("From_Node"))),),
-    expression=Ref("To_Node"),
+    expression=IfExpr(
+        ((equal(Ref("Active_Node"), Ref("From_Node")), Ref("To_Node")),), Ref(_DISORDER)
+    ),
 )
-"""Exits and entries that do nothing but this: their order is the precondition."""
+"""What an exit or entry does."""
 
 
 def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
@@ -93,7 +98,7 @@ class Nodes:
         for lane in shape.lanes:
             functions.append(self._innermost(lane, before))
             before += len(shape.literals(lane))
-        nodes = EnumType("Node", (_NOWHERE, *names))
+        nodes = EnumType("Node", (_NOWHERE, *names, _DISORDER))
         moved = (_MOVED,) if self._moves else ()
         return Package("Chart", (nodes, *functions, *moved), (_GHOST,))
 
@@ -110,12 +115,12 @@ class Nodes:
     def _suffix(self, lane: Lane) -> str:
         return "" if self.shape.single else f"_{self.shape.lane_name(lane)}"
 
-    def _around(self, vertex: str) -> str:
+    def _around(self, vertex: str) -> Ref:
         """The state around a vertex in its lane, if there is one."""
         place = self.shape.compounds.place(vertex)
         if place.owner is None or self.region.state(place.owner).is_orthogonal:
-            return _NOWHERE
-        return ada_case(place.owner)
+            return _NONE_ACTIVE
+        return node(place.owner)
 
     # --- the variables
 
@@ -125,12 +130,11 @@ class Nodes:
 
     def variables(self, started: Expr, held: str) -> list[Decl]:
         """One for each lane, as the configuration says."""
-        nowhere = Ref(f"Chart.{_NOWHERE}")
         return [
             Object(
                 self.active(lane).text,
                 NODES,
-                IfExpr(((started, self.innermost(lane, held)),), nowhere),
+                IfExpr(((started, self.innermost(lane, held)),), _NONE_ACTIVE),
                 aspects=(_GHOST,),
             )
             for lane in self.shape.lanes
@@ -146,60 +150,63 @@ class Nodes:
         return both(*(equal(self.active(n), self.innermost(n, held)) for n in among))
 
     def exit(self, state: str) -> Assign:
-        """The exit of a state that does nothing else."""
-        active, gone = self.exited(state)
-        return self._move(active, node(state), gone)
+        """The exit of a state."""
+        return Assign(self._of(state).text, self.exited(state))
 
-    def enter(self, state: str) -> Assign:
-        """The entry of a state that does nothing else."""
-        active, come = self.entered(state)
-        _, around = self.exited(state)
-        return self._move(active, around, come)
+    def enter(self, vertex: str) -> Assign:
+        """The entry of a state."""
+        return Assign(self._of(vertex).text, self.entered(vertex))
 
-    def _move(self, active: Ref, start: Ref, goal: Ref) -> Assign:
+    def after_exit(self, state: str) -> Expr:
+        """What the exit of a state has done."""
+        return equal(self._of(state), self.exited(state, "'Old"))
+
+    def after_entry(self, vertex: str) -> Expr:
+        """What the entry of a state has done."""
+        return equal(self._of(vertex), self.entered(vertex, "'Old"))
+
+    def exited(self, state: str, before: str = "") -> Expr:
+        """The state around, where it is the innermost and nothing inside it is active."""
+        lanes = self._idle(self.shape.lanes_of(state))
+        return self._moved(state, before, (node(state), self._around(state)), lanes)
+
+    def entered(self, vertex: str, before: str = "") -> Expr:
+        """The state itself, where its parent is active and nothing in its own region is."""
+        place = self.shape.compounds.place(vertex)
+        others = self._idle(self.shape.lanes_of(vertex))
+        if place.owner is not None and self.region.state(place.owner).is_orthogonal:
+            others = [equal(self._of(place.owner), node(place.owner)), *others]
+        return self._moved(vertex, before, (self._around(vertex), node(vertex)), others)
+
+    def _moved(
+        self, vertex: str, before: str, way: tuple[Ref, Ref], others: Sequence[Expr]
+    ) -> Expr:
         self._moves = True
-        return Assign(active.text, call("Chart.Moved", active, start, goal))
+        moved = call("Chart.Moved", Ref(f"{self._of(vertex).text}{before}"), *way)
+        return IfExpr(((both(*others), moved),), _NO_ORDER) if others else moved
 
-    def exited(self, state: str) -> tuple[Ref, Ref]:
-        """The variable that the exit of a state changes, and its value then."""
-        return self.active(self.region.lane(state)), Ref(f"Chart.{self._around(state)}")
-
-    def entered(self, state: str) -> tuple[Ref, Ref]:
-        """The variable that the entry of a state changes, and its value then."""
-        return self.active(self.region.lane(state)), node(state)
+    def _of(self, vertex: str) -> Ref:
+        """The variable of the lane that a vertex stands in."""
+        return self.active(self.shape.lane_of(self.shape.compounds.place(vertex)))
 
     def stopped(self, goal: dict[Lane, str]) -> list[Assign]:
         """The region has come to its end."""
-        return [
-            Assign(self.active(n).text, node(goal[n]) if n in goal else Ref(f"Chart.{_NOWHERE}"))
-            for n in self.shape.lanes
-        ]
-
-    # --- when a state may be exited or entered
-
-    def ready_to_exit(self, state: str) -> list[Expr]:
-        """It is active, and nothing inside it is."""
-        return [equal(*self.entered(state)), *self._idle(self.shape.lanes_of(state))]
-
-    def ready_to_enter(self, vertex: str) -> list[Expr]:
-        """Its parent is active, and nothing in its own region or inside it is."""
-        place = self.shape.compounds.place(vertex)
-        ready = [
-            equal(self.active(self.shape.lane_of(place)), Ref(f"Chart.{self._around(vertex)}"))
-        ]
-        if place.owner is not None and self.region.state(place.owner).is_orthogonal:
-            ready.append(equal(*self.entered(place.owner)))
-        return [*ready, *self._idle(self.shape.lanes_of(vertex))]
+        found = []
+        for lane in self.shape.lanes:
+            active = self.active(lane)
+            end = node(goal[lane]) if lane in goal else _NONE_ACTIVE
+            found.append(Assign(active.text, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
+        return found
 
     def empty(self, place: Place) -> list[Expr]:
         """Nothing in a region is active."""
         lane = self.shape.lane_of(place)
         inside = place.owner if lane.owner != place.owner else None
-        here = Ref(f"Chart.{_NOWHERE}") if inside is None else node(inside)
+        here = _NONE_ACTIVE if inside is None else node(inside)
         return [equal(self.active(lane), here), *self._idle(self.lanes_inside(place))]
 
     def _idle(self, lanes: Sequence[Lane]) -> list[Expr]:
-        return [equal(self.active(n), Ref(f"Chart.{_NOWHERE}")) for n in lanes]
+        return [equal(self.active(n), _NONE_ACTIVE) for n in lanes]
 
     def lanes_inside(self, place: Place) -> list[Lane]:
         """The lanes of the orthogonal states inside a region."""

@@ -109,7 +109,8 @@ def _records(shape: RegionShape) -> list[Decl]:
             if port.name in region.sends:
                 name = ada_case(port.name)
                 of_type = type_name(shape.system, port.type)
-                sent.append(Field(name, of_type, default_value(shape.system, port.type)))
+                if not port.is_void:
+                    sent.append(Field(name, of_type, default_value(shape.system, port.type)))
                 sent.append(Field(f"{name}_Sent", "Boolean", FALSE))
         items += [Comment("What one step sends and raises."), RecordType("Outbox", tuple(sent))]
     if shape.memories:

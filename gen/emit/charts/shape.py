@@ -312,7 +312,7 @@ class RegionShape(Places):
 
     # --- occurrences
 
-    @property
+    @cached_property
     def timers(self) -> tuple[Transition, ...]:
         """The transitions with a time-out, in model order."""
         timed = (After, Every)

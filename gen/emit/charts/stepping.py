@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from ..ada import (
+    NULL,
+    Arg,
+    Aspect,
     Assign,
     Call,
     Case,
@@ -31,7 +34,7 @@ from ..ada import (
 from ..events import null_event
 from ..naming import ada_case
 from ..terms import expressions_in
-from .firing import Moves
+from .firing import MANY, Moves
 from .lanes import fire, lane_step, passing_step
 from .selection import selectors
 from .shape import (
@@ -41,6 +44,7 @@ from .shape import (
     flows_of,
     guard_operators,
     guards_of,
+    plain_args,
 )
 from .working import notice_bodies
 
@@ -61,6 +65,7 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
         *notice_bodies(shape),
         *_polling(shape),
         fire,
+        *_sources_hold(shape),
         _step(shape, moves),
     )
 
@@ -162,9 +167,30 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
 
 
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
-    pick = Call("Select_Transition", shape.choice_args())
+    pick = Assign("Fired", Call("Select_Transition", shape.choice_args()))
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
+    some = Chain("/=", (Ref("Fired"), Ref("None")))
+    seen: tuple[Stmt, ...] = ()
+    if _is_large(shape):
+        held = Arg(None, Ref("Fired"))
+        seen = (If(((some, (Do("Sources_Hold", (held, *shape.choice_args())),)),)),)
     return (
-        If(((begun, (Assign("Fired", Ref(START)),)),), (Assign("Fired", pick),)),
-        If(((Chain("/=", (Ref("Fired"), Ref("None"))), (fire(moves, "Fired"),)),)),
+        If(((begun, (Assign("Fired", Ref(START)),)),), (pick, *seen)),
+        If(((some, (fire(moves, "Fired"),)),)),
     )
+
+
+def _is_large(shape: RegionShape) -> bool:
+    return not shape.listed and len(shape.firings) > MANY
+
+
+def _sources_hold(shape: RegionShape) -> list[Decl]:
+    """What is enabled has its source active: by itself, for provers, in a large region."""
+    if not _is_large(shape):
+        return []
+    params = (Param("T", "in", "Transition"), *shape.choice_params())
+    enabled = Call("Enabled", plain_args(params))
+    source = call("In_Source", Ref("T"), Ref(shape.place))
+    claims = (Aspect("Ghost"), Aspect("Pre", enabled), Aspect("Post", source))
+    spec = Subprogram("Sources_Hold", params, aspects=claims)
+    return [spec, Subprogram("Sources_Hold", params, body=(NULL,))]
