@@ -11,6 +11,7 @@ import threading
 import time
 import tomllib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import can
@@ -226,6 +227,20 @@ def tool_environment(folder: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}
 
 
+def heed_interrupts() -> None:
+    """What runs in the background may have inherited that they are ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def ended(process: subprocess.Popen[bytes]) -> Iterator[None]:
+    """Whatever happens, the process does not go on."""
+    try:
+        yield
+    finally:
+        process.kill()
+
+
 def test_the_tools_of_python_can_log_and_play(server: BusServer, tmp_path: Path) -> None:
     environment, log = tool_environment(tmp_path), tmp_path / "tool.blf"
     common = ["-i", "ravenchart", "-c", server.channel, "--fd"]
@@ -237,7 +252,9 @@ def test_the_tools_of_python_can_log_and_play(server: BusServer, tmp_path: Path)
             env=environment,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
+            preexec_fn=heed_interrupts,
         ) as logger,
+        ended(logger),
     ):
         assert within(lambda: len(server.clients) == 2)
         for frame in frames:
