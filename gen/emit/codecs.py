@@ -75,9 +75,8 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     kinds = {container(s) for codec in codecs for s in codec.signals} | {WORD}
     spec: list[Decl] = [UseType(k) for k in (*sorted(kinds), "Ravenchart.Number")]
     codings = {c.name.lower(): c for codec in codecs for c in codec.codings.values()}
-    counts = {d.name: d for c in codings.values() for d in c.spec()}
-    spec += counts.values()
-    body: list[Decl] = [f for c in codings.values() for f in c.functions()]
+    spec += [c.spec() for c in codings.values()]
+    body: list[Decl] = [c.body() for c in codings.values()]
     for codec in codecs:
         spec += codec.spec()
         body += codec.body()
@@ -165,9 +164,12 @@ class _Codec:
             raw = word_bits(s, self._word(self.frame))
             items.append(Subprogram(self._raw_name(s), (frame,), container(s), expression=raw))
             items.append(Comment(f"[{self.label}.{s.name}] {_place(s)}"))
-        packed = all_of(*self._carries(f"Pack_{self.name}'Result", "Item"))
+        packed = all_of(*self._carries())
         valid = all_of(*(self._is_valid(s, self.frame) for s in self.signals))
-        taken = all_of(*self._carries(self.frame, "Item"), *self._left_out("Item"))
+        taken = IfExpr(
+            ((Ref("Valid"), all_of(*self._taken())),),
+            equal(Ref("Item"), default_value(self.system, self.type)),
+        )
         items += [
             Subprogram(
                 f"Pack_{self.name}",
@@ -181,11 +183,11 @@ class _Codec:
                 aspects=(
                     Aspect(
                         "Post",
-                        all_of(equal(Ref("Valid"), valid), IfExpr(((Ref("Valid"), taken),), None)),
+                        all_of(equal(Ref("Valid"), valid), taken),
                     ),
                 ),
             ),
-            Comment("Valid when every raw value is in range; otherwise Item is the default."),
+            Comment("Valid when all bits stand for values."),
             Subprogram(
                 f"Lemma_{self.name}_Survives",
                 (Param("Item", "in", self.ada_type),),
@@ -199,25 +201,29 @@ class _Codec:
         valid = self.codings[signal.name].valid(self._raw(signal, frame))
         return self._when(signal, valid, self._selected_raw(frame), raw=True)
 
-    def _carries(self, frame: str, item: str) -> list[Expr]:
-        """For each field: its raw value in the frame is in range and is the field's of ``item``."""
+    def _carries(self) -> list[Expr]:
+        """For each field that is in the frame: its bits stand for the item's."""
         facts: list[Expr] = []
         for s in self.signals:
-            coding, raw = self.codings[s.name], self._raw(s, frame)
-            same = equal(call("Ravenchart.Number", raw), coding.raw_integer(self._item(s, item)))
+            coding, raw = self.codings[s.name], self._raw(s, f"Pack_{self.name}'Result")
+            same = equal(call(coding.value_of, raw), Ref(self._item(s, "Item")))
             for fact in (coding.valid(raw), same):
-                facts.append(self._when(s, fact, self._selected(item), raw=False))
+                facts.append(self._when(s, fact, self._selected("Item"), raw=False))
         return facts
 
-    def _left_out(self, item: str) -> list[Expr]:
-        """Each field that a page has no room for is the default."""
-        facts: list[Expr] = []
-        for s in self.signals:
-            there = self._there(s, self._selected(item), raw=False)
-            if there is not None:
-                plain = equal(Ref(self._item(s, item)), self._default(s))
-                facts.append(IfExpr(((Prefix("not", there), plain),), None))
-        return facts
+    def _taken(self) -> list[Expr]:
+        """Each field is what its bits stand for, or the default where a page has no room for it."""
+        selected = self._selected_raw(self.frame)
+        return [
+            equal(Ref(self._item(s, "Item")), self._decoded(s, self._raw(s, self.frame), selected))
+            for s in self.signals
+        ]
+
+    def _decoded(self, signal: Signal, raw: Expr, selected: Expr) -> Expr:
+        """The value of a field of a valid frame, where ``selected`` is its multiplexor."""
+        decoded: Expr = call(self.codings[signal.name].value_of, raw)
+        there = self._there(signal, selected, raw=True)
+        return decoded if there is None else IfExpr(((there, decoded),), self._default(signal))
 
     # --- The body ----------------------------------------------------------------
 
@@ -286,11 +292,7 @@ class _Codec:
         for s in self.signals:
             coding, local = self.codings[s.name], Ref(self._local(s))
             good.append(self._when(s, coding.valid(local), selected, raw=True))
-            decoded: Expr = call(coding.value_of, local)
-            there = self._there(s, selected, raw=True)
-            if there is not None:
-                decoded = IfExpr(((there, decoded),), self._default(s))
-            values[ada_case(s.name)] = decoded
+            values[ada_case(s.name)] = self._decoded(s, local, selected)
         if isinstance(self.type, RecordType):
             built: Expr = Aggregate(tuple(Arg(name, value) for name, value in values.items()))
         else:
@@ -331,7 +333,7 @@ class _Codec:
                     f"Unpack_{self.name}",
                     arguments(call(f"Pack_{self.name}", Ref("Item")), Ref("Copy"), Ref("Valid")),
                 ),
-                Pragma("Assert", (all_of(Ref("Valid"), *same, *self._left_out("Copy")),)),
+                Pragma("Assert", (all_of(Ref("Valid"), *same),)),
             ),
         )
 

@@ -22,6 +22,7 @@ from .ada import (
     IfExpr,
     Object,
     Param,
+    Pragma,
     Ref,
     Return,
     Subprogram,
@@ -66,7 +67,11 @@ def is_plain(signal: Signal) -> bool:
 
 
 class Coding:
-    """What is emitted for one signal's coding; ``owner`` names the codec it belongs to."""
+    """What is emitted for one signal's coding; ``owner`` names the codec it belongs to.
+
+    What bits stand for is an expression function of the spec. Its inverse is stated by
+    it, and so are codecs: their contracts and proofs need no arithmetic.
+    """
 
     def __init__(self, system: System, signal: Signal, owner: str) -> None:
         """For a signal of the codec of that name."""
@@ -75,56 +80,56 @@ class Coding:
         self.name = of_type if is_plain(signal) else f"{owner}_{ada_case(signal.name)}"
         self.bits_of = f"Bits_Of_{self.name}"
         self.value_of = f"{self.name}_Of_Bits"
-        self.code_of = f"Code_Of_{self.name}"
         self.ada_type = type_name(system, signal.type)
         self.container = container(signal)
-
-    def raw_integer(self, value: str) -> Expr:
-        """The bits of ``value`` as an integer from 0 on."""
-        if self.signal.codes:
-            return call(self.code_of, Ref(value))
-        if isinstance(self.signal.type, EnumerationType):
-            return call(f"{self.ada_type}'Pos", Ref(value))
-        counted = call(NUMBER, Ref(value))
-        offset = self.signal.offset
-        raw: Expr = Chain("-", (counted, number(offset))) if offset else counted
-        low, high = self.signal.raw_range
-        if low >= 0:
-            return raw
-        below = Chain("+", (raw, number(1 << self.signal.width)))
-        if high < 0:
-            return below
-        return IfExpr(((Chain(">=", (raw, number(0))), raw),), below)
 
     def valid(self, raw: Expr) -> Expr:
         """Do these bits stand for a value?"""
         low, high = self.signal.raw_range
-        if high - low + 1 == 1 << self.signal.width and within_width(raw, self.signal) is None:
-            return TRUE
         if self.signal.codes:
             patterns = sorted(self._pattern(code) for code in self.signal.codes)
             return member(raw, " | ".join(f"{pattern:_}" for pattern in patterns))
-        if not self.signal.signed:
-            below = Chain("<=", (raw, number(high)))
-            return both(Chain(">=", (raw, number(low))), below) if low else below
-        full, last = 1 << self.signal.width, (1 << self.signal.width) - 1
+        full = 1 << self.signal.width
+        if high - low + 1 == full and within_width(raw, self.signal) is None:
+            return TRUE
+        if low >= 0:
+            return member(raw, f"{low:_} .. {high:_}") if low else Chain("<=", (raw, number(high)))
         if high < 0:
             return member(raw, f"{full + low:_} .. {full + high:_}")
-        positive = f"{max(low, 0):_} .. {high:_}"
-        return member(raw, positive if low >= 0 else f"{positive} | {full + low:_} .. {last:_}")
+        return member(raw, f"0 .. {high:_} | {full + low:_} .. {full - 1:_}")
 
-    def spec(self) -> list[Subprogram]:
-        """What the specs of codecs speak of: codes."""
-        if not self.signal.codes:
-            return []
-        return [
-            Subprogram(
-                self.code_of,
-                (Param("Item", "in", self.ada_type),),
-                NUMBER,
-                expression=CaseExpr(Ref("Item"), tuple(self._by_literal())),
-            )
-        ]
+    def spec(self) -> Subprogram:
+        """What bits stand for."""
+        raw, valid = Ref("Raw"), self.valid(Ref("Raw"))
+        return Subprogram(
+            self.value_of,
+            (Param("Raw", "in", self.container),),
+            self.ada_type,
+            aspects=() if valid == TRUE else (Aspect("Pre", valid),),
+            expression=self._value(raw),
+        )
+
+    def body(self) -> Subprogram:
+        """The bits of a value."""
+        result = Ref(f"{self.bits_of}'Result")
+        survives = equal(call(self.value_of, result), Ref("Item"))
+        made = Subprogram(
+            self.bits_of,
+            (Param("Item", "in", self.ada_type),),
+            self.container,
+            aspects=(Aspect("Post", all_of(self.valid(result), survives)),),
+        )
+        if self.signal.codes:
+            return replace(made, expression=CaseExpr(Ref("Item"), tuple(self._by_literal())))
+        if isinstance(self.signal.type, EnumerationType):
+            position = call(f"{self.ada_type}'Pos", Ref("Item"))
+            return replace(made, expression=call(self.container, position))
+        #  provers go from integers to bits in steps: a number, its bits, what they count
+        last = (1 << self.signal.width) - 1
+        whole = Object("Whole", f"{NUMBER} range 0 .. {last:_}", self._whole(), constant=True)
+        raw = Object("Raw", self.container, call(self.container, Ref("Whole")), constant=True)
+        kept = Pragma("Assert", (equal(call(NUMBER, Ref("Raw")), Ref("Whole")),))
+        return replace(made, declarations=(whole, raw), body=(kept, Return(Ref("Raw"))))
 
     def _pattern(self, code: int) -> int:
         """A code as its bits."""
@@ -139,69 +144,40 @@ class Coding:
             for name, code in pairs
         ]
 
-    def functions(self) -> tuple[Subprogram, Subprogram]:
-        """To the bits and back, for the body."""
-        return self._bits(), self._value()
-
-    def _bits(self) -> Subprogram:
-        result = Ref(f"{self.bits_of}'Result")
-        raw = self.raw_integer("Item")
-        taken: Expr = call(self.container, raw)
-        if self.signal.codes:
-            taken = CaseExpr(Ref("Item"), tuple(self._by_literal()))
-        same = equal(call(NUMBER, result), raw)
-        made = Subprogram(
-            self.bits_of,
-            (Param("Item", "in", self.ada_type),),
-            self.container,
-            aspects=(Aspect("Post", all_of(self.valid(result), same)),),
-        )
-        if not isinstance(raw, IfExpr):
-            return replace(made, expression=taken)
-        #  bits of one number: of two, provers lose what they stand for
-        whole = Object("Whole", f"{NUMBER} range 0 .. {self._last:_}", raw, constant=True)
-        back = Return(call(self.container, Ref("Whole")))
-        return replace(made, declarations=(whole,), body=(back,))
-
-    @property
-    def _last(self) -> int:
-        """The highest pattern."""
-        return (1 << self.signal.width) - 1
-
-    def _value(self) -> Subprogram:
+    def _value(self, raw: Expr) -> Expr:
+        """The value that bits stand for."""
         signal = self.signal
-        bits_ = call(NUMBER, Ref("Raw"))
         if signal.codes:
             *first, (last, _) = self._by_literal()
-            tests = tuple((equal(Ref("Raw"), code), Ref(name)) for name, code in first)
-            result: Expr = IfExpr(tests, Ref(last)) if tests else Ref(last)
-        elif isinstance(signal.type, EnumerationType):
-            result = call(f"{self.ada_type}'Val", Ref("Raw"))
-        else:
-            result = call(self.ada_type, self._whole(bits_))
-        back, valid = self.raw_integer(f"{self.value_of}'Result"), self.valid(Ref("Raw"))
-        return Subprogram(
-            self.value_of,
-            (Param("Raw", "in", self.container),),
-            self.ada_type,
-            aspects=(
-                *([] if valid == TRUE else [Aspect("Pre", valid)]),
-                Aspect("Post", equal(bits_, back)),
-            ),
-            expression=result,
-        )
+            tests = tuple((equal(raw, code), Ref(name)) for name, code in first)
+            return IfExpr(tests, Ref(last)) if tests else Ref(last)
+        if isinstance(signal.type, EnumerationType):
+            return call(f"{self.ada_type}'Val", raw)
+        low, high = signal.raw_range
+        counted = call(NUMBER, raw)
+        above = _more(counted, signal.offset)
+        below = _more(counted, signal.offset - (1 << signal.width))
+        if low < 0 <= high:
+            above = IfExpr(((Chain("<=", (counted, number(high))), above),), below)
+        return call(self.ada_type, below if high < 0 else above)
 
-    def _whole(self, raw: Expr) -> Expr:
-        """The value that bits stand for, given as an integer from 0 on."""
+    def _whole(self) -> Expr:
+        """The bits of a number as an integer from 0 on."""
         low, high = self.signal.raw_range
-        offset, full = self.signal.offset, 1 << self.signal.width
-        above = Chain("+", (raw, number(offset))) if offset else raw
-        if low >= 0:
-            return above
-        below = Chain("+", (raw, number(offset - full)))
-        if high < 0:
-            return below
-        return IfExpr(((Chain("<=", (raw, number(high))), above),), below)
+        offset = self.signal.offset
+        counted = call(NUMBER, Ref("Item"))
+        above = _more(counted, -offset)
+        below = _more(counted, (1 << self.signal.width) - offset)
+        if low < 0 <= high:
+            return IfExpr(((Chain(">=", (counted, number(offset))), above),), below)
+        return below if high < 0 else above
+
+
+def _more(term: Expr, addend: int) -> Expr:
+    """The sum, as people write it."""
+    if not addend:
+        return term
+    return Chain("+" if addend > 0 else "-", (term, number(abs(addend))))
 
 
 def literal_name(system: System, signal: Signal, value: int | str) -> str:

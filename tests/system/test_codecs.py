@@ -9,6 +9,7 @@ from pathlib import Path
 import cantools
 import pytest
 from cantools.database import Database
+from cantools.database.can import Message as DbcMessage
 
 from gen.generate import generate
 from gen.model import Message, System
@@ -19,7 +20,7 @@ from ravenchart import steps
 from ravenchart.toolchain import ROOT
 from tests.support.codec_runner import Runner, Values, boundaries, literal
 
-CASE = ROOT / "tests" / "feature" / "signals"
+CASES = ROOT / "tests" / "feature"
 
 
 class Peer:
@@ -39,9 +40,9 @@ class Peer:
         self.database = database
 
 
-@pytest.fixture(scope="module")
-def peer(tmp_path_factory: pytest.TempPathFactory) -> Peer:
-    return Peer(CASE, tmp_path_factory.mktemp("codecs"))
+@pytest.fixture(scope="module", params=["signals", "pages"])
+def peer(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Peer:
+    return Peer(CASES / request.param, tmp_path_factory.mktemp("codecs"))
 
 
 def sent(message: Message, values: Values) -> dict[str, int]:
@@ -108,25 +109,67 @@ def test_what_is_packed_is_unpacked(peer: Peer) -> None:
 
 def test_random_frames_are_accepted_exactly_when_every_raw_value_is_in_range(peer: Peer) -> None:
     for message in peer.system.messages:
-        chance = random.Random(message.name)
-        frames = [chance.randbytes(message.length) for _ in range(2_000)]
+        frames = drawn(peer, message)
+        other = peer.database.get_message_by_name(message.name)
         accepted = 0
         for frame, found in zip(frames, peer.runner.unpacked(message, frames), strict=True):
             wanted = expected(message, frame)
+            if page_is_known(other, message, frame):
+                assert by_database(other, frame) == wanted, (message.name, frame.hex())
             assert (found is not None) == (wanted is not None), (message.name, frame.hex())
             if found is not None:
                 accepted += 1
                 assert sent(message, found) == wanted
-        assert accepted < len(frames), message.name
+        assert 0 < accepted < len(frames), message.name
+
+
+def drawn(peer: Peer, message: Message) -> list[bytes]:
+    """Random frames: half of them anything, half one bit away from a packed value."""
+    chance = random.Random(message.name)
+    packed = peer.runner.packed(message, samples(message))
+    frames = [chance.randbytes(message.length) for _ in range(1_000)]
+    for _ in range(1_000):
+        near = int.from_bytes(chance.choice(packed)) ^ 1 << chance.randrange(8 * message.length)
+        frames.append(near.to_bytes(message.length))
+    return frames
+
+
+def page_is_known(other: DbcMessage, message: Message, frame: bytes) -> bool:
+    """Has the database signals on the frame's page? Else cantools refuses to decode it."""
+    selector = next((s for s in message.signals if s.selects), None)
+    if selector is None:
+        return True
+    paged = [s.multiplexer_ids or () for s in other.signals]
+    return raw_of(selector, frame) in {page for pages in paged for page in pages}
+
+
+def by_database(other: DbcMessage, frame: bytes) -> dict[str, int] | None:
+    """The raw values that cantools reads; None where one is outside what the database says."""
+    raws = other.decode(frame, scaling=False, decode_choices=False)
+    assert isinstance(raws, dict)
+    for name, raw in raws.items():
+        assert isinstance(raw, int)
+        signal = other.get_signal_by_name(name)
+        assert signal.minimum is not None and signal.maximum is not None
+        low = round((signal.minimum - signal.offset) / signal.scale)
+        high = round((signal.maximum - signal.offset) / signal.scale)
+        if raw not in (signal.choices or range(low, high + 1)):
+            return None
+    return {name: int(str(raw)) for name, raw in raws.items()}
+
+
+def raw_of(signal: Signal, frame: bytes) -> int:
+    """The raw value of a signal, bit by bit."""
+    taken = [frame[bit // 8] >> bit % 8 & 1 for bit in signal.bits()]
+    raw = sum(bit << index for index, bit in enumerate(taken))
+    return raw - (taken[-1] << signal.width if signal.signed else 0)
 
 
 def expected(message: Message, frame: bytes) -> dict[str, int] | None:
     """The raw values in a frame, bit by bit; None where one of them is no value's."""
     raws: dict[str, int] = {}
     for signal in message.signals:
-        taken = [frame[bit // 8] >> bit % 8 & 1 for bit in signal.bits()]
-        raw = sum(bit << index for index, bit in enumerate(taken))
-        raws[signal.name] = raw - (taken[-1] << signal.width if signal.signed else 0)
+        raws[signal.name] = raw_of(signal, frame)
     page = next((raws[s.name] for s in message.signals if s.selects), None)
     there = {s.name: s for s in message.signals if not s.pages or page in s.pages}
     for name, signal in there.items():
@@ -143,12 +186,17 @@ def expected(message: Message, frame: bytes) -> dict[str, int] | None:
     return {name: raws[name] for name in there}
 
 
-def test_the_database_says_who_sends_what_how_often_and_in_which_unit(peer: Peer) -> None:
-    inside = peer.database.get_message_by_name("status_in").get_signal_by_name("inside")
-    assert (inside.unit, inside.scale, inside.offset) == ("degC", 0.1, 0)
-    assert (inside.multiplexer_signal, inside.multiplexer_ids) == ("page", [0])
-    assert (inside.minimum, inside.maximum, inside.receivers) == (-40, 125, ["board"])
+@pytest.mark.parametrize("peer", ["signals"], indirect=True)
+def test_the_database_says_who_sends_what_how_often_with_which_codes(peer: Peer) -> None:
     motion = peer.database.get_message_by_name("motion_out")
     assert (motion.senders, motion.cycle_time) == (["board"], 20)
     gear = peer.database.get_message_by_name("motion_in").get_signal_by_name("gear")
     assert gear.choices == {0: "Neutral", 17: "Forward", 3: "Backward"}
+
+
+@pytest.mark.parametrize("peer", ["pages"], indirect=True)
+def test_the_database_says_units_ranges_and_pages(peer: Peer) -> None:
+    inside = peer.database.get_message_by_name("status_in").get_signal_by_name("inside")
+    assert (inside.unit, inside.scale, inside.offset) == ("degC", 0.1, 0)
+    assert (inside.multiplexer_signal, inside.multiplexer_ids) == ("page", [0])
+    assert (inside.minimum, inside.maximum, inside.receivers) == (-40, 125, ["board"])
