@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 from ..model import Message, System
 from ..signals import ByteOrder, Signal, bits_of, signals_of
-from ..terms import RecordType, default
+from ..terms import IntegerType, RecordType, default
 from .ada import (
     SPARK,
     TRUE,
@@ -43,7 +43,17 @@ from .ada import (
     member,
     number,
 )
-from .coding import WORD, Coding, all_of, container, literal_name, placed, within_width, word_bits
+from .coding import (
+    NUMBER,
+    WORD,
+    Coding,
+    all_of,
+    container,
+    literal_name,
+    placed,
+    within_width,
+    word_bits,
+)
 from .naming import ada_case, default_value, scalar, type_name
 
 WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
@@ -73,7 +83,9 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
         return ()
     codecs = [_Codec(system, message) for message in layouts.values()]
     kinds = {container(s) for codec in codecs for s in codec.signals} | {WORD}
-    spec: list[Decl] = [UseType(k) for k in (*sorted(kinds), "Ravenchart.Number")]
+    spec: list[Decl] = [UseType(k) for k in sorted(kinds)]
+    if any(isinstance(s.type, IntegerType) for codec in codecs for s in codec.signals):
+        spec.append(UseType(NUMBER))
     codings = {c.name.lower(): c for codec in codecs for c in codec.codings.values()}
     spec += [c.spec() for c in codings.values()]
     body: list[Decl] = [c.body() for c in codings.values()]

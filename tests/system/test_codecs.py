@@ -124,14 +124,26 @@ def test_random_frames_are_accepted_exactly_when_every_raw_value_is_in_range(pee
 
 
 def drawn(peer: Peer, message: Message) -> list[bytes]:
-    """Random frames: half of them anything, half one bit away from a packed value."""
+    """Random frames, frames one bit away from a packed value, and raw values just out of range."""
     chance = random.Random(message.name)
     packed = peer.runner.packed(message, samples(message))
     frames = [chance.randbytes(message.length) for _ in range(1_000)]
     for _ in range(1_000):
         near = int.from_bytes(chance.choice(packed)) ^ 1 << chance.randrange(8 * message.length)
         frames.append(near.to_bytes(message.length))
+    for signal in message.signals:
+        low, high = signal.raw_range
+        frames += [with_raw(signal, raw, f) for raw in (low - 1, high + 1) for f in packed[::8]]
     return frames
+
+
+def with_raw(signal: Signal, raw: int, frame: bytes) -> bytes:
+    """The frame with another raw value."""
+    changed = bytearray(frame)
+    for index, bit in enumerate(signal.bits()):
+        changed[bit // 8] &= ~(1 << bit % 8)
+        changed[bit // 8] |= (raw >> index & 1) << bit % 8
+    return bytes(changed)
 
 
 def page_is_known(other: DbcMessage, message: Message, frame: bytes) -> bool:

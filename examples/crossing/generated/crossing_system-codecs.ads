@@ -2,7 +2,6 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Ravenchart;
 with Interfaces;
 
 package Crossing_System.Codecs
@@ -15,7 +14,6 @@ is
 
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
-   use type Ravenchart.Number;
 
    function Order_Of_Bits
      (Raw : Interfaces.Unsigned_8)
