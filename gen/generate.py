@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import TypeVar
 
 from .calls import device_types
 from .claims import Claims
@@ -39,6 +40,8 @@ SIMULATED = (
     "point: it is yours."
 )
 
+T = TypeVar("T")
+
 MANY = 500
 """So many regions are made by all processors of the machine together."""
 
@@ -69,16 +72,18 @@ class _Maker:
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
 
-    def logic(self) -> list[Made]:
-        """The root and the components: no state, no tasks."""
+    def logic(self, meanwhile: Callable[[], T]) -> tuple[list[Made], T]:
+        """The root and the components (no state, no tasks), and what is made ``meanwhile``."""
         root = self.made([emit_root(self.system, self.header)])
         if sum(len(c.regions) for c in self.components) < MANY:
-            parts = [self._of_component(c) for c in self.components]
+            parts, besides = [self._of_component(c) for c in self.components], meanwhile()
         else:
-            parts = made_by_all(
-                lambda number: self._of_component(self.components[number]), len(self.components)
+            parts, besides = made_by_all(
+                lambda number: self._of_component(self.components[number]),
+                len(self.components),
+                meanwhile,
             )
-        return [*root, *(made for part in parts for made in part)]
+        return [*root, *(made for part in parts for made in part)], besides
 
     def _of_component(self, component: Component) -> list[Made]:
         system, header = self.system, self.header
@@ -112,25 +117,34 @@ def _without_claims(system: System) -> tuple[_Maker, tuple[Made, ...], tuple[Mad
     Made once, checked and then written.
     """
     maker = _Maker(system)
-    before = [
-        *emit_codecs(system, maker.header),
-        *emit_devices(system, maker.header),
-        *emit_instances(system, maker.header),
-    ]
-    after = emit_deployment(system, maker.header)
-    return maker, (*maker.logic(), *maker.made(before)), tuple(maker.made(after))
+
+    def others() -> tuple[list[Made], list[Made]]:
+        before = [
+            *emit_codecs(system, maker.header),
+            *emit_devices(system, maker.header),
+            *emit_instances(system, maker.header),
+        ]
+        return maker.made(before), maker.made(emit_deployment(system, maker.header))
+
+    logic, (before, after) = maker.logic(others)
+    return maker, (*logic, *before), tuple(after)
 
 
 def simulation(system: System) -> dict[str, str]:
     """The files of the program that runs in virtual time, project file included."""
     reduced = simulated(system)
     maker = _Maker(reduced, noted=True)
-    found = [
-        *emit_instances(reduced, maker.header, noted=True),
-        *emit_without_tasks(reduced, maker.header),
-        emit_simulation(reduced, maker.header),
-    ]
-    files = _printed([*maker.logic(), *maker.made(found)], root_package(system))
+
+    def others() -> list[Made]:
+        found = [
+            *emit_instances(reduced, maker.header, noted=True),
+            *emit_without_tasks(reduced, maker.header),
+            emit_simulation(reduced, maker.header),
+        ]
+        return maker.made(found)
+
+    logic, besides = maker.logic(others)
+    files = _printed([*logic, *besides], root_package(system))
     name = ada_case(system.name).lower()
     files[f"{name}_simulation.gpr"] = simulation_project(system)
     return files

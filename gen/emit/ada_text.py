@@ -144,6 +144,7 @@ def expression(expr: Expr) -> Doc:
             return _bare(f"for {word} {variable} in {domain} =>", nest(SOFT, expression(condition)))
 
 
+@lru_cache(maxsize=8192)
 def _comment(text: str) -> Doc:
     lines: list[str] = []
     for paragraph in text.split("\n"):
@@ -203,6 +204,7 @@ def _pragma(name: str, args: Sequence[Expr]) -> Doc:
     return group(f"pragma {name}", nest(SOFT, _args(arguments(*args)), by=2), ";")
 
 
+@lru_cache(maxsize=8192)
 def _aspects(aspects: Sequence[Aspect]) -> Doc:
     docs = [
         a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, expression(a.value), by=2))
@@ -211,6 +213,7 @@ def _aspects(aspects: Sequence[Aspect]) -> Doc:
     return cat(SOFT, group("with", nest(SOFT, *_join(docs, ","), by=2)))
 
 
+@lru_cache(maxsize=8192)
 def _params(params: Sequence[Param]) -> Doc:
     texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
     plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
@@ -353,4 +356,4 @@ def print_unit(unit: Unit, item: str | None = None) -> str:
 
 def _laid_out(doc: Doc) -> str:
     text = laid_out(doc, WIDTH - 3)
-    return "\n".join(line.rstrip() for line in text.split("\n")) + "\n"
+    return "\n".join(map(str.rstrip, text.split("\n"))) + "\n"

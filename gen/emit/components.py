@@ -30,7 +30,15 @@ from .charts.places import Places
 from .device_calls import request_types, serving_params
 from .events import event_types, null_event
 from .naming import ada_case, component_package, default_value, type_name
-from .terms import Scope, effective, emit_flow, flow_names, flow_operators
+from .terms import (
+    Scope,
+    compared_states,
+    effective,
+    emit_flow,
+    expressions_in,
+    flow_names,
+    flow_operators,
+)
 
 
 def leaf_type(component: Component, region: Region) -> str:
@@ -190,6 +198,9 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
         items = _specs(system, component, flows, Aspect("Global", Ref("null")))
         units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
         operators = {name for a in flows for name in flow_operators(a.flow or ())}
+        operators |= compared_states(
+            component, [e for a in flows for e in expressions_in(a.flow or ())]
+        )
         bodies: tuple[Decl, ...] = (
             *(UseType(name) for name in sorted(operators)),
             *(_flow_body(system, component, a) for a in flows),

@@ -425,6 +425,7 @@ is
             Exit_Homing;
             pragma Assert (Active = Chart.Operational);
             Self.Data.Homed := True;
+            pragma Assert (Active = Chart.Operational);
             Enter_Idle;
          when At_Speed =>
             Active :=

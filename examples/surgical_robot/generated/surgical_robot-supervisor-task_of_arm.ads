@@ -20,7 +20,7 @@ is
 
    --  [Supervisor.Task_Of_Arm.transitions] in order of precedence,
    --  innermost source first
-   type Selection is (None, Initial_Entry, Begin_Task, There, Too_Late);
+   type Selection is (Initial_Entry, Begin_Task, There, Too_Late, None);
 
    subtype Firing is Selection range Initial_Entry .. Too_Late;
    subtype Transition is Selection range Begin_Task .. Too_Late;
@@ -127,13 +127,11 @@ is
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now, Ins))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now, Ins)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+     ((Chosen = None
+       or else (Chosen in Transition
+          and then Enabled (Chosen, Leaf, Now, Ins)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

@@ -157,6 +157,10 @@ class Nodes:
         """The entry of a state."""
         return Assign(self._of(vertex).text, self.entered(vertex))
 
+    def stands(self, vertex: str) -> Expr:
+        """A vertex is the innermost active one of its lane."""
+        return equal(self._of(vertex), node(vertex))
+
     def after_exit(self, state: str) -> Expr:
         """What the exit of a state has done."""
         return equal(self._of(state), self.exited(state, "'Old"))

@@ -37,7 +37,7 @@ def region_types(shape: RegionShape) -> list[Decl]:
         Comment(f"[{path}] what a step can be made for"),
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
-        EnumType("Selection", ("None", START, *names)),
+        EnumType("Selection", (START, *names, "None")),
         PlainType("Firing", f"Selection range {START} .. {names[-1]}", subtype=True),
         PlainType("Transition", f"Selection range {names[0]} .. {names[-1]}", subtype=True),
     ]
