@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from .components import Parts, timing_of
 from .derive import table_deadline, table_period
+from .identifiers import OPEN
+from .layouts import layout_of, size_of
 from .model import (
     Bus,
     BusErrors,
@@ -27,16 +29,14 @@ from .model import (
 from .names import Findings, Scope
 from .quantities import shown
 from .schema import (
-    BusForm,
     ChainForm,
     ConnectionForm,
     InstanceForm,
-    MessageForm,
     NodeForm,
     ProcessorForm,
     ShutdownForm,
 )
-from .signals import length_of, signals_of
+from .schema_frames import BusForm, MessageForm
 from .statechart import Timing
 from .terms import BOOLEAN, Ns, Origin, Scalar
 from .values import constant
@@ -216,29 +216,38 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
-    if not foreign and form.bytes is not None:
-        message = f"the message {name} is as long as the type of its port; leave `bytes` out"
-        findings.error("RV-0608", form.at_key("bytes"), message)
+    for key in ("signals", "multiplexor") if foreign else ():
+        if form.has(key):
+            message = f"the message {name} has no value, and `{key}` no meaning"
+            findings.error("RV-0210", form.at_key(key), message, hint="remove it")
+    if foreign and form.id is None and not form.lost("id"):
+        message = f"the message {name} is sent by others and needs the key `id`"
+        findings.error("RV-0202", form.origin, message)
     period = _message_period(name, form, source, site)
     broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
-    if bus is None or broken or gone or period is None or form.lost("bytes"):
+    if bus is None or broken or gone or period is None:
+        return None
+    if form.lost("bytes") or form.lost("id") or (foreign and form.id is None):
         return None
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
-    signals, fd = () if foreign else signals_of(type_), form.format == "fd"
+    signals = () if foreign else layout_of(name, form, type_, findings)
+    length = None if signals is None else size_of(name, form, signals, findings)
+    if signals is None or length is None:
+        return None
     return Message(
         name=name,
         origin=form.origin,
         bus=bus.name,
-        identifier=form.id,
+        identifier=OPEN if form.id is None else form.id,
         extended=form.extended,
         type=type_,
         signals=signals,
-        length=form.bytes if form.bytes is not None else length_of(signals, fd=fd),
+        length=length,
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
         period=period,
         deadline=None if form.deadline is None else Ns(form.deadline),
-        fd=fd,
+        fd=form.format == "fd",
     )
 
 

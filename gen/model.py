@@ -15,6 +15,7 @@ from enum import Enum
 from functools import cached_property
 
 from .commands import Binding, Device, Need, Provided
+from .signals import Signal
 from .statechart import DONE, Overflow, Region, Timing
 from .terms import (
     Expression,
@@ -325,21 +326,6 @@ class Connection:
     origin: Origin
     source: End
     target: End
-
-
-@dataclass(frozen=True, slots=True)
-class Signal:
-    """One scalar in a frame: raw value = value - ``offset``, little-endian bits.
-
-    ``start`` counts bits from the least significant bit of byte 0. Enumerations
-    are coded by position.
-    """
-
-    field: str | None
-    type: ScalarType
-    start: int
-    width: int
-    offset: int
 
 
 @dataclass(frozen=True, slots=True)

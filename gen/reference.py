@@ -55,6 +55,7 @@ TITLES: Mapping[str, str] = {
     "InstanceForm": "Instance",
     "ConnectionForm": "Connection",
     "MessageForm": "Message",
+    "SignalForm": "Signal",
     "ProcessorForm": "Processor",
     "ChainForm": "Chain",
     "ShutdownForm": "Shutdown",

@@ -25,6 +25,7 @@ from .deployment import (
     shutdown_of,
 )
 from .devices import Devices, Provider, device_type_of
+from .identifiers import identified
 from .interfaces import command_of, declare_vectors
 from .model import Connection, Instance, Shutdown, System
 from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
@@ -295,6 +296,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     bindings = sections.bindings(kinds, instances, types, frozenset(damaged))
     for part in parts.sound():
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
+    frames = identified(messages.sound())
     system = System(
         name=name,
         origin=model.files[0].at_key("system"),
@@ -305,8 +307,8 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         buses=buses.sound(),
         instances=instances.sound(),
         connections=connections,
-        messages=tuple(m for m in messages.sound() if not m.is_foreign),
-        traffic=tuple(m for m in messages.sound() if m.is_foreign),
+        messages=tuple(m for m in frames if not m.is_foreign),
+        traffic=tuple(m for m in frames if m.is_foreign),
         processors=processors.sound(),
         shutdown=stop,
         chains=chains.sound(),

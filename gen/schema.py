@@ -13,9 +13,7 @@ from pydantic import Discriminator, Tag
 from pydantic import Field as PydanticField
 
 from .schema_base import (
-    BitRate,
     Constant,
-    DataRate,
     Element,
     ExpressionText,
     Name,
@@ -36,6 +34,7 @@ from .schema_devices import (
     ProvidedForm,
     RequiredForm,
 )
+from .schema_frames import BusForm, MessageForm
 
 # --- Types -----------------------------------------------------------------------
 
@@ -436,32 +435,6 @@ class NodeForm(Element):
     )
 
 
-class ErrorsForm(Element):
-    """What errors of a bus are reckoned with."""
-
-    period: PositiveSpan = key("Least time from one error to the next.")
-    burst: int = PydanticField(
-        default=1, ge=1, le=1000, description="Errors that may come at once besides, 1 to 1000."
-    )
-
-
-class BusForm(Element):
-    """A CAN bus."""
-
-    bit_rate: BitRate = key("Nominal bit rate, 10 kbit/s to 1 Mbit/s.")
-    driver_wcet: PositiveSpan = key(
-        "Worst-case time of the driver for one frame in or out, and of the reception for handing "
-        "one to every port that it goes to."
-    )
-    receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
-    transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
-    errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
-    data_rate: DataRate | None = optional(
-        "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
-        "do not switch unless given."
-    )
-
-
 class InstanceForm(Element):
     """An instance of a component on a node."""
 
@@ -475,45 +448,6 @@ class ConnectionForm(Element):
 
     from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
     to: OwnedReference = key("`instance.port`, an input port.")
-
-
-class MessageForm(Element):
-    """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
-
-    bus: Reference = key("The bus.")
-    id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
-    extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
-    format: Literal["classic", "fd"] = PydanticField(
-        default="classic",
-        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64: analysed, "
-        "not generated yet.",
-    )
-    from_: OwnedReference | None = optional(
-        "`instance.port` that sends; without it the sender is outside the system.", alias="from"
-    )
-    to: (
-        Annotated[
-            Annotated[OwnedReference, Tag("<one>")]
-            | Annotated[list[OwnedReference], Tag("<list>")],
-            shaped("`instance.port`, or a list of these"),
-        ]
-        | None
-    ) = optional("`instance.port` that receives, or a list; without it all receivers are outside.")
-    period: PositiveSpan | None = optional(
-        "Least time between two frames; only for messages from outside, the others have the period "
-        "of what sends them."
-    )
-    bytes: int | None = PydanticField(
-        default=None,
-        ge=0,
-        le=8,
-        description="Data bytes of a frame with neither `from` nor `to`, 0 to 8: other nodes "
-        "exchange it, and here it only takes its time on the bus.",
-    )
-    deadline: PositiveSpan | None = optional(
-        "From the release of what sends it, or from its arrival, until it is received; the period "
-        "unless given."
-    )
 
 
 class ProcessorForm(Element):

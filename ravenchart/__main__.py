@@ -18,7 +18,7 @@ from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
 from hw_can.bench.peer import BenchError
 
-from . import allocate, bus, draw, loopback, observed, plain, proving, simulate, steps
+from . import allocate, bus, draw, import_dbc, loopback, observed, plain, proving, simulate, steps
 from .run import RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -101,6 +101,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_draw(commands)
     _add_loopback(commands)
     _add_bus(commands)
+    _add_import(commands)
     simulation = command("simulate", _simulate, "run the model in virtual time, step by step")
     simulation.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
     simulation.add_argument(
@@ -140,6 +141,14 @@ def _add_bus(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     sub = commands.add_parser("bus", help=help_text, description=help_text)
     bus.add_arguments(sub)
     sub.set_defaults(command=_bus)
+
+
+def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    help_text = "print the messages of a CAN database as types, ports and messages of a model"
+    sub = commands.add_parser("import-dbc", help=help_text, description=help_text)
+    sub.add_argument("database", type=Path, metavar="FILE", help="the database, a DBC file")
+    sub.add_argument("--node", required=True, help="the node of the database that the model is of")
+    sub.set_defaults(command=_import_dbc)
 
 
 def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
@@ -276,6 +285,14 @@ def _loopback(options: argparse.Namespace) -> int:
 
 def _bus(options: argparse.Namespace) -> int:
     return bus.serve(bus.words(options))
+
+
+def _import_dbc(options: argparse.Namespace) -> int:
+    found = import_dbc.imported(options.database, options.node)
+    print(found.text, end="")
+    for problem in found.problems:
+        print(problem, file=sys.stderr)
+    return WRONG if found.problems else OK
 
 
 if __name__ == "__main__":
