@@ -82,7 +82,9 @@ is
             (if Result.Sent (N)
              then Roles (N) = Sender
                and then Offers (N).Frame = Result.Frame)
-            and then (if Result.Heard (N) then Roles (N) = Listener))
+            and then
+              (if Result.Heard (N)
+               then Roles (N) /= Outside and then not Result.Sent (N)))
        and then
          (if Result.Ended = Whole
           then Result.Sent (Winner)
@@ -220,6 +222,7 @@ is
       Winner : Node_Index;
       Result : in out Outcome)
    is
+      Before : constant Node_List := B.Nodes with Ghost;
       Frame  : constant Bus_Frames.Bus_Frame := Offers (Winner).Frame;
       Image  : constant Wire.Image := Bus_Frames.Image_Of (Frame);
       Found  : Trouble;
@@ -227,16 +230,21 @@ is
       Active : Boolean := False;
       Bits   : Wire.Phases;
    begin
+      pragma Assert
+        (for all N in Node_Index =>
+           (if Before (N).Segment /= S
+            then not Listens (B, N, S) and then Roles (N) = Outside));
       Result.Winner := Winner;
       Result.Frame  := Frame;
       if Frame.Family = Bus_Frames.Asked_Error then
          Result.Ended  := Whole;
          Result.Sent   := (others => False);
          for N in Node_Index loop
-            Result.Heard (N) := Roles (N) = Listener;
+            Result.Heard (N) := Roles (N) /= Outside and then N /= Winner;
             pragma Loop_Invariant
               (for all M in 1 .. N =>
-                 Result.Heard (M) = (Roles (M) = Listener));
+                 Result.Heard (M)
+                 = (Roles (M) /= Outside and then M /= Winner));
          end loop;
          Result.Sent (Winner) := True;
          Result.Struck := Now;
@@ -244,6 +252,9 @@ is
            Now + Nanoseconds (Error_Frames.Length (Result.Error))
                 * B.Times.Nominal;
          B.Free_At (S) := Result.Finish + Intermission * B.Times.Nominal;
+         pragma Assert
+           (Result.Struck in Now .. Result.Finish
+            and then Result.Finish <= B.Free_At (S));
          Conclude (B, S, Roles, After_Dominant, Noisy => True);
          return;
       end if;
@@ -264,6 +275,9 @@ is
          Result.Finish := Now + Bus_Frames.Time_Of (Bits, B.Times);
          B.Free_At (S) :=
            Result.Finish + Intermission * B.Times.Nominal;
+         pragma Assert
+           (Result.Struck in Now .. Result.Finish
+            and then Result.Finish <= B.Free_At (S));
       else
          Result.Ended    := Broken;
          Result.Position := Found.Position;
@@ -295,9 +309,22 @@ is
              * B.Times.Nominal;
          B.Free_At (S) :=
            Result.Finish + Intermission * B.Times.Nominal;
+         pragma Assert
+           (Result.Struck in Now .. Result.Finish
+            and then Result.Finish <= B.Free_At (S));
       end if;
       Judge
         (B.Nodes, Roles, Fault, Found, Quiet, Result.Sent, Result.Heard);
+      pragma Assert
+        (for all N in Node_Index =>
+           (if Before (N).Segment /= S then B.Nodes (N) = Before (N)));
+      pragma Assert
+        (for all N in Node_Index =>
+           (if Result.Ended = Whole
+              and then Roles (N) /= Outside
+              and then not Result.Sent (N)
+              and then not Bus_Faults.Is_Witness (Fault, Positive (N))
+            then Result.Heard (N)));
       Conclude
         (B, S, Roles,
          (if Found.Kind /= Untroubled
