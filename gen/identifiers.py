@@ -1,16 +1,18 @@
-"""CAN identifiers for messages that have none given: by deadline, shortest first.
+"""CAN identifiers for messages that have none given, in an order of urgency.
 
-As for tasks (Leung and Whitehead 1982), the more urgent goes before the less urgent; of
-two with one deadline the earlier in the model. On a bus this is a good guess, and the
-analysis tells whether it suffices.
+By deadline, as for tasks (Leung and Whitehead 1982), the more urgent goes before the less
+urgent; of two with one deadline the earlier in the model. On a bus this is a good guess,
+and the analysis tells whether it suffices. An order that the analysis found is numbered
+by `with_order`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 
-from .model import Message
+from .model import Message, System
 
 OPEN = -1
 """Stands where the model gives no identifier."""
@@ -40,4 +42,28 @@ def identified(messages: Sequence[Message]) -> tuple[Message, ...]:
         place = next(n for n in range(1, len(messages) + 2) if (message.bus, n) not in taken)
         taken.add((message.bus, place))
         chosen[message.name] = place << LEADING_SHIFT if message.extended else place
-    return tuple(replace(m, identifier=chosen.get(m.name, m.identifier)) for m in messages)
+    return tuple(
+        m if m.identifier != OPEN else replace(m, identifier=chosen[m.name], given=False)
+        for m in messages
+    )
+
+
+def with_order(system: System, order: Sequence[str]) -> System:
+    """The system with identifiers in the order of these elements, all of one bus.
+
+    Given ones are kept, and there must be room between them; each other message has the
+    first place behind the message before it, with 0 behind the 11 leading bits.
+    """
+    frames = {message.element: message for message in system.frames}
+    given = (frames[name] for name in order if frames[name].given)
+    taken = {leading(m.identifier, extended=m.extended) for m in given}
+    last = 0
+    for name in order:
+        message = frames[name]
+        if message.given:
+            last = leading(message.identifier, extended=message.extended)
+        else:
+            last = next(place for place in count(last + 1) if place not in taken)
+            place = last << LEADING_SHIFT if message.extended else last
+            frames[name] = replace(message, identifier=place)
+    return replace(system, messages=tuple(frames[m.element] for m in system.messages))

@@ -294,6 +294,8 @@ class Bus:
     errors: BusErrors | None = None
     data_rate: int | None = None
     """In bit/s, of the data of CAN FD frames; None: that of the rest."""
+    audsley: bool = False
+    """Identifiers that the model does not give are found by the analysis; else by deadline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -353,6 +355,8 @@ class Message:
     """From the event that leads to it; None: the period."""
     fd: bool = False
     """A CAN FD frame, which switches to the bus's data rate where there is one."""
+    given: bool = True
+    """The model gives the identifier."""
 
     @property
     def element(self) -> str:

@@ -46,6 +46,14 @@ class BusForm(Element):
         "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
         "do not switch unless given."
     )
+    identifiers: Literal["deadline", "audsley"] = PydanticField(
+        default="deadline",
+        description="How messages without `id` get one. `deadline`: the shortest deadline first. "
+        "`audsley`: an order in which the bus meets all deadlines, whenever there is one; of "
+        "several that fit a place the longest deadline goes there. Messages count as they are "
+        "declared, sent without delay: what delays the sender is found later and may depend on "
+        "the identifiers. The analysis of the whole then checks what was chosen.",
+    )
 
 
 class SignalForm(Element):
@@ -90,8 +98,8 @@ class MessageForm(Element):
 
     bus: Reference = key("The bus.")
     id: int | None = optional(
-        "CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`; by deadline unless "
-        "given, counted from 1, the shortest deadline first.",
+        "CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`; unless given, "
+        "counted from 1 in the order that `identifiers` of the bus says.",
         ge=0,
     )
     extended: bool = PydanticField(default=False, description="A 29-bit identifier.")

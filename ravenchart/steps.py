@@ -13,11 +13,13 @@ from pathlib import Path
 import behaviour.rules
 from analysis.claims import Unclaimed, claims_of
 from analysis.findings import findings
+from analysis.identifiers import order_of
 from analysis.timing import Analysis, analyse
 from gen.claims import Claims
 from gen.diagnostics import Diagnostic, render
 from gen.emit.naming import ada_case
 from gen.generate import generate, simulated_drivers, source_folders, user_units
+from gen.identifiers import with_order
 from gen.load import Loaded, load
 from gen.model import System
 from gen.unready import unready
@@ -77,12 +79,28 @@ def check(
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics))
+    system, unordered = identified(system)
     analysis = analyse(system)
-    late = findings(analysis) if deadlines else ()
+    late = (unordered or findings(analysis)) if deadlines else ()
     everything = (*loaded.diagnostics, *behaviour.rules.findings(system, patience), *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything))
     return Checked(path, system, analysis, _rendered(loaded, everything))
+
+
+def identified(system: System) -> tuple[System, tuple[Diagnostic, ...]]:
+    """The system with the identifiers that the analysis finds for buses that ask for it.
+
+    A bus without a good order keeps that by deadline, and there is a diagnostic of it.
+    """
+    failed: list[Diagnostic] = []
+    for bus in system.buses:
+        found = order_of(bus, system) if bus.audsley else ()
+        if isinstance(found, Diagnostic):
+            failed.append(found)
+        else:
+            system = with_order(system, found)
+    return system, tuple(failed)
 
 
 def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
