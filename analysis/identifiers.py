@@ -128,8 +128,8 @@ def _refusal(
     return error(
         NO_ORDER,
         message.origin,
-        f"no order of identifiers meets all deadlines of {bus.name}: {message.name} cannot have "
-        f"the lowest place that is left; it {_needs(first)}",
+        f"no order of identifiers found that meets all deadlines of {bus.name}: {message.name} "
+        f"cannot have the lowest place that is left; it {_needs(first)}",
         notes=notes,
         hint=hint,
     )

@@ -157,7 +157,7 @@ CODES: Mapping[str, str] = {
     "RV-0905": "A chain may take longer than its limit.",
     "RV-0906": "A queue is shorter than what may wait in it at once.",
     "RV-0907": "Nothing bounds what may wait in a queue.",
-    "RV-0908": "No order of the identifiers of a bus meets all deadlines.",
+    "RV-0908": "No order of a bus's identifiers was found that meets all deadlines.",
     "RV-1001": "A file of events cannot be read, or is no list.",
     "RV-1002": "An entry of a file of events has none of the forms that there are.",
     "RV-1003": "A time in a file of events is not well-formed, or before the one above it.",

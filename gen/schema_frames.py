@@ -49,8 +49,9 @@ class BusForm(Element):
     identifiers: Literal["deadline", "audsley"] = PydanticField(
         default="deadline",
         description="How messages without `id` get one. `deadline`: the shortest deadline first. "
-        "`audsley`: an order in which the bus meets all deadlines, whenever there is one; of "
-        "several that fit a place the longest deadline goes there. Messages count as they are "
+        "`audsley`: an order in which the bus meets all deadlines: where no message has an `id` "
+        "of its own, whenever there is one; of several that fit a place the longest deadline "
+        "goes there. Messages count as they are "
         "declared, sent without delay: what delays the sender is found later and may depend on "
         "the identifiers. The analysis of the whole then checks what was chosen.",
     )

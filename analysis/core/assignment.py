@@ -87,7 +87,7 @@ def audsley_frames(
     """An order of the frames of one bus in which all deadlines are met, if there is one.
 
     Their ranks are not looked at. Optimal on CAN too: of the less urgent frames only the
-    longest counts, which does not depend on their order (Davis et al. 2007, section 4).
+    longest counts, which does not depend on their order (Davis et al. 2007).
     ``candidates`` may hold back frames whose place is bound. ValueError for a
     first-in first-out queue that is not ``reloaded``: there the order within it counts.
     """

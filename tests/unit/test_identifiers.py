@@ -165,8 +165,8 @@ def test_what_cannot_be_ordered_says_why() -> None:
     assert order(system) == "a b c", "as by deadline"
     assert (found.code, found.origin.line) == ("RV-0908", 46)
     assert found.message == (
-        "no order of identifiers meets all deadlines of can_bus: b cannot have the lowest place "
-        "that is left; it may take 3600 us there, and its deadline is 2 ms"
+        "no order of identifiers found that meets all deadlines of can_bus: b cannot have the "
+        "lowest place that is left; it may take 3600 us there, and its deadline is 2 ms"
     )
     assert [text for _, text in found.notes] == [
         "1 message would go before it, 1 after it",
