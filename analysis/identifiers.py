@@ -21,6 +21,7 @@ from gen.model import Bus, System
 from .core.assignment import Order, audsley_frames, responses_in_place
 from .core.bus import Frame
 from .core.can_response import FrameResponse
+from .core.frames import leading
 from .network import network_of
 from .units import duration, microseconds, percent
 
@@ -32,9 +33,6 @@ LARGEST = 3
 
 PLACES = 1 << 11
 """Values of the 11 bits that decide between frames first; others count from 1."""
-
-PLACE_SHIFT = 20
-"""Bits of a rank behind those."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,25 +51,20 @@ class Places:
         bound = sorted((f for f in left if f.name in self.given), key=lambda frame: frame.rank)
         open_ = [f for f in left if f.name not in self.given]
         below = next((n for n, f in enumerate(placed) if f.name in self.given), None)
-        end = PLACES if below is None else _place(placed[below])
-        begin = _place(bound[-1]) if bound else 0
+        end = PLACES if below is None else leading(placed[below].rank)
+        begin = leading(bound[-1].rank) if bound else 0
         room = end - begin - 1 - (len(placed) if below is None else below)
         found = sorted(open_, key=self._urgency, reverse=True) if room > 0 else []
         if not bound:
             return found
-        above = set(range(1, begin)) - {_place(frame) for frame in bound}
-        gap = begin - 1 - (_place(bound[-2]) if len(bound) > 1 else 0)
+        above = set(range(1, begin)) - {leading(frame.rank) for frame in bound}
+        gap = begin - 1 - (leading(bound[-2].rank) if len(bound) > 1 else 0)
         if gap >= len(open_):
             return sorted([*found, bound[-1]], key=self._urgency, reverse=True)
         return [*found, bound[-1]] if len(above) >= len(open_) else found
 
     def _urgency(self, frame: Frame) -> tuple[int, int]:
         return frame.deadline, self.model_order.index(frame.name)
-
-
-def _place(frame: Frame) -> int:
-    """The 11 bits that decide between frames first."""
-    return frame.rank >> PLACE_SHIFT
 
 
 def order_of(bus: Bus, system: System) -> tuple[str, ...] | Diagnostic:

@@ -21,9 +21,15 @@ LEADING_SHIFT = 18
 """Bits of an extended identifier behind the 11 that are compared with a standard one."""
 
 
-def leading(identifier: int, *, extended: bool) -> int:
-    """The first 11 bits of an identifier, which decide between frames first."""
-    return identifier >> LEADING_SHIFT if extended else identifier
+def leading(message: Message) -> int:
+    """The first 11 bits of a message's identifier, which decide between frames first."""
+    return message.identifier >> LEADING_SHIFT if message.extended else message.identifier
+
+
+def _numbered(message: Message, place: int) -> Message:
+    """The message with these leading bits, and 0 behind them, where none are given."""
+    identifier = place << LEADING_SHIFT if message.extended else place
+    return replace(message, identifier=identifier, given=False)
 
 
 def identified(messages: Sequence[Message]) -> tuple[Message, ...]:
@@ -32,20 +38,13 @@ def identified(messages: Sequence[Message]) -> tuple[Message, ...]:
     They count from 1 on each bus and step over given ones; of an extended identifier
     the 11 leading bits count, and the others are 0, so that the order holds for both formats.
     """
-    taken = {
-        (m.bus, leading(m.identifier, extended=m.extended))
-        for m in messages
-        if m.identifier != OPEN
-    }
-    chosen: dict[str, int] = {}
+    taken = {(m.bus, leading(m)) for m in messages if m.identifier != OPEN}
+    chosen: dict[str, Message] = {}
     for message in sorted((m for m in messages if m.identifier == OPEN), key=lambda m: m.limit):
         place = next(n for n in range(1, len(messages) + 2) if (message.bus, n) not in taken)
         taken.add((message.bus, place))
-        chosen[message.name] = place << LEADING_SHIFT if message.extended else place
-    return tuple(
-        m if m.identifier != OPEN else replace(m, identifier=chosen[m.name], given=False)
-        for m in messages
-    )
+        chosen[message.name] = _numbered(message, place)
+    return tuple(chosen.get(m.name, m) for m in messages)
 
 
 def with_order(system: System, order: Sequence[str]) -> System:
@@ -55,15 +54,13 @@ def with_order(system: System, order: Sequence[str]) -> System:
     first place behind the message before it, with 0 behind the 11 leading bits.
     """
     frames = {message.element: message for message in system.frames}
-    given = (frames[name] for name in order if frames[name].given)
-    taken = {leading(m.identifier, extended=m.extended) for m in given}
+    taken = {leading(frames[name]) for name in order if frames[name].given}
     last = 0
     for name in order:
         message = frames[name]
         if message.given:
-            last = leading(message.identifier, extended=message.extended)
+            last = leading(message)
         else:
             last = next(place for place in count(last + 1) if place not in taken)
-            place = last << LEADING_SHIFT if message.extended else last
-            frames[name] = replace(message, identifier=place)
+            frames[name] = _numbered(message, last)
     return replace(system, messages=tuple(frames[m.element] for m in system.messages))

@@ -13,6 +13,7 @@ from collections.abc import Callable, Set
 from dataclasses import dataclass
 
 from ..claims import Claim, Claims
+from ..identifiers import leading
 from ..model import Bus, Message, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
 from .certificate_terms import (
@@ -39,8 +40,7 @@ ERROR_BITS = 31
 
 def arbitration(message: Message) -> tuple[int, bool, int]:
     """Of two frames the one with the lesser key wins."""
-    leading = message.identifier >> 18 if message.extended else message.identifier
-    return leading, message.extended, message.identifier
+    return leading(message), message.extended, message.identifier
 
 
 def _of(system: System, bus: Bus) -> list[Message]:
