@@ -288,7 +288,9 @@ def _message_period(
 def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None:
     """A processor with its table; divisors and priority are left to `derive`."""
     findings = site.findings
-    node = site.nodes.look_up(form.node, form.at("node"), findings)
+    node = None
+    if form.node is not None:
+        node = site.nodes.look_up(form.node, form.at("node"), findings)
     bus = None
     if form.released_by is not None:
         bus = site.buses.look_up(form.released_by, form.at("released_by"), findings)
@@ -318,14 +320,11 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
     period = table_period(own) if form.period is None else Ns(form.period)
-    if node is None or period is None or (form.released_by is not None and bus is None):
+    if (node is None) != (form.node is None) or period is None or not (node or sound):
         return None
-    if form.lost("period") or form.lost("released_by"):
+    if form.lost("node") or form.lost("period") or form.lost("released_by"):
         return None
-    if form.core > node.cores:
-        message = f"{name} is on core {form.core}, and {node.name} has {node.cores}"
-        hint = f"give the node `cores: {form.core}`, or the processor another core"
-        findings.error("RV-0710", form.at("core"), message, hint=hint)
+    if form.released_by is not None and bus is None:
         return None
     if form.deadline is not None and form.deadline > period and whole:
         message = f"the deadline of {name} is longer than its period"
@@ -335,7 +334,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     return Processor(
         name=name,
         origin=form.origin,
-        node=node.name,
+        node="" if node is None else node.name,
         period=period,
         offset=Ns(form.offset),
         deadline=deadline,

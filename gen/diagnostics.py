@@ -147,7 +147,7 @@ CODES: Mapping[str, str] = {
     "RV-0710": "A processor is on a core that its node does not have.",
     "RV-0711": "A protected object is used on several cores.",
     "RV-0801": "A section without which there is no system is missing or empty.",
-    "RV-0802": "Distribution over several nodes or buses is not there yet.",
+    "RV-0802": "Something cannot reach from one node to another, or over a second bus, yet.",
     "RV-0803": "Something that the system has once is given twice.",
     "RV-0804": "The model is checked and analysed, but not generated yet.",
     "RV-0901": "A task or message may miss its deadline.",

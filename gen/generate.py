@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from .calls import device_types
 from .claims import Claims
+from .derive import programs
 from .emit.ada import Package, Unit
 from .emit.ada_text import print_item, print_unit
 from .emit.certificate import emit_certificate
@@ -104,13 +105,16 @@ class _Maker:
         return [Made(_context(u), t, r) for u, t, r in zip(found, texts, read, strict=True)]
 
 
-def program(system: System, claims: Claims) -> tuple[Made, ...]:
-    """Every Ada unit of the program; ``claims`` are what its certificate shows."""
+def program(system: System, claims: Claims, whole: System) -> tuple[Made, ...]:
+    """Every Ada unit of a program; ``claims`` are what the certificate of the ``whole`` shows.
+
+    ``whole`` is the system whose part this program is, or this system itself.
+    """
     maker, before, after = _without_claims(system)
-    return (*before, *maker.made([emit_certificate(system, claims, maker.header)]), *after)
+    return (*before, *maker.made([emit_certificate(whole, claims, maker.header)]), *after)
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=8)
 def _without_claims(system: System) -> tuple[_Maker, tuple[Made, ...], tuple[Made, ...]]:
     """What makes the units, and those before and behind the timing certificate.
 
@@ -201,14 +205,31 @@ def _printed(found: Sequence[Made], root: str) -> dict[str, str]:
 
 
 def generate(system: System, claims: Claims) -> dict[str, str]:
-    """File name to text, the same bytes for the same model."""
-    root = ada_case(system.name)
-    files = _printed(program(system, claims), root)
-    name = root.lower()
-    files[f"{name}.gpr"] = project_text(system, source_folders(system))
-    files["trace.json"] = trace_json(system)
+    """File name to text, the same bytes for the same model.
+
+    Of a system with several nodes each has a folder with its program.
+    """
+    files: dict[str, str] = {}
+    for part in programs(system):
+        folder = folder_of(part, system)
+        for name, text in _program_files(part, claims, system).items():
+            files[f"{folder}{name}"] = text
     for bus in system.buses:
         files[f"{bus.name.lower()}.dbc"] = emit_dbc(system, bus)
+    return files
+
+
+def folder_of(part: System, whole: System) -> str:
+    """Where the program of a node is below generated/, a slash behind it; "" of the only node."""
+    return "" if len(whole.nodes) == 1 else f"{part.nodes[0].name.lower()}/"
+
+
+def _program_files(part: System, claims: Claims, whole: System) -> dict[str, str]:
+    root = ada_case(part.name)
+    files = _printed(program(part, claims, whole), root)
+    up = "../" * (1 + folder_of(part, whole).count("/"))
+    files[f"{root.lower()}.gpr"] = project_text(part, source_folders(part), up)
+    files["trace.json"] = trace_json(part)
     return files
 
 

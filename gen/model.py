@@ -323,7 +323,10 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """An output port wired to an input port of the same node."""
+    """An output port wired to an input port of the same node.
+
+    Between nodes there are messages; see `distribution`.
+    """
 
     origin: Origin
     source: End
@@ -576,6 +579,22 @@ class System:
     def bound(self) -> dict[tuple[str, str], Binding]:
         """What provides each required command, by instance and command."""
         return {(b.instance, b.need.name): b for b in self.bindings}
+
+    def sender(self, message: Message) -> str | None:
+        """The node that sends a message; None for one from outside."""
+        return None if message.source is None else self.home(message.source)
+
+    def receiver(self, message: Message) -> str | None:
+        """The node on which a message is received; None for one received outside."""
+        return self.home(message.targets[0]) if message.targets else None
+
+    def home(self, end: End) -> str:
+        """The node of an end's instance."""
+        return self.nodes[0].name if len(self.nodes) == 1 else self.instance(end.instance).node
+
+    def queue(self, message: Message) -> str:
+        """The queue of the controller that sends a message; "" for one from outside."""
+        return "" if message.source is None else f"{self.sender(message)}.{message.bus}"
 
     def node(self, name: str) -> Node:
         """The node called ``name``; KeyError where there is none."""

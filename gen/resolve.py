@@ -25,6 +25,7 @@ from .deployment import (
     shutdown_of,
 )
 from .devices import Devices, Provider, device_type_of
+from .distribution import Carrier, placed
 from .identifiers import identified
 from .interfaces import command_of, declare_vectors
 from .model import Connection, Instance, Shutdown, System
@@ -122,13 +123,12 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
         if whole and empty and not model.is_lost(section):
             hint = f"declare one under `{section}:`"
             findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
-    for section, noun in (("nodes", "node"), ("buses", "bus")):
-        for _, form in model.entries(section)[1:]:
-            first = model.entries(section)[0][1].origin
-            message = f"a second {noun}: distribution over several {section} is not there yet"
-            hint = f"declare one {noun}; another system may hold the other"
-            notes = [(first, "the first is here")]
-            findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
+    for _, form in model.entries("buses")[1:]:
+        first = model.entries("buses")[0][1].origin
+        message = "a second bus: a system has one bus, so far"
+        hint = "declare one bus; another system may hold the other"
+        notes = [(first, "the first is here")]
+        findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
     for _, form in model.entries("processors")[MOST_PROCESSORS:]:
         message = f"a system has at most {MOST_PROCESSORS} processors"
         hint = "let one processor run more rows: each table holds many"
@@ -296,7 +296,9 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     bindings = sections.bindings(kinds, instances, types, frozenset(damaged))
     for part in parts.sound():
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
-    frames = identified(messages.sound())
+    carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
+    connections, carried = carrier.carried(connections, messages.sound())
+    frames = identified(carried)
     system = System(
         name=name,
         origin=model.files[0].at_key("system"),
@@ -313,7 +315,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         shutdown=stop,
         chains=chains.sound(),
     )
-    system = with_bindings(system, bindings)
+    system = placed(with_bindings(system, bindings))
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
 
 

@@ -444,7 +444,7 @@ class InstanceForm(Element):
 
 
 class ConnectionForm(Element):
-    """An output port wired to an input port of the same node."""
+    """An output port wired to an input port; between nodes it is a message of the bus."""
 
     from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
     to: OwnedReference = key("`instance.port`, an input port.")
@@ -453,7 +453,10 @@ class ConnectionForm(Element):
 class ProcessorForm(Element):
     """A processor: one task with a fixed table of activities."""
 
-    node: Reference = key("The node it runs on.")
+    node: Reference | None = optional(
+        "The node it runs on; unless given, that of what it runs. A reception without it is on "
+        "every node that receives from its bus."
+    )
     released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
     core: int = PydanticField(
         default=1, ge=1, description="The core of the node that runs it, counted from 1."

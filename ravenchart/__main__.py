@@ -19,7 +19,7 @@ from analysis.table import show as show_table
 from hw_can.bench.peer import BenchError
 
 from . import allocate, bus, draw, import_dbc, loopback, observed, plain, proving, simulate, steps
-from .run import RunRequest, run_model
+from .run import Controller, RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
 
@@ -184,7 +184,8 @@ def _written(written: steps.Written) -> None:
 def _build(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
-    print(f"built {steps.build(checked, options.mode, options.driver)}")
+    for made in steps.programs_of(checked):
+        print(f"built {made.build(options.mode, options.driver)}")
     return OK
 
 
@@ -192,14 +193,20 @@ def _prove(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
     driver = options.driver or steps.default_driver(checked)
-    variables = steps.scenario(checked, "checks", driver)
-    folders = steps.proof_folders(checked, driver)
-    roots = (checked.folder / "generated", checked.folder / "user")
-    proof = proving.prove(steps.project_of(checked), variables, folders, roots)
-    print(f"{checked.system.name}: {proof.summary()}")
-    if options.record is not None:
-        options.record.write_text(proving.record_text(proof), encoding="utf-8")
-    return OK if proof.clean else WRONG
+    made = steps.programs_of(checked)
+    if options.record is not None and len(made) > 1:
+        raise Refused("ravenchart: error: --record is for a system with one node")
+    clean = True
+    for one in made:
+        roots = (one.generated, checked.folder / "user")
+        folders = one.proof_folders(driver)
+        proof = proving.prove(one.project, one.scenario("checks", driver), folders, roots)
+        where = f" on {one.node}" if len(made) > 1 else ""
+        print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
+        clean = clean and proof.clean
+        if options.record is not None:
+            options.record.write_text(proving.record_text(proof), encoding="utf-8")
+    return OK if clean else WRONG
 
 
 def _analyse(options: argparse.Namespace) -> int:
@@ -245,12 +252,17 @@ def _allocate(options: argparse.Namespace) -> int:
 def _run(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
-    executable = steps.build(checked)
-    print(f"built {executable}")
-    folder = options.report or executable.parent / "report"
+    controllers = []
+    for made in steps.programs_of(checked):
+        executable = made.build()
+        print(f"built {executable}")
+        trace_json = made.generated / "trace.json"
+        controllers.append(Controller(made.node, executable, trace_json))
+    home = steps.build_home(checked, steps.default_driver(checked))
+    folder = options.report or home / "report"
     request = RunRequest(
         checked.analysis,
-        executable,
+        tuple(controllers),
         checked.folder / "generated",
         options.scenario,
         options.seconds,

@@ -96,10 +96,10 @@ def nanoseconds() -> tuple[float, float, float]:
         steps.write_program(checked)
         (folder / "user" / "commands_bench.adb").write_text(MAIN, encoding="utf-8")
         (folder / "user" / "kept.ads").write_text(KEPT, encoding="utf-8")
-        project = steps.project_of(checked)
-        given = {**steps.scenario(checked, "release", "loopback"), "RAVENCHART_BUILD": place}
-        options = ["-p", "-q", "-P", project.name, "commands_bench.adb"]
-        toolchain.run("gprbuild", options, project.parent, given)
+        (made,) = steps.programs_of(checked)
+        given = {**made.scenario("release", "loopback"), "RAVENCHART_BUILD": place}
+        options = ["-p", "-q", "-P", made.project.name, "commands_bench.adb"]
+        toolchain.run("gprbuild", options, made.generated, given)
         program = Path(place) / "commands_bench"
         done = subprocess.run([program], capture_output=True, text=True, timeout=300, check=True)
     plain, direct, queued = (float(line) * 1e9 / CALLS for line in done.stdout.split())

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from hw_can.bench.bus_records import NAME_LENGTH
@@ -85,6 +86,19 @@ def built() -> Path:
     options = ["-p", "-q", "-j0", "-P", PROJECT.name]
     toolchain.run("gprbuild", options, PROJECT.parent, {"MODE": "release"})
     return ROOT / "obj" / "bus-release" / "can_bus"
+
+
+@contextmanager
+def started(*told: str) -> Iterator[str]:
+    """A bus server on a free port for the time of a block; its channel, ``host:port``."""
+    with subprocess.Popen(
+        [built(), "port=0", *told], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
+    ) as server:
+        assert server.stdout is not None
+        try:
+            yield server.stdout.readline().split()[-1]
+        finally:
+            server.terminate()
 
 
 def serve(told: Sequence[str]) -> int:

@@ -52,7 +52,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
         yield _bus()
     for example in EXAMPLES:
         if not names or example in names:
-            yield _example(example)
+            yield from _example(example)
 
 
 def _bus() -> Target:
@@ -84,17 +84,18 @@ def _runtime(driver: str) -> Target:
     )
 
 
-def _example(name: str) -> Target:
+def _example(name: str) -> Iterator[Target]:
     checked = steps.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
     steps.write_program(checked)
     driver = steps.default_driver(checked)
-    return Target(
-        name,
-        steps.project_of(checked),
-        steps.scenario(checked, "checks", driver),
-        steps.proof_folders(checked, driver)[:1],
-        (checked.folder,),
-    )
+    for made in steps.programs_of(checked):
+        yield Target(
+            f"{name}-{made.folder}" if made.folder else name,
+            made.project,
+            made.scenario("checks", driver),
+            made.proof_folders(driver)[:1],
+            (made.generated, checked.folder / "user") if made.folder else (checked.folder,),
+        )
 
 
 def prove(names: Sequence[str]) -> bool:
@@ -125,7 +126,8 @@ def check(_names: Sequence[str]) -> bool:
             print(f"{written.folder}: {written.changed} files were not what the model gives")
             fresh = False
         for mode in ("checks", "release"):
-            steps.build(checked, mode)
+            for made in steps.programs_of(checked):
+                made.build(mode)
             print(f"{example}: builds without a warning ({mode})", flush=True)
     others = (ROOT / "hw_can" / "bus" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")
     for mode in ("checks", "release"):

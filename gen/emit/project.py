@@ -14,7 +14,7 @@ with "ravenchart.gpr";
 
 project {name} is
 
-   Build := external ("RAVENCHART_BUILD", "../build");
+   Build := external ("RAVENCHART_BUILD", "{up}build");
    --  Where objects and the program go.
 
    for Source_Dirs use{sources};
@@ -40,17 +40,20 @@ end {name};
 """
 
 
-def project_text(system: System, folders: Sequence[str]) -> str:
+def project_text(system: System, folders: Sequence[str], up: str) -> str:
     """The project file; it finds the runtime through GPR_PROJECT_PATH.
 
-    ``folders`` have the sources that are not generated, beside the generated ones' folder.
+    ``folders`` have the sources that are not generated, below the model's folder, to which
+    ``up`` leads.
     """
     gap = ", " if len(folders) < 2 else ",\n      "
-    sources = gap.join(('"."', *(f'"../{folder}"' for folder in folders)))
+    sources = gap.join(('"."', *(f'"{up}{folder}"' for folder in folders)))
     start = " " if len(folders) < 2 else "\n     "
     name = ada_case(system.name)
     main = f"{name.lower()}_main"
-    return _TEXT.format(model=system.name, name=name, main=main, sources=f"{start}({sources})")
+    return _TEXT.format(
+        model=system.name, name=name, main=main, up=up, sources=f"{start}({sources})"
+    )
 
 
 _SIMULATION = """\

@@ -65,7 +65,7 @@ def test_every_way_to_sense_is_built_with_its_stand_ins_only(sensed: str, varian
     assert not checked.warnings
     written = steps.write_program(checked)
     assert written.missing == ()
-    steps.build(checked)
+    steps.programs_of(checked)[0].build()
     everything = "\n".join(
         path.read_text() for path in (checked.folder / "generated").glob("*.ad[sb]")
     )
@@ -96,7 +96,7 @@ def test_the_application_is_the_same_whatever_is_sensed(tmp_path: Path) -> None:
 def test_the_level_of_control_is_chosen_by_a_line(level: str, variant: Variant) -> None:
     checked = variant("model.yaml", "software_control.yaml", level)
     steps.write_program(checked)
-    steps.build(checked)
+    steps.programs_of(checked)[0].build()
     units = {path.name for path in (checked.folder / "generated").glob("*.ads")}
     assert "surgical_robot-drives.ads" in units
     assert "surgical_robot-servo_1.ads" not in units
