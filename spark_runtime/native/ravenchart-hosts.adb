@@ -1,6 +1,5 @@
 with Ada.Real_Time;
 with Interfaces.C.Strings;
-with Ravenchart.Epochs;
 with System;
 
 package body Ravenchart.Hosts

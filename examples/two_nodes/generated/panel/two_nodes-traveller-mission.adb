@@ -84,26 +84,6 @@ is
             then Chart.Innermost (Self.Leaf)
          else Chart.Nowhere)
       with Ghost;
-      procedure Leave_Travelling
-      with
-        Pre =>
-          Self.Leaf in Mission_States.Travelling
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Travelling
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         case Mission_States.Travelling'(Self.Leaf) is
-            when Mission_States.Outward =>
-               Active :=
-                 Chart.Moved (Active, Chart.Outward, Chart.Travelling);
-            when Mission_States.Homeward =>
-               Active :=
-                 Chart.Moved (Active, Chart.Homeward, Chart.Travelling);
-         end case;
-      end Leave_Travelling;
       procedure Enter_Outward
       with
         Post =>
@@ -147,7 +127,13 @@ is
             Active := Chart.Moved (Active, Chart.Waiting, Chart.Travelling);
             Enter_Outward;
          when Lost =>
-            Leave_Travelling;
+            Active :=
+              (if Self.Leaf in Mission_States.Travelling
+                  then Chart.Moved
+                       (Active,
+                        Chart.Innermost (Self.Leaf),
+                        Chart.Travelling)
+               else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Travelling, Chart.Safe);
             Self.Leaf := Mission_States.Safe;
          when Again =>
