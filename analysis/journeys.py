@@ -80,9 +80,10 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Sequenc
     for place in chain.way:
         if place.startswith("message "):
             name = place.removeprefix("message ")
-            kinds = ["arrived"] if sources[name] is None else ["sent", "arrived"]
-            yield from ([r.time for r in seen.of(kind, name)] for kind in kinds)
+            kind = "arrived" if sources[name] is None else "sent"
+            yield [r.time for r in seen.of(kind, name)]
         elif place in inputs:
+            yield [r.time for r in seen.of("arrived", place)]
             yield [r.time for r in seen.of("activity", f"{place.partition('.')[0]}.ports")]
         elif place in rows:
             yield [r.time for r in seen.of("activity", place)]

@@ -376,9 +376,30 @@ class Message:
         """The deadline that holds."""
         return self.period if self.deadline is None else self.deadline
 
-    def driver(self, way: str) -> str:
-        """The driver's work on it, as a task: ``way`` is ``tx`` or ``rx``."""
-        return f"{self.bus}.driver_{way}.{self.name}"
+    @property
+    def sending(self) -> str:
+        """The driver's work on sending it, as a task."""
+        return f"{self.bus}.driver_tx.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Reception:
+    """A message as one node receives it; ``several`` do."""
+
+    message: Message
+    node: str
+    several: bool
+
+    @property
+    def element(self) -> str:
+        """Stable id: the message's, with the node behind it where several receive it."""
+        return f"{self.message.element}.{self.node}" if self.several else self.message.element
+
+    @property
+    def driver(self) -> str:
+        """The driver's work on it, as a task."""
+        name = f"{self.message.name}.{self.node}" if self.several else self.message.name
+        return f"{self.message.bus}.driver_rx.{name}"
 
 
 class Work(Enum):
@@ -584,9 +605,21 @@ class System:
         """The node that sends a message; None for one from outside."""
         return None if message.source is None else self.home(message.source)
 
-    def receiver(self, message: Message) -> str | None:
-        """The node on which a message is received; None for one received outside."""
-        return self.home(message.targets[0]) if message.targets else None
+    def receptions(self, message: Message) -> tuple[Reception, ...]:
+        """A message on each node that receives it, in the order of its targets."""
+        homes = tuple(dict.fromkeys(self.home(end) for end in message.targets))
+        return tuple(Reception(message, home, len(homes) > 1) for home in homes)
+
+    def received(self, bus: str | None, node: str) -> tuple[Reception, ...]:
+        """What a node receives from a bus, in model order."""
+        found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
+        return tuple(one for one in found if one.node == node)
+
+    def reception(self, message: Message, place: str) -> Reception | None:
+        """That of the node of a target port, ``instance.port``; of any other place, the first."""
+        found = {one.node: one for one in reversed(self.receptions(message))}
+        at = next((self.home(end) for end in message.targets if str(end) == place), None)
+        return found.get(at) if at is not None else next(reversed(found.values()), None)
 
     def home(self, end: End) -> str:
         """The node of an end's instance."""

@@ -363,9 +363,7 @@ def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
     if not {"processors", "messages"} <= resolved.sound_sections:
         return
     for bus, node in product(system.buses, system.nodes):
-        receives = any(
-            item.bus == bus.name and system.receiver(item) == node.name for item in system.messages
-        )
+        receives = bool(system.received(bus.name, node.name))
         serving = [
             (processor, slot)
             for processor, slot in _rows(system)

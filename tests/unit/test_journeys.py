@@ -32,7 +32,7 @@ def seen(analysis: Analysis, panel: list[str], drive: list[str], late: int = 0) 
                 text.append(f"A {known.named(words[1], 'row').number} {words[2]}")
                 continue
             time, kind, name = words
-            row = {"activity": "row", "sent": "message", "arrived": "message"}[kind]
+            row = {"activity": "row", "sent": "message", "arrived": "port"}[kind]
             text.append(f"T {int(float(time) * MS)} {kind} {known.named(name, row).number} 0")
         parts[node] = read_trace([*text, "L trace 0", "END"], known)
     return together(parts)
@@ -46,7 +46,7 @@ PANEL = [
 ]
 DRIVE = [
     "-7 activity servo.ports",
-    "14 arrived supervisor_order",
+    "14 arrived servo.order",
     "18 activity servo.ports",
     "18.3 activity servo.control",
     "A servo.control 200000",
@@ -55,7 +55,7 @@ DRIVE = [
 
 def test_times_of_all_nodes_count_from_the_first_start(analysis: Analysis) -> None:
     found = seen(analysis, PANEL, DRIVE, late=7 * MS)
-    assert [r.time for r in found.of("arrived", "supervisor_order")] == [21 * MS]
+    assert [r.time for r in found.of("arrived", "servo.order")] == [21 * MS]
     assert [r.time for r in found.of("sent", "supervisor_order")] == [MS // 10, 201 * MS // 10]
     times = [record.time for record in found.records]
     assert times == sorted(times)
