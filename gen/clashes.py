@@ -60,6 +60,10 @@ def _elements(system: System) -> Iterator[_Element]:
         yield from _members(component)
     for message in system.messages:
         yield _Element("message", message.name, message.origin)
+        several = (one for one in system.receptions(message) if one.several)
+        yield from (
+            _Element("message", f"{message.name}_{r.node}", r.message.origin) for r in several
+        )
     for type_ in system.types:
         yield _Element("type", type_.name, type_.origin)
         if isinstance(type_, EnumerationType):
