@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
-from gen.model import Connection, Instance, Port, PortKind
+from gen.component import Port, PortKind
+from gen.model import Connection, Instance
 from gen.statechart import Overflow
 from gen.terms import Origin
 

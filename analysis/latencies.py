@@ -19,7 +19,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from gen.model import Activity, Message, Port, PortKind, Processor, Reception, System
+from gen.component import Activity, Port, PortKind
+from gen.model import Message, Processor, Reception, System
 from gen.statechart import Region
 from gen.terms import named
 

@@ -13,12 +13,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from .claims import Claims
+from .component import Component
 from .derive import programs
 from .diagnostics import Diagnostic, error
 from .emit.ada_text import WIDTH, print_unit
 from .emit.naming import ada_case
 from .generate import Made, program
-from .model import Component, System
+from .model import System
 from .terms import EnumerationType, Origin
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})

@@ -10,19 +10,9 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from .calls import callers, callers_of, readers_through, repliers, replies_read, rows_of
+from .component import Activity
 from .distribution import as_one, part_of
-from .model import (
-    Activity,
-    Bus,
-    Instance,
-    Message,
-    Node,
-    Processor,
-    SharedObject,
-    Slot,
-    System,
-    Task,
-)
+from .model import Bus, Instance, Message, Node, Processor, SharedObject, Slot, System, Task
 from .statechart import Region
 from .terms import Ns
 from .ways import routed

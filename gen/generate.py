@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from .calls import device_types
 from .claims import Claims
+from .component import Component
 from .derive import programs
 from .emit.ada import Package, Unit
 from .emit.ada_text import print_item, print_unit
@@ -25,7 +26,7 @@ from .emit.project import project_text, simulation_project
 from .emit.quiet import has_decided_conditions, quiet
 from .emit.simulation import emit_simulation, simulated
 from .emit.types import emit_root
-from .model import Component, System
+from .model import System
 from .parallel import made_by_all
 from .readings import Reading, readings
 from .terms import IntegerType

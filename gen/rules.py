@@ -11,8 +11,9 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from itertools import product
 
+from .component import Component, Direction
 from .diagnostics import Diagnostic, error, warning
-from .model import Bus, Component, Direction, Instance, Message, Processor, Slot, System, Work
+from .model import Bus, Instance, Message, Processor, Slot, System, Work
 from .quantities import shown
 from .resolve import Resolved
 from .rules_components import COMPONENT_RULES

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from ..model import Activity, Chain, PortKind, Processor, Slot, System
+from ..component import Activity, PortKind
+from ..model import Chain, Processor, Slot, System
 from ..statechart import Region
 from ..terms import named
 

@@ -16,9 +16,10 @@ from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
 from behaviour.stimuli import Arrived, Raised, Stimuli
 from behaviour.traces import Record
+from gen.component import Event, Port
 from gen.emit.naming import ada_case
 from gen.generate import simulation
-from gen.model import End, Event, Port, System
+from gen.model import End, System
 from gen.terms import IntegerType, Ns, RecordType, Scalar, ScalarType, Type, Value
 
 from .. import simulate, steps
