@@ -50,7 +50,8 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
 
 def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     """From each start of the first row to the end of the journey that the next one begins."""
-    first, *others = _stages(chain, system, seen)
+    starts, *others = _stages(chain, system, seen)
+    first = [start for start in starts if start >= seen.ready]
     last = seen.executions.get(chain.way[-1], 0)
     origins = first if chain.way[0].startswith("message ") else (None, *first)
     found = []

@@ -115,7 +115,7 @@ components:
 
 def test_a_message_reaches_every_node_that_listens() -> None:
     listener = (
-        ("  drive: {", "  log: {context_switch: 10 us, critical_section: 5 us}\n  drive: {"),
+        ("  drive:\n", "  log: {context_switch: 10 us, critical_section: 5 us}\n  drive:\n"),
         ("  servo: {comp", "  listener: {component: Ear, node: log}\n  servo: {comp"),
         (
             "processors:",
