@@ -165,7 +165,7 @@ def run_alone(
 
 
 def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple[Path, ...]:
-    """Write report.html, and positions.png of the drives of a scenario, into ``out_dir``; what it wrote."""
+    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both."""
     out_dir.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     pictures: list[tuple[str, str]] = []
