@@ -13,7 +13,7 @@ help:
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'
-	@echo 'make bench     figures: runtime operations, charts, generator, analysis (beside a Rust crate)'
+	@echo 'make bench     figures: runtime, codecs (beside C), charts, generator, analysis (beside a Rust crate)'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make docs      model reference, JSON Schema and error list; pictures of the examples'
