@@ -9,11 +9,11 @@ EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
 	@echo 'make test      every test'
-	@echo 'make test-long  the same with 2,000 random charts and millions of frames: hours'
+	@echo 'make test-long  the same with 2,000 random charts, millions of frames and lines: hours'
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'
-	@echo 'make bench     figures: runtime operations, charts, generator, analysis (beside a Rust crate)'
+	@echo 'make bench     figures: runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate)'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make docs      model reference, JSON Schema and error list; pictures of the examples'
