@@ -27,6 +27,7 @@ EXAMPLES = (
     "qhsmtst",
     "surgical_robot",
     "three_components",
+    "two_nodes",
 )
 DRIVERS = ("loopback", "slcan")
 BUS = "bus"
@@ -53,6 +54,13 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     for example in EXAMPLES:
         if not names or example in names:
             yield from _example(example)
+
+
+def record_names(example: str) -> tuple[str, ...]:
+    """The records of an example: one, or one for each node that has a program."""
+    generated = ROOT / "examples" / example / "generated"
+    nodes = sorted(project.parent.name for project in generated.glob("*/*.gpr"))
+    return tuple(f"{example}-{node}" for node in nodes) or (example,)
 
 
 def _bus() -> Target:
