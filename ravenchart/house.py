@@ -28,7 +28,12 @@ EXAMPLES = (
     "surgical_robot",
     "three_components",
 )
-DRIVERS = ("loopback", "slcan")
+DRIVER_FOLDERS = {
+    "loopback": ("loopback",),
+    "slcan": ("drivers/slcan", "drivers/tcp"),
+}
+"""What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
+DRIVERS = tuple(DRIVER_FOLDERS)
 BUS = "bus"
 
 
@@ -62,13 +67,12 @@ def _bus() -> Target:
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
-        (folder,),
+        (folder, ROOT / "hw_can" / "protocol"),
     )
 
 
 def _runtime(driver: str) -> Target:
     obj = ROOT / "obj"
-    body = ROOT / "hw_can" / ("loopback" if driver == "loopback" else "drivers/slcan")
     return Target(
         f"runtime-{driver}",
         ROOT / "proofs" / "proofs.gpr",
@@ -78,7 +82,7 @@ def _runtime(driver: str) -> Target:
             ROOT / "spark_runtime",
             ROOT / "hw_can" / "hal",
             ROOT / "hw_can" / "simulator",
-            body,
+            *(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver]),
             ROOT / "proofs" / "instances",
         ),
     )
