@@ -31,6 +31,7 @@ EXAMPLES = (
 DRIVER_FOLDERS = {
     "loopback": ("loopback",),
     "slcan": ("drivers/slcan", "drivers/tcp"),
+    "bus": ("protocol", "drivers/bus", "drivers/tcp"),
 }
 """What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
 DRIVERS = tuple(DRIVER_FOLDERS)
@@ -137,6 +138,10 @@ def check(_names: Sequence[str]) -> bool:
             options = ["-p", "-q", "-j0", "-P", project.name]
             variables = {"MODE": mode, "CAN_DRIVER": DRIVERS[0]}
             toolchain.run("gprbuild", options, project.parent, variables)
+        for driver in DRIVERS[1:]:
+            options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
+            variables = {"MODE": mode, "CAN_DRIVER": driver}
+            toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
         print(f"runtime, HAL, bus and tests: build without a warning ({mode})", flush=True)
     return fresh
 
