@@ -65,7 +65,7 @@ def _parser() -> argparse.ArgumentParser:
     build = command("build", _build, "generate, and compile the controller")
     prove = command("prove", _prove, "generate, and prove the controller with gnatprove")
     for sub in (build, prove):
-        sub.add_argument("--driver", choices=("slcan", "loopback"), help="the CAN driver")
+        sub.add_argument("--driver", choices=("slcan", "loopback", "bus"), help="the CAN driver")
     build.add_argument(
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",

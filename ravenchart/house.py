@@ -29,7 +29,13 @@ EXAMPLES = (
     "three_components",
     "two_nodes",
 )
-DRIVERS = ("loopback", "slcan")
+DRIVER_FOLDERS = {
+    "loopback": ("loopback",),
+    "slcan": ("drivers/slcan", "drivers/tcp"),
+    "bus": ("protocol", "drivers/bus", "drivers/tcp"),
+}
+"""What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
+DRIVERS = tuple(DRIVER_FOLDERS)
 BUS = "bus"
 
 
@@ -70,13 +76,12 @@ def _bus() -> Target:
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
-        (folder,),
+        (folder, ROOT / "hw_can" / "protocol"),
     )
 
 
 def _runtime(driver: str) -> Target:
     obj = ROOT / "obj"
-    body = ROOT / "hw_can" / ("loopback" if driver == "loopback" else "drivers/slcan")
     return Target(
         f"runtime-{driver}",
         ROOT / "proofs" / "proofs.gpr",
@@ -86,7 +91,7 @@ def _runtime(driver: str) -> Target:
             ROOT / "spark_runtime",
             ROOT / "hw_can" / "hal",
             ROOT / "hw_can" / "simulator",
-            body,
+            *(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver]),
             ROOT / "proofs" / "instances",
         ),
     )
@@ -143,6 +148,10 @@ def check(_names: Sequence[str]) -> bool:
             options = ["-p", "-q", "-j0", "-P", project.name]
             variables = {"MODE": mode, "CAN_DRIVER": DRIVERS[0]}
             toolchain.run("gprbuild", options, project.parent, variables)
+        for driver in DRIVERS[1:]:
+            options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
+            variables = {"MODE": mode, "CAN_DRIVER": driver}
+            toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
         print(f"runtime, HAL, bus and tests: build without a warning ({mode})", flush=True)
     return fresh
 

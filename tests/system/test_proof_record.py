@@ -11,10 +11,9 @@ from ravenchart import house, proving
 from ravenchart.toolchain import ROOT
 
 NAMES = (
-    "runtime-loopback",
-    "runtime-slcan",
+    *(f"runtime-{driver}" for driver in house.DRIVERS),
     house.BUS,
-    *(n for e in house.EXAMPLES for n in house.record_names(e)),
+    *(name for example in house.EXAMPLES for name in house.record_names(example)),
 )
 
 

@@ -1,13 +1,12 @@
 with Interfaces.C.Strings;
 with System;
 
-package body Ravenchart.Can.Slcan_Sockets
+package body Ravenchart.Can.Tcp_Sockets
   with SPARK_Mode => Off
 --  ASM-005. Sockets are reached through the C library, by address.
 is
    use type Interfaces.C.int;
    use type Interfaces.C.long;
-   use type Interfaces.C.Strings.chars_ptr;
 
    subtype C_Int is Interfaces.C.int;
 
@@ -35,6 +34,10 @@ is
    function C_Bind
      (File : C_Int; Name : System.Address; Length : C_Int) return C_Int
    with Import, Convention => C, External_Name => "bind";
+
+   function C_Connect
+     (File : C_Int; Name : System.Address; Length : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "connect";
 
    function C_Listen (File, Backlog : C_Int) return C_Int
    with Import, Convention => C, External_Name => "listen";
@@ -95,6 +98,7 @@ is
    Tcp_Level       : constant C_Int := 6;
    No_Delay        : constant C_Int := 1;
    No_Signal       : constant C_Int := 16#4000#;
+   Wait_For_All    : constant C_Int := 16#100#;
    Both_Ways       : constant C_Int := 2;
    Standard_Output : constant C_Int := 1;
    Standard_Error  : constant C_Int := 2;
@@ -102,17 +106,36 @@ is
 
    Complained : Boolean := False
    with Atomic;
-   --  An open that fails is tried again; one message is enough.
+   --  What fails is tried again; one message is enough.
+
+   Bus_Port : constant := 29_536;
+   --  Of a bus server that was told no other.
 
    procedure Say (File : C_Int; Text : String);
    --  Write Text to File, unbuffered.
 
-   procedure Complain (Reason : String);
-   --  Say once on standard error why the server is not open.
+   function Setting (Name : String) return String;
+   --  What the environment says; nothing when it is not set.
 
    procedure Read_Port
-     (Port : out Interfaces.Unsigned_16; Sound : out Boolean);
-   --  What RAVENCHART_CAN_PORT names; 0 when it is not set.
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      Sound    : out Boolean);
+   --  The port that Variable names; Default when it is not set.
+
+   function Address_Of (Port : Interfaces.Unsigned_16) return Socket_Address
+   is (Family  => 2,
+       Port    => C_To_Network (Port),
+       Host    => C_Host_To_Network (Local_Host),
+       Padding => 0);
+   --  That port of this machine.
+
+   function Image (Port : Interfaces.Unsigned_16) return String;
+   --  In decimal.
+
+   procedure Hurry (File : C_Int);
+   --  Small records shall not wait for more.
 
    ---------
    -- Say --
@@ -137,39 +160,74 @@ is
       end if;
    end Complain;
 
+   -------------
+   -- Setting --
+   -------------
+
+   function Setting (Name : String) return String is
+      use type Interfaces.C.Strings.chars_ptr;
+      Found : constant Interfaces.C.Strings.chars_ptr :=
+        C_Get_Environment (Interfaces.C.To_C (Name));
+   begin
+      return
+        (if Found = Interfaces.C.Strings.Null_Ptr then ""
+         else Interfaces.C.Strings.Value (Found));
+   end Setting;
+
    ---------------
    -- Read_Port --
    ---------------
 
    procedure Read_Port
-     (Port : out Interfaces.Unsigned_16; Sound : out Boolean)
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      Sound    : out Boolean)
    is
-      Setting : constant Interfaces.C.Strings.chars_ptr :=
-        C_Get_Environment (Interfaces.C.To_C ("RAVENCHART_CAN_PORT"));
-      Sum     : Natural := 0;
+      Text : constant String := Setting (Variable);
+      Sum  : Natural := 0;
    begin
-      Port  := 0;
+      Port  := Default;
       Sound := True;
-      if Setting = Interfaces.C.Strings.Null_Ptr then
+      if Text = "" then
          return;
       end if;
-      declare
-         Text : constant String := Interfaces.C.Strings.Value (Setting);
-      begin
-         Sound := Text'Length > 0;
-         for C of Text loop
-            if C in '0' .. '9' and then Sum <= 65_535 then
-               Sum := 10 * Sum + Character'Pos (C) - Character'Pos ('0');
-            else
-               Sound := False;
-            end if;
-         end loop;
-      end;
+      for C of Text loop
+         if C in '0' .. '9' and then Sum <= 65_535 then
+            Sum := 10 * Sum + Character'Pos (C) - Character'Pos ('0');
+         else
+            Sound := False;
+         end if;
+      end loop;
       Sound := Sound and then Sum <= 65_535;
       if Sound then
          Port := Interfaces.Unsigned_16 (Sum);
+      else
+         Complain (Variable & " must be a port, 0 to 65535");
       end if;
    end Read_Port;
+
+   -----------
+   -- Image --
+   -----------
+
+   function Image (Port : Interfaces.Unsigned_16) return String is
+      Text : constant String := Port'Image;
+   begin
+      return Text (Text'First + 1 .. Text'Last);
+   end Image;
+
+   -----------
+   -- Hurry --
+   -----------
+
+   procedure Hurry (File : C_Int) is
+      One     : aliased C_Int := 1;
+      Ignored : C_Int;
+   begin
+      Ignored := C_Set_Option
+        (File, Tcp_Level, No_Delay, One'Address, 4);
+   end Hurry;
 
    -----------------
    -- Open_Server --
@@ -185,9 +243,8 @@ is
       Result  : C_Int;
    begin
       Server := No_Socket;
-      Read_Port (Port, Sound);
+      Read_Port ("RAVENCHART_CAN_PORT", 0, Port, Sound);
       if not Sound then
-         Complain ("RAVENCHART_CAN_PORT must be a port, 0 to 65535");
          return;
       end if;
       File := C_Socket (Internet, Stream + Close_On_Exec, 0);
@@ -197,8 +254,7 @@ is
       end if;
       Result := C_Set_Option
         (File, Socket_Level, Reuse_Address, One'Address, 4);
-      Address.Port := C_To_Network (Port);
-      Address.Host := C_Host_To_Network (Local_Host);
+      Address := Address_Of (Port);
       if Result = 0 then
          Result := C_Bind (File, Address'Address, Address_Length);
       end if;
@@ -210,19 +266,14 @@ is
       end if;
       if Result /= 0 then
          Complain
-           ("port" & Port'Image & " cannot be opened: is it in use?"
+           ("port " & Image (Port) & " cannot be opened: is it in use?"
             & " trying again");
          Result := C_Close (File);
          return;
       end if;
-      declare
-         Image : constant String := C_To_Network (Address.Port)'Image;
-      begin
-         Say
-           (Standard_Output,
-            "can: slcan on 127.0.0.1:"
-            & Image (Image'First + 1 .. Image'Last));
-      end;
+      Say
+        (Standard_Output,
+         "can: slcan on 127.0.0.1:" & Image (C_To_Network (Address.Port)));
       Server := Socket (File);
    end Open_Server;
 
@@ -231,78 +282,155 @@ is
    -------------------
 
    procedure Accept_Client (Server : Socket; Client : out Socket) is
-      One     : aliased C_Int := 1;
-      Ignored : C_Int;
-      File    : constant C_Int := C_Accept
+      File : constant C_Int := C_Accept
         (C_Int (Server), System.Null_Address, System.Null_Address);
    begin
       if File < 0 then
          Client := No_Socket;
       else
-         Ignored := C_Set_Option
-           (File, Tcp_Level, No_Delay, One'Address, 4);
+         Hurry (File);
          Client := Socket (File);
       end if;
    end Accept_Client;
+
+   -------------
+   -- Connect --
+   -------------
+
+   procedure Connect (Client : out Socket) is
+      Address : aliased Socket_Address;
+      Port    : Interfaces.Unsigned_16;
+      Sound   : Boolean;
+      File    : C_Int;
+      Result  : C_Int;
+   begin
+      Client := No_Socket;
+      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
+      if not Sound then
+         return;
+      end if;
+      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      if File < 0 then
+         Complain ("no socket: the system has none left");
+         return;
+      end if;
+      Address := Address_Of (Port);
+      Result  := C_Connect (File, Address'Address, Address_Length);
+      if Result /= 0 then
+         Complain
+           ("no bus server at 127.0.0.1:" & Image (Port)
+            & ": trying again");
+         Result := C_Close (File);
+         return;
+      end if;
+      Hurry (File);
+      Client := Socket (File);
+   end Connect;
+
+   ---------------------
+   -- Announce_Joined --
+   ---------------------
+
+   procedure Announce_Joined is
+      Port  : Interfaces.Unsigned_16;
+      Sound : Boolean;
+   begin
+      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
+      if Sound then
+         Say
+           (Standard_Output,
+            "can: joined the bus at 127.0.0.1:" & Image (Port));
+      end if;
+   end Announce_Joined;
+
+   ---------------
+   -- Read_Name --
+   ---------------
+
+   procedure Read_Name (Text : out Name_Text; Last : out Name_Length) is
+      Found : constant String := Setting ("RAVENCHART_BUS_NAME");
+   begin
+      Last := Natural'Min (Found'Length, Name_Length'Last);
+      Text := (others => ' ');
+      Text (1 .. Last) := Found (Found'First .. Found'First + Last - 1);
+   end Read_Name;
 
    -------------
    -- Receive --
    -------------
 
    procedure Receive
-     (Client : Socket; Bytes : out Chunk; Last : out Chunk_Length)
+     (From : Socket; Bytes : out Chunk; Last : out Chunk_Length)
    is
       Result : Interfaces.C.long;
    begin
       Bytes  := (others => 0);
-      Result := C_Receive (C_Int (Client), Bytes'Address, Chunk_Limit, 0);
+      Result := C_Receive (C_Int (From), Bytes'Address, Chunk_Limit, 0);
       Last   := (if Result > 0 then Natural (Result) else 0);
    end Receive;
+
+   -----------------
+   -- Receive_All --
+   -----------------
+
+   procedure Receive_All
+     (From : Socket; Bytes : out Octets; Done : out Boolean)
+   is
+      Got    : Natural := 0;
+      Result : Interfaces.C.long;
+   begin
+      Bytes := (others => 0);
+      while Got < Bytes'Length loop
+         Result := C_Receive
+           (C_Int (From),
+            Bytes (Bytes'First + Got)'Address,
+            Interfaces.C.size_t (Bytes'Length - Got),
+            Wait_For_All);
+         exit when Result <= 0;
+         Got := Got + Natural (Result);
+      end loop;
+      Done := Got = Bytes'Length;
+   end Receive_All;
 
    ----------
    -- Send --
    ----------
 
-   procedure Send
-     (Client : Socket;
-      Line   : Slcan.Line_Bytes;
-      Last   : Slcan.Line_Length;
-      Done   : out Boolean)
-   is
-      Copy   : constant Slcan.Line_Bytes := Line;
+   procedure Send (To : Socket; Bytes : Octets; Done : out Boolean) is
+      Copy   : constant Octets := Bytes;
       Sent   : Natural := 0;
       Result : Interfaces.C.long;
    begin
-      while Sent < Last loop
+      while Sent < Copy'Length loop
          Result := C_Send
-           (C_Int (Client),
-            Copy (Sent + 1)'Address,
-            Interfaces.C.size_t (Last - Sent),
+           (C_Int (To),
+            Copy (Copy'First + Sent)'Address,
+            Interfaces.C.size_t (Copy'Length - Sent),
             No_Signal);
          exit when Result <= 0;
          Sent := Sent + Natural (Result);
       end loop;
-      Done := Sent = Last;
+      Done := Sent = Copy'Length;
    end Send;
 
    ---------------
    -- Break_Off --
    ---------------
 
-   procedure Break_Off (Client : Socket) is
+   procedure Break_Off (Partner : Socket) is
       Ignored : C_Int;
    begin
-      Ignored := C_Shutdown (C_Int (Client), Both_Ways);
+      Ignored := C_Shutdown (C_Int (Partner), Both_Ways);
    end Break_Off;
 
    -----------
    -- Close --
    -----------
 
-   procedure Close (Client : Socket) is
+   procedure Close (Partner : Socket) is
       Ignored : C_Int;
    begin
-      Ignored := C_Close (C_Int (Client));
+      Ignored := C_Close (C_Int (Partner));
    end Close;
 
-end Ravenchart.Can.Slcan_Sockets;
+end Ravenchart.Can.Tcp_Sockets;
