@@ -1,5 +1,6 @@
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
---  which stands for the rest of the bus.
+--  which stands for the rest of the bus; or the host of an slcan adapter on
+--  the serial line that RAVENCHART_CAN_DEVICE names.
 --
 --  Guarantees   only whole, well-formed lines go to the client; a client that
 --               stops reading delays the writer alone
@@ -28,6 +29,7 @@ package body Ravenchart.Can.Controllers
 is
    use Ada.Synchronous_Task_Control;
    use type Ada.Real_Time.Time;
+   use type Interfaces.Unsigned_8;
    use type Queueing.Put_Status;
    use type Slcan.Outcome;
    use type Tcp_Sockets.Socket;
@@ -272,8 +274,12 @@ is
          Tcp_Sockets.Receive (Client, Bytes, Last);
          exit when Last = 0;
          for I in 1 .. Last loop
-            Slcan.Feed (Parser, Bytes (I), Result, F);
-            Obey (Result, F);
+            if Bytes (I) = Slcan.Bell then
+               Link.Count_Rejected;
+            else
+               Slcan.Feed (Parser, Bytes (I), Result, F);
+               Obey (Result, F);
+            end if;
          end loop;
       end loop;
    end Serve;
@@ -343,23 +349,32 @@ is
    ------------
 
    task body Reader is
-      Server : Tcp_Sockets.Socket;
+      Server : Tcp_Sockets.Socket := Tcp_Sockets.No_Socket;
       Client : Tcp_Sockets.Socket;
+      Serial : Boolean;
    begin
       delay until Epochs.Start;
       --  A client that came before the processors run would find nobody
       --  to take its frames.
-      loop
+      Tcp_Sockets.Ask_For_Device (Serial);
+      while not Serial loop
          Tcp_Sockets.Open_Server (Server);
          exit when Server /= Tcp_Sockets.No_Socket;
          Pause (Milliseconds => 1_000);
       end loop;
       loop
-         Tcp_Sockets.Accept_Client (Server, Client);
+         if Serial then
+            Tcp_Sockets.Open_Device (Client);
+         else
+            Tcp_Sockets.Accept_Client (Server, Client);
+         end if;
          if Client = Tcp_Sockets.No_Socket then
             Pause (Milliseconds => 100);
          else
             Link.Attach (Client);
+            if Serial then
+               Link.Set_Channel (Open);
+            end if;
             Serve (Client);
             --  The writer may be waiting for this client. End its wait, and
             --  close only when it has let go: the system gives the number of

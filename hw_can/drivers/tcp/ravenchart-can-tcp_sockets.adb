@@ -69,6 +69,24 @@ is
       return Interfaces.C.long
    with Import, Convention => C, External_Name => "write";
 
+   function C_Read
+     (File : C_Int; Data : System.Address; Length : Interfaces.C.size_t)
+      return Interfaces.C.long
+   with Import, Convention => C, External_Name => "read";
+
+   function C_Open (Path : System.Address; Flags : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "open";
+
+   function C_Get_Line (File : C_Int; To : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "tcgetattr";
+
+   procedure C_Make_Raw (Line : System.Address)
+   with Import, Convention => C, External_Name => "cfmakeraw";
+
+   function C_Set_Line
+     (File, When_To : C_Int; From : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "tcsetattr";
+
    function C_Shutdown (File, How : C_Int) return C_Int
    with Import, Convention => C, External_Name => "shutdown";
 
@@ -103,6 +121,17 @@ is
    Standard_Output : constant C_Int := 1;
    Standard_Error  : constant C_Int := 2;
    Local_Host      : constant := 16#7F00_0001#;
+
+   Both_Directions : constant C_Int := 2;
+   No_Terminal     : constant C_Int := 8#400#;
+   At_Once         : constant C_Int := 0;
+
+   type Line_Settings is array (1 .. 32) of Interfaces.Unsigned_64;
+   --  Room for a struct termios, and more.
+
+   Device_File : C_Int := -1
+   with Atomic;
+   --  The serial line, which takes no socket calls.
 
    Complained : Boolean := False
    with Atomic;
@@ -277,6 +306,60 @@ is
       Server := Socket (File);
    end Open_Server;
 
+   --------------------
+   -- Ask_For_Device --
+   --------------------
+
+   procedure Ask_For_Device (Wanted : out Boolean) is
+   begin
+      Wanted := Setting ("RAVENCHART_CAN_DEVICE") /= "";
+   end Ask_For_Device;
+
+   -----------------
+   -- Open_Device --
+   -----------------
+
+   procedure Open_Device (Device : out Socket) is
+      Path    : constant String := Setting ("RAVENCHART_CAN_DEVICE");
+      Speed   : constant String := Setting ("RAVENCHART_CAN_SPEED");
+      C_Path  : constant String := Path & ASCII.NUL;
+      Line    : aliased Line_Settings := (others => 0);
+      Rate    : constant String :=
+        (if Speed = "" then "" else "S" & Speed & ASCII.CR);
+      Opening : constant String := "C" & ASCII.CR & Rate & "O" & ASCII.CR;
+      File    : C_Int;
+      Result  : C_Int;
+   begin
+      Device := No_Socket;
+      if Speed'Length > 1 or else (for some C of Speed => C not in '0' .. '8')
+      then
+         Complain ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
+         return;
+      end if;
+      File := C_Open
+        (C_Path'Address, Both_Directions + No_Terminal + Close_On_Exec);
+      if File < 0 then
+         Complain (Path & " cannot be opened: trying again");
+         return;
+      end if;
+      Result := C_Get_Line (File, Line'Address);
+      if Result = 0 then
+         C_Make_Raw (Line'Address);
+         Result := C_Set_Line (File, At_Once, Line'Address);
+      end if;
+      if Result /= 0
+        or else C_Write (File, Opening'Address, Opening'Length)
+                /= Opening'Length
+      then
+         Complain (Path & " is no serial line: trying again");
+         Result := C_Close (File);
+         return;
+      end if;
+      Device_File := File;
+      Say (Standard_Output, "can: slcan on " & Path);
+      Device := Socket (File);
+   end Open_Device;
+
    -------------------
    -- Accept_Client --
    -------------------
@@ -365,7 +448,7 @@ is
       Result : Interfaces.C.long;
    begin
       Bytes  := (others => 0);
-      Result := C_Receive (C_Int (From), Bytes'Address, Chunk_Limit, 0);
+      Result := C_Read (C_Int (From), Bytes'Address, Chunk_Limit);
       Last   := (if Result > 0 then Natural (Result) else 0);
    end Receive;
 
@@ -402,11 +485,17 @@ is
       Result : Interfaces.C.long;
    begin
       while Sent < Copy'Length loop
-         Result := C_Send
-           (C_Int (To),
-            Copy (Copy'First + Sent)'Address,
-            Interfaces.C.size_t (Copy'Length - Sent),
-            No_Signal);
+         Result :=
+           (if C_Int (To) = Device_File
+            then C_Write
+              (C_Int (To),
+               Copy (Copy'First + Sent)'Address,
+               Interfaces.C.size_t (Copy'Length - Sent))
+            else C_Send
+              (C_Int (To),
+               Copy (Copy'First + Sent)'Address,
+               Interfaces.C.size_t (Copy'Length - Sent),
+               No_Signal));
          exit when Result <= 0;
          Sent := Sent + Natural (Result);
       end loop;
@@ -430,6 +519,9 @@ is
    procedure Close (Partner : Socket) is
       Ignored : C_Int;
    begin
+      if C_Int (Partner) = Device_File then
+         Device_File := -1;
+      end if;
       Ignored := C_Close (C_Int (Partner));
    end Close;
 

@@ -40,6 +40,17 @@ is
    --  Listen on the port that RAVENCHART_CAN_PORT names, or on one that the
    --  system chooses, and announce it on standard output.
 
+   procedure Ask_For_Device (Wanted : out Boolean)
+   with Global => (In_Out => Network);
+   --  Does RAVENCHART_CAN_DEVICE name a serial line, to be used instead?
+
+   procedure Open_Device (Device : out Socket)
+   with Global => (In_Out => Network);
+   --  Open that line as it is set, without echo and translation; tell the
+   --  slcan adapter there to open its channel, at the rate of the digit that
+   --  RAVENCHART_CAN_SPEED names (its command S), and announce it on
+   --  standard output.
+
    procedure Accept_Client (Server : Socket; Client : out Socket)
    with Global => (In_Out => Network);
    --  Wait for the next client.
