@@ -9,7 +9,7 @@ EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
 	@echo 'make test      every test'
-	@echo 'make test-long  the same with 2,000 random charts: hours'
+	@echo 'make test-long  the same with 2,000 random charts and millions of frames: hours'
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'

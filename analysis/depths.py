@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING
 
 from gen.model import Connection, Instance, Port, PortKind
@@ -49,16 +50,19 @@ def depths(analysis: Analysis) -> Iterator[Depth]:
     limit of a chain depends on them.
     """
     system = analysis.system
-    for bus in system.buses:
-        sent = [m for m in system.messages if m.bus == bus.name and m.source is not None]
+    for bus, node in product(system.buses, system.nodes):
+        sent = [m for m in system.messages if (m.bus, system.sender(m)) == (bus.name, node.name)]
         times = [(analysis.found.from_event(m.element), m.period) for m in sent]
         needed = _together(times) if sent else None
         if needed is not None:
-            queue = f"frames may wait to be sent on {bus.name}"
+            place = "" if len(system.nodes) == 1 else f" by {node.name}"
+            queue = f"frames may wait to be sent on {bus.name}{place}"
             yield Depth(queue, "transmit_depth", bus.origin, bus.transmit_depth, needed)
     for processor in system.processors:
         own = analysis.found.responses[processor.name].bound
-        taken = [d for d in analysis.deliveries.values() if d.message.bus == processor.released_by]
+        here = processor.released_by, processor.node
+        received = [d for d in analysis.deliveries.values() if d.message.bus == here[0]]
+        taken = [d for d in received if system.receiver(d.message) == here[1]]
         waits = [None if d.bound is None or own is None else d.bound - own for d in taken]
         if not waits or processor.released_by is None:
             continue

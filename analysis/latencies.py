@@ -70,7 +70,8 @@ def deliveries(system: System, found: Holistic) -> dict[str, Delivery]:
 
 def _received(processor: Processor, system: System) -> list[Message]:
     """The messages that a processor receives."""
-    return [m for m in system.messages if m.bus == processor.released_by and m.targets]
+    here = processor.released_by, processor.node
+    return [m for m in system.messages if (m.bus, system.receiver(m)) == here]
 
 
 def reception_frames(processor: Processor, system: System, found: Holistic) -> list[Frame]:

@@ -34,7 +34,7 @@ def network_of(system: System) -> Network:
     return Network(
         tasks=tuple(_task(task, system) for task in system.tasks),
         frames={
-            bus.name: tuple(_frame(m, bus) for m in system.frames if m.bus == bus.name)
+            bus.name: tuple(_frame(m, bus, system) for m in system.frames if m.bus == bus.name)
             for bus in system.buses
         },
         buses={bus.name: _bus(bus) for bus in system.buses},
@@ -77,7 +77,7 @@ def _platform(node: model.Node) -> Platform:
     return Platform(node.context_switch, node.release, period, cost)
 
 
-def _frame(message: Message, bus: model.Bus) -> Frame:
+def _frame(message: Message, bus: model.Bus, system: System) -> Frame:
     """A message at its longest."""
     return Frame(
         name=message.element,
@@ -85,7 +85,7 @@ def _frame(message: Message, bus: model.Bus) -> Frame:
         period=message.period,
         deadline=message.limit,
         cost=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
-        queue="" if message.source is None else f"{bus.name}.transmit",
+        queue=system.queue(message),
         reloaded=message.source is not None,
     )
 

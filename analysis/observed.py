@@ -1,19 +1,20 @@
 """What one run of a controller showed: its trace file, read with the generator's map.
 
 The file holds one record a line, times in nanoseconds from the controller's start:
-``T time kind element value``, then the counts ``P processor releases misses
-worst_response``, ``A row worst_execution``, ``H fault count``, ``L what count``,
-``W host_latency``, and ``END``. Without ``END`` the run was cut off. The map tells
-what each element number stands for.
+``E clock``, the machine's clock at that start, ``T time kind element value``, then the
+counts ``P processor releases misses worst_response``, ``A row worst_execution``,
+``H fault count``, ``L what count``, ``W host_latency``, and ``END``. Without ``END`` the
+run was cut off. The map tells what each element number stands for.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from gen.model import NO_TIME
 from gen.terms import Ns
 
 KINDS = frozenset(
@@ -113,6 +114,8 @@ class Observation:
     stolen: Ns | None = None
     """Time that a hypervisor took of the core during the whole run, as its kernel counts it."""
     complete: bool = False
+    start: Ns = NO_TIME
+    """The machine's clock when this controller's time was 0."""
 
     @property
     def misses(self) -> int:
@@ -127,7 +130,7 @@ class Observation:
     @property
     def trace_lost(self) -> int:
         """Records that did not fit into the controller's trace buffer."""
-        return sum(n for what, n in self.losses.items() if what.lower().startswith("trace"))
+        return sum(n for what, n in self.losses.items() if what.lower().endswith("trace"))
 
     @property
     def end(self) -> Ns:
@@ -189,11 +192,42 @@ def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -
     return seen
 
 
+def together(parts: Mapping[str, Observation]) -> Observation:
+    """What several controllers on one machine showed, by node: as if it were one.
+
+    Times count from the first start of all; elements are numbered anew, and counts are
+    those of their node, in front of whose words its name stands.
+    """
+    first = min(part.start for part in parts.values())
+    elements: dict[int, Element] = {}
+    whole = Observation(TraceMap("", "", elements), start=first, complete=True)
+    for node, part in parts.items():
+        own = {e: replace(e, number=e.number + len(elements)) for e in part.map.elements.values()}
+        late = part.start - first
+        whole.records += [
+            replace(r, time=Ns(r.time + late), element=own[r.element]) for r in part.records
+        ]
+        elements |= {e.number: e for e in own.values()}
+        whole.processors |= part.processors
+        whole.executions |= part.executions
+        whole.counts |= {f"{node}.{what}": n for what, n in part.counts.items()}
+        for fault, n in part.faults.items():
+            whole.faults[fault] = whole.faults.get(fault, 0) + n
+        if part.host_latency is not None:
+            whole.host_latency = max(whole.host_latency or Ns(0), part.host_latency)
+        whole.complete = whole.complete and part.complete
+        whole.map = replace(part.map, elements=elements)
+    whole.records.sort(key=lambda record: record.time)
+    return whole
+
+
 def _take(words: list[str], seen: Observation) -> None:
     """Add one line to what was seen; ValueError says what is wrong with it."""
     match words:
         case ["T", time, kind, element, value]:
             seen.records.append(_record(time, kind, element, value, seen.map))
+        case ["E", clock]:
+            seen.start = Ns(_count(clock))
         case ["P", number, releases, misses, worst]:
             counts = Releases(_count(releases), _count(misses), Ns(_count(worst)))
             seen.processors[_known(number, seen.map, "processor").name] = counts

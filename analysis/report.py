@@ -19,6 +19,7 @@ from .core.tasks import plain
 from .critical import schedule
 from .findings import no_bound_reason
 from .graph import component_view
+from .journeys import Journey
 from .latencies import Hop, Latency
 from .network import frame_length
 from .observed import Observation
@@ -121,6 +122,7 @@ class RunReport:
     frames: tuple[FrameRow, ...]
     comparable: bool
     observation: Observation | None
+    journeys: tuple[Journey, ...] = ()
     pictures: tuple[tuple[str, str], ...] = ()
 
 

@@ -13,10 +13,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from .claims import Claims
+from .derive import programs
 from .diagnostics import Diagnostic, error
 from .emit.ada_text import WIDTH, print_unit
 from .emit.naming import ada_case
-from .generate import program
+from .generate import Made, program
 from .model import Component, System
 from .terms import EnumerationType, Origin
 
@@ -24,10 +25,15 @@ PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"}
 """Words that no GNAT project can have as its name, beside those of Ada."""
 
 
+def _units(system: System) -> tuple[Made, ...]:
+    """The units of the program; claims are numbers, not names."""
+    return program(system, Claims(), system)
+
+
 def _clashing(system: System) -> Iterator[tuple[str, str]]:
-    """(Ada name, unit) of whatever clashes."""
+    """(Ada name, unit) of whatever clashes in the program of one node."""
     specs: dict[str, frozenset[str]] = {}
-    for made in program(system, Claims()):
+    for made in _units(system):
         name = made.reading.name
         if name in specs and not made.reading.is_body:
             yield name.rpartition(".")[2], name
@@ -103,7 +109,7 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
     if all(len(e.name) <= LONG_NAME for e in _elements(system)):
         return
     reported: set[Origin] = set()
-    for made in program(system, Claims()):
+    for made in (made for part in programs(system) for made in _units(part)):
         for line in print_unit(made.unit, made.text).splitlines():
             if len(line) <= WIDTH:
                 continue
@@ -127,7 +133,7 @@ def clashes(system: System) -> Iterator[Diagnostic]:
         yield error("RV-0304", system.origin, message, hint="choose another name")
     yield from _too_long(system)
     reported: set[tuple[str, str]] = set()
-    for text, unit in _clashing(system):
+    for text, unit in (found for part in programs(system) for found in _clashing(part)):
         found = _culprits(system, text, unit)
         if not found or (found[0].name.lower(), found[0].owner) in reported:
             continue

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from .chart_names import States, names_of
 from .chart_structure import structure_errors
 from .charts import region_of
-from .flows import Targets, Use, flow_of
+from .commands import Command, Need
+from .flows import Targets, Use, called, flow_of
+from .interfaces import needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .model import Activity, Component, Direction, StateRef
 from .names import Findings, Scope, meant
@@ -60,12 +62,15 @@ def parts_of(
     form: ComponentForm,
     types: Scope[Type],
     literals: frozenset[str],
+    dictionary: Scope[Command],
     system: str,
     findings: Findings,
 ) -> Parts:
     """A component with all its parts that are sound."""
     before = findings.count()
-    members = members_of(form, types, Namespace(name, system, findings))
+    space = Namespace(name, system, findings)
+    members = members_of(form, types, space)
+    needs = needs_of(form, dictionary, types, members, space)
     states: Scope[Scope[str]] = Scope("region", open=form.lost("regions"))
     for gone in form.dropped("regions"):
         states.declare(gone, None, None)
@@ -78,7 +83,8 @@ def parts_of(
         if findings.count() > count or at.damaged:
             damaged.add(region)
     words = vocabulary_of(members, states, literals)
-    targets = Targets(members.data_types, outputs_of(members), members.events)
+    outputs, calls = outputs_of(members), _calls(form, members, needs)
+    targets = Targets(members.data_types, outputs, members.events, calls)
     regions: list[Region] = []
     activities: Scope[Activity] = Scope("activity")
     for region, at in (form.regions or {}).items():
@@ -97,6 +103,10 @@ def parts_of(
         activities.declare(activity, on.origin, doing, findings)
         if findings.count() > count or on.damaged:
             damaged.add(activity)
+    provides = (
+        provided_of(given, at, dictionary, types, members, activities, findings)
+        for given, at in (form.provides or {}).items()
+    )
     component = Component(
         name=name,
         origin=form.origin,
@@ -108,12 +118,28 @@ def parts_of(
         regions=tuple(regions),
         activities=activities.sound(),
         invariants=invariants_of(form, words, findings),
+        needs=needs,
+        provides=tuple(one for one in provides if one is not None),
     )
+    if findings.count() == before:
+        stand_ins_agree(form, component, findings)
+        servers_serve_once(component, findings)
     if not (component.regions or component.activities or form.damaged or component.port_region):
         message = f"the component {name} has nothing to run: no region, no activity, no input"
         findings.error("RV-0513", form.origin, message)
     hurt = findings.count() > before or form.damaged
     return Parts(component, members, _rows(name, form, component), frozenset(damaged), hurt)
+
+
+def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> Scope[Need]:
+    """The required commands that can be called."""
+    scope: Scope[Need] = Scope("required command")
+    scope.open = form.lost("requires") or bool(form.dropped("requires"))
+    called = {need.name.lower(): need for need in needs if not need.is_read}
+    for name, origin, port in members.ports.items.values():
+        if port is None or port.is_command:
+            scope.declare(name, origin, called.get(name.lower()))
+    return scope
 
 
 def _rows(name: str, form: ComponentForm, component: Component) -> Scope[str]:
@@ -183,14 +209,14 @@ def _activity(
         use = Use()
         use.flow(flow)
         if findings.count() == count and not form.damaged:
-            lists = _agreed(name, form, lists, use, findings)
+            lists = _agreed(name, form, lists, use, targets, findings)
     return Activity(
         name=name,
         origin=form.origin,
         timing=timing,
         reads=lists["reads"],
         writes=lists["writes"],
-        sends=lists["sends"],
+        sends=(*lists["sends"], *lists["calls"]),
         raises=lists["raises"],
         while_in=while_in,
         flow=flow,
@@ -223,6 +249,7 @@ def _lists(
         ),
         "writes": ("data item", (targets.data,)),  # type: ignore[dict-item]
         "sends": ("output port", (targets.outputs,)),  # type: ignore[dict-item]
+        "calls": ("required command", ()),
         "raises": ("event", (targets.events,)),  # type: ignore[dict-item]
     }
     lists: dict[str, tuple[str, ...]] = {}
@@ -230,6 +257,7 @@ def _lists(
         ("reads", form.reads),
         ("writes", form.writes),
         ("sends", form.sends),
+        ("calls", form.calls),
         ("raises", form.raises),
     ):
         kind, scopes = known[key]
@@ -238,6 +266,13 @@ def _lists(
             origin = form.item_at(key, index)
             if key == "raises" and name.lower() == DONE:
                 declared = _done(targets, origin, findings)
+            elif key == "calls":
+                need = called(name, origin, words, targets, findings)
+                declared = None if need is None else need.name
+            elif key in ("reads", "sends") and targets.calls.find(name) is not None:
+                message = f"`{name}` is a command that is called, and here it stands in `{key}`"
+                findings.error("RV-1206", origin, message, hint="name it under `calls`")
+                declared = None
             else:
                 declared = _declared(name, kind, scopes, origin, findings)
             if declared is not None and not names.declare(declared, origin, declared):
@@ -279,6 +314,7 @@ def _agreed(
     form: ActivityForm,
     lists: dict[str, tuple[str, ...]],
     use: Use,
+    targets: Targets,
     findings: Findings,
 ) -> dict[str, tuple[str, ...]]:
     """What the flow does; where that was declared too, both must agree."""
@@ -286,7 +322,8 @@ def _agreed(
     for key, verb, done in (
         ("reads", "read", use.reads),
         ("writes", "write", use.writes),
-        ("sends", "send on", use.sends),
+        ("sends", "send on", [one for one in use.sends if targets.calls.find(one) is None]),
+        ("calls", "call", [one for one in use.sends if targets.calls.find(one) is not None]),
         ("raises", "raise", use.raises),
     ):
         agreed[key] = lists[key] if form.has(key) else tuple(done)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from .components import Parts, timing_of
 from .derive import table_deadline, table_period
+from .identifiers import OPEN
+from .layouts import layout_of, size_of
 from .model import (
     Bus,
     BusErrors,
@@ -27,16 +29,14 @@ from .model import (
 from .names import Findings, Scope
 from .quantities import shown
 from .schema import (
-    BusForm,
     ChainForm,
     ConnectionForm,
     InstanceForm,
-    MessageForm,
     NodeForm,
     ProcessorForm,
     ShutdownForm,
 )
-from .signals import length_of, signals_of
+from .schema_frames import BusForm, MessageForm
 from .statechart import Timing
 from .terms import BOOLEAN, Ns, Origin, Scalar
 from .values import constant
@@ -85,6 +85,7 @@ def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
         Ns(form.driver_wcet),
         None if form.errors is None else BusErrors(Ns(form.errors.period), form.errors.burst),
         form.data_rate,
+        audsley=form.identifiers == "audsley",
     )
 
 
@@ -140,7 +141,11 @@ def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
     parts = site.parts.find(instance.component.name)
     if parts is None:
         return None
-    named = Scope(f"port of {instance.component.name}", parts.members.ports.items)
+    ports = parts.members.ports.items.items()
+    named = Scope(
+        f"port of {instance.component.name}",
+        {key: at for key, at in ports if at[2] is None or not at[2].is_command},
+    )
     named.open = parts.members.ports.open
     port = named.look_up(pair[1], origin, site.findings)
     return None if port is None else (End(instance.name, port.name), port)
@@ -212,29 +217,38 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
-    if not foreign and form.bytes is not None:
-        message = f"the message {name} is as long as the type of its port; leave `bytes` out"
-        findings.error("RV-0608", form.at_key("bytes"), message)
+    for key in ("signals", "multiplexor") if foreign else ():
+        if form.has(key):
+            message = f"the message {name} has no value, and `{key}` no meaning"
+            findings.error("RV-0210", form.at_key(key), message, hint="remove it")
+    if foreign and form.id is None and not form.lost("id"):
+        message = f"the message {name} is sent by others and needs the key `id`"
+        findings.error("RV-0202", form.origin, message)
     period = _message_period(name, form, source, site)
     broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
-    if bus is None or broken or gone or period is None or form.lost("bytes"):
+    if bus is None or broken or gone or period is None:
+        return None
+    if form.lost("bytes") or form.lost("id") or (foreign and form.id is None):
         return None
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
-    signals, fd = () if foreign else signals_of(type_), form.format == "fd"
+    signals = () if foreign else layout_of(name, form, type_, findings)
+    length = None if signals is None else size_of(name, form, signals, findings)
+    if signals is None or length is None:
+        return None
     return Message(
         name=name,
         origin=form.origin,
         bus=bus.name,
-        identifier=form.id,
+        identifier=OPEN if form.id is None else form.id,
         extended=form.extended,
         type=type_,
         signals=signals,
-        length=form.bytes if form.bytes is not None else length_of(signals, fd=fd),
+        length=length,
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
         period=period,
         deadline=None if form.deadline is None else Ns(form.deadline),
-        fd=fd,
+        fd=form.format == "fd",
     )
 
 
@@ -274,7 +288,9 @@ def _message_period(
 def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None:
     """A processor with its table; divisors and priority are left to `derive`."""
     findings = site.findings
-    node = site.nodes.look_up(form.node, form.at("node"), findings)
+    node = None
+    if form.node is not None:
+        node = site.nodes.look_up(form.node, form.at("node"), findings)
     bus = None
     if form.released_by is not None:
         bus = site.buses.look_up(form.released_by, form.at("released_by"), findings)
@@ -304,14 +320,11 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
     period = table_period(own) if form.period is None else Ns(form.period)
-    if node is None or period is None or (form.released_by is not None and bus is None):
+    if (node is None) != (form.node is None) or period is None or not (node or sound):
         return None
-    if form.lost("period") or form.lost("released_by"):
+    if form.lost("node") or form.lost("period") or form.lost("released_by"):
         return None
-    if form.core > node.cores:
-        message = f"{name} is on core {form.core}, and {node.name} has {node.cores}"
-        hint = f"give the node `cores: {form.core}`, or the processor another core"
-        findings.error("RV-0710", form.at("core"), message, hint=hint)
+    if form.released_by is not None and bus is None:
         return None
     if form.deadline is not None and form.deadline > period and whole:
         message = f"the deadline of {name} is longer than its period"
@@ -321,7 +334,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
     return Processor(
         name=name,
         origin=form.origin,
-        node=node.name,
+        node="" if node is None else node.name,
         period=period,
         offset=Ns(form.offset),
         deadline=deadline,

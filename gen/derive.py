@@ -7,12 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
+from .calls import callers, callers_of, readers_through, repliers, replies_read, rows_of
+from .distribution import as_one, part_of
 from .model import (
     Activity,
     Bus,
     Instance,
     Message,
+    Node,
     Processor,
     SharedObject,
     Slot,
@@ -117,22 +121,25 @@ def tasks_of(system: System) -> tuple[Task, ...]:
     top = max((processor.priority for processor in system.processors), default=0)
     for message in system.messages:
         bus = system.bus(message.bus)
-        ways = [] if message.source is None else [("tx", sender_of(system, message))]
-        ways += [("rx", message.element)] if message.targets else []
+        ways = [
+            ("tx", system.sender(message), sender_of(system, message)),
+            ("rx", system.receiver(message), message.element),
+        ]
         tasks += [
             Task(
                 element=message.driver(way),
                 origin=message.origin,
-                node=system.nodes[0].name,
+                node=node,
                 period=message.period,
                 offset=Ns(0),
                 deadline=message.limit,
                 budget=bus.driver_wcet,
                 priority=top + 1,
                 released_by=releaser,
-                core=driver_core(system, bus),
+                core=driver_core(system, bus, node),
             )
-            for way, releaser in ways
+            for way, node, releaser in ways
+            if node is not None
         ]
     for host in system.nodes:
         if host.probe is not None:
@@ -152,13 +159,13 @@ def tasks_of(system: System) -> tuple[Task, ...]:
     return tuple(tasks)
 
 
-def driver_core(system: System, bus: Bus) -> int:
-    """The core of a bus's driver: that of its reception, or else of what sends first."""
+def driver_core(system: System, bus: Bus, node: str) -> int:
+    """The core of a bus's driver on a node: that of its reception, or else of what sends first."""
     for processor in system.processors:
-        if processor.released_by == bus.name:
+        if processor.released_by == bus.name and processor.node == node:
             return processor.core
     for message in system.messages:
-        if message.bus == bus.name:
+        if message.bus == bus.name and system.sender(message) == node:
             for row in sending_rows(system, message):
                 return system.processor_of(row).core
     return 1
@@ -219,9 +226,12 @@ class _Sharing:
                 yield self.made(element, [handler, *readers])
         for data in component.data:
             users = [self.runs(instance.name, name) for name in component.users(data.name)]
+            through = readers_through(self.system, instance.name, data.name)
+            users += [self.system.processor_of(row).name for row in through]
             written = any(data.name in item.writes for item in runnables)
             if written and len(users) > 1:  # otherwise it is a constant, or its writer's own
                 yield self.made(f"{instance.name}.{data.name}", users)
+        yield from self.of_commands(instance)
         for region in component.regions:
             own = self.runs(instance.name, region.name)
             readers = [
@@ -238,6 +248,37 @@ class _Sharing:
                 yield self.made(f"{instance.name}.{activity.name}.visit", users)
                 yield self.made(f"{instance.name}.{activity.name}.done", users)
 
+    def of_commands(self, instance: Instance) -> Iterable[SharedObject]:
+        """The queues of requests of an instance, and the boards of replies to its own."""
+        for provided in instance.component.provides:
+            if provided.server is not None:
+                server = self.runs(instance.name, provided.server)
+                rows = [
+                    row
+                    for b in callers_of(self.system, instance.name, provided)
+                    for row in rows_of(self.system, b)
+                ]
+                users = [self.system.processor_of(row).name for row in rows]
+                yield self.made(f"{instance.name}.{provided.name}.queue", [*users, server])
+        for item in replies_read(instance.component):
+            binding = next(
+                b
+                for b in self.system.bindings
+                if b.instance == instance.name and b.need.reply_item == item
+            )
+            users = [self.runs(instance.name, name) for name in instance.component.users(item)]
+            writers = (self.system.processor_of(r).name for r in repliers(self.system, binding))
+            yield self.made(f"{instance.name}.{item}", [*writers, *users])
+
+    def devices(self) -> Iterable[SharedObject]:
+        """The devices that several tasks call: inside one, a driver works its longest."""
+        for device in self.system.devices:
+            users = [self.system.processor_of(row).name for row in callers(self.system, device)]
+            if device.type is not None and len(set(users)) > 1:
+                made = self.made(device.name, users)
+                longest = max(one.wcet for one in device.provides)
+                yield replace(made, section=max(made.section, longest))
+
     def writers(self, instance: str, port: str) -> Iterable[str]:
         """The processors that put values into an input port's mailbox."""
         for connection in self.system.connections:
@@ -248,7 +289,7 @@ class _Sharing:
                         yield self.runs(source.name, sender.name)
         for message in self.system.messages:
             if any((end.instance, end.port) == (instance, port) for end in message.targets):
-                yield self.runs(message.bus, "receive")
+                yield from (p.name for p in self.system.processors if p.released_by == message.bus)
 
     def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
         """The tasks that may put an event into a region's queue."""
@@ -262,6 +303,14 @@ class _Sharing:
                 yield self.runs(instance.name, item.name)
                 if item.name != region.name:
                     yield from self.raisers_once(instance, item)
+        for need in component.needs:
+            binding = self.system.bound[instance.name, need.name]
+            if need.on_full in named:
+                rows = rows_of(self.system, binding)
+                yield from (self.system.processor_of(row).name for row in rows)
+            if need.on_reply in named:
+                rows = repliers(self.system, binding)
+                yield from (self.system.processor_of(row).name for row in rows)
         for port in component.inputs():
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
                 yield self.runs(instance.name, "ports")
@@ -290,15 +339,61 @@ def _works_in(item: Region | Activity, region: str) -> bool:
     )
 
 
-def objects_of(system: System, tasks: Sequence[Task]) -> tuple[SharedObject, ...]:
-    """Every protected object of the generated program, with its users and ceiling.
+def programs(system: System) -> tuple[System, ...]:
+    """What runs on each node, as a system of its own; the system itself where there is one node.
 
-    ``system`` has its priorities. The users of `health` and `trace` are all processors.
+    Nodes without a processor have no program.
     """
+    return (system,) if len(system.nodes) == 1 else _programs(system)
+
+
+@lru_cache(maxsize=1)
+def _programs(system: System) -> tuple[System, ...]:
+    busy = {processor.node for processor in system.processors}
+    return tuple(_program(system, node) for node in system.nodes if node.name in busy)
+
+
+def _program(system: System, node: Node) -> System:
+    """The part of a system on a node, with its tasks and objects."""
+    part = part_of(system, node)
+    part = replace(part, tasks=tuple(task for task in system.tasks if task.node == node.name))
+    return replace(part, objects=_objects(part))
+
+
+def on_one_node(system: System) -> System:
+    """The same components on one node, with the objects that they share there."""
+    one = as_one(system)
+    return one if one is system else replace(one, objects=_objects(one))
+
+
+def objects_of(system: System) -> tuple[SharedObject, ...]:
+    """Every protected object of the generated programs, with its users and ceiling.
+
+    ``system`` has its tasks. Where there are several nodes, what each of them has by
+    the same name has that of its node in front.
+    """
+    parts = programs(system)
+    if len(parts) == 1:
+        return _objects(parts[0])
+    own = {instance.name for instance in system.instances} | {node.name for node in system.nodes}
+    own |= {processor.name for processor in system.processors}
+    return tuple(
+        item
+        if item.element.partition(".")[0] in own
+        else replace(item, element=f"{item.node}.{item.element}")
+        for part in parts
+        for item in _objects(part)
+    )
+
+
+def _objects(system: System) -> tuple[SharedObject, ...]:
+    """The protected objects of one node. The users of `health` and `trace` are all processors."""
+    tasks = system.tasks
     sharing = _Sharing(system, {task.element: task.priority for task in tasks} | {MAIN: 0})
     objects: list[SharedObject] = []
     for instance in system.instances:
         objects.extend(sharing.of_instance(instance))
+    objects.extend(sharing.devices())
     for bus in system.buses:
         senders = [
             system.processor_of(row).name
@@ -330,5 +425,5 @@ def completed(system: System) -> System:
     """A valid system with divisors, priorities, tasks, shared objects and the ways of chains."""
     processors = prioritised([_with_divisors(processor) for processor in system.processors])
     told = replace(system, processors=processors)
-    tasks = tasks_of(told)
-    return routed(replace(told, tasks=tasks, objects=objects_of(told, tasks)))
+    told = replace(told, tasks=tasks_of(told))
+    return routed(replace(told, objects=objects_of(told)))

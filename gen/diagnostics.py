@@ -32,6 +32,7 @@ GROUPS: Mapping[str, str] = {
     "09": "Deadlines",
     "10": "Simulation",
     "11": "Behaviour",
+    "12": "Commands and devices",
 }
 
 CODES: Mapping[str, str] = {
@@ -131,6 +132,9 @@ CODES: Mapping[str, str] = {
     "RV-0611": "A message may be sent more often than once in its period.",
     "RV-0612": "A chain has no limit.",
     "RV-0613": "The data rate of a bus is below its bit rate.",
+    "RV-0614": "A signal cannot be laid out or coded as it is given.",
+    "RV-0615": "Two signals share bits of a frame, or one reaches beyond its end.",
+    "RV-0616": "No frame has that length, or the message does not fit it.",
     "RV-0701": "An activity, region or port region is allocated to no processor.",
     "RV-0702": "An activity, region or port region is allocated twice.",
     "RV-0703": "A worst-case execution time or a deadline is longer than the period.",
@@ -143,7 +147,7 @@ CODES: Mapping[str, str] = {
     "RV-0710": "A processor is on a core that its node does not have.",
     "RV-0711": "A protected object is used on several cores.",
     "RV-0801": "A section without which there is no system is missing or empty.",
-    "RV-0802": "Distribution over several nodes or buses is not there yet.",
+    "RV-0802": "Something cannot reach from one node to another, or over a second bus, yet.",
     "RV-0803": "Something that the system has once is given twice.",
     "RV-0804": "The model is checked and analysed, but not generated yet.",
     "RV-0901": "A task or message may miss its deadline.",
@@ -153,6 +157,7 @@ CODES: Mapping[str, str] = {
     "RV-0905": "A chain may take longer than its limit.",
     "RV-0906": "A queue is shorter than what may wait in it at once.",
     "RV-0907": "Nothing bounds what may wait in a queue.",
+    "RV-0908": "No order of a bus's identifiers was found that meets all deadlines.",
     "RV-1001": "A file of events cannot be read, or is no list.",
     "RV-1002": "An entry of a file of events has none of the forms that there are.",
     "RV-1003": "A time in a file of events is not well-formed, or before the one above it.",
@@ -170,6 +175,19 @@ CODES: Mapping[str, str] = {
     "RV-1108": "What an invariant excludes does happen.",
     "RV-1109": "What an invariant excludes is not shown to be impossible.",
     "RV-1110": "The check of behaviour was not finished.",
+    "RV-1201": "A command in the dictionary lacks a type that its kind needs, or has one more.",
+    "RV-1202": "A command is per axis and has no scalar type that there could be one of per axis.",
+    "RV-1203": "A required interface is bound to nothing, or twice.",
+    "RV-1204": "What an interface is bound to does not provide a command that is required.",
+    "RV-1205": "A required interface works on another number of axes than what it is bound to.",
+    "RV-1206": "A command is called that is read, or called with an argument too many or too few.",
+    "RV-1207": "What is to stand in for a command cannot.",
+    "RV-1208": "A key has no meaning for a command of that kind.",
+    "RV-1209": "A provided interface is incomplete, or answers a command in the wrong way.",
+    "RV-1210": "A device is not exactly one of a piece of equipment, an array and a facade.",
+    "RV-1211": "An array is made of other things than devices of one kind.",
+    "RV-1212": "Two members of a facade provide a command, or the wrong one is chosen.",
+    "RV-1213": "The replies of the members of an array cannot be given as one.",
 }
 """Every code with what it says; docs/errors.md is written from this table."""
 

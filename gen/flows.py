@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from .commands import Need
 from .model import Event
 from .names import Findings, Scope, meant
-from .schema import IfForm, RaiseForm, SendForm, SetForm
+from .schema import CallForm, IfForm, RaiseForm, SendForm, SetForm
 from .statechart import DONE
 from .terms import (
+    BOOLEAN,
     Action,
     Expression,
     Flow,
     If,
     InState,
+    Literal,
     Name,
     Operation,
     Origin,
@@ -31,7 +34,7 @@ from .tree import Place
 from .typed import condition, fitting, read
 from .vocabulary import Vocabulary
 
-ActionForms = Sequence[SetForm | SendForm | RaiseForm | IfForm]
+ActionForms = Sequence[SetForm | SendForm | CallForm | RaiseForm | IfForm]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +44,7 @@ class Targets:
     data: Scope[Type]
     outputs: Scope[Type]
     events: Scope[Event]
+    calls: Scope[Need]
     do_activity: bool = False
     """These are the flows of a do activity: it may raise `DONE`."""
 
@@ -54,7 +58,7 @@ def flow_of(
 
 
 def _action(
-    form: SetForm | SendForm | RaiseForm | IfForm,
+    form: SetForm | SendForm | CallForm | RaiseForm | IfForm,
     words: Vocabulary,
     targets: Targets,
     findings: Findings,
@@ -64,6 +68,8 @@ def _action(
             return _set(form, words, targets, findings)
         case SendForm():
             return _send(form, words, targets, findings)
+        case CallForm():
+            return _call(form, words, targets, findings)
         case RaiseForm():
             return _raise(form, words, targets, findings)
     guard = condition(form.if_, form.place("if"), words, findings, "if")
@@ -120,6 +126,8 @@ def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Finding
         kind = "an input port" if words.inputs.knows(form.send) else "no output port"
         message = f"`{form.send}` is {kind}, and only output ports can be sent on"
         hint = meant(form.send, targets.outputs.names())
+        if targets.calls.find(form.send) is not None:
+            hint = f"a command is called: `call: {form.send}`"
         findings.error("RV-0411", origin, message, hint=hint)
         return None
     type_ = targets.outputs.find(form.send)
@@ -129,6 +137,39 @@ def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Finding
     name = targets.outputs.items[form.send.lower()][0]
     values = _values(form, form.with_, name, type_, words, findings)
     return None if values is None else Send(form.at_key("send"), name, values)
+
+
+def _call(form: CallForm, words: Vocabulary, targets: Targets, findings: Findings) -> Action | None:
+    need = called(form.call, form.at("call"), words, targets, findings)
+    if need is None:
+        return None
+    origin = form.at_key("call")
+    if need.argument is None:
+        if form.has("with"):
+            message = f"the command {need.name} has no argument"
+            findings.error("RV-1206", form.at_key("with"), message, hint="remove `with`")
+            return None
+        return Send(origin, need.name, ((None, Literal("True", BOOLEAN)),))
+    if form.with_ is None:
+        if not form.lost("with"):
+            message = f"the command {need.name} takes {need.argument.name}, and here is no argument"
+            findings.error("RV-1206", form.at("call"), message, hint="give it by `with: ...`")
+        findings.lose()
+        return None
+    values = _values(form, form.with_, need.name, need.argument, words, findings)
+    return None if values is None else Send(origin, need.name, values)
+
+
+def called(
+    name: str, origin: Origin, words: Vocabulary, targets: Targets, findings: Findings
+) -> Need | None:
+    """The required command of that name that can be called."""
+    if not targets.calls.knows(name) and words.readable.knows(name):
+        message = f"`{name}` is read and not called"
+        hint = "use its name in an expression, or name it under `reads`"
+        findings.error("RV-1206", origin, message, hint=hint)
+        return None
+    return targets.calls.look_up(name, origin, findings)
 
 
 def _raise(
@@ -172,7 +213,7 @@ Given = int | bool | str | Mapping[str, int | bool | str]
 
 
 def _values(
-    form: SendForm | RaiseForm,
+    form: SendForm | CallForm | RaiseForm,
     given: Given,
     carrier: str,
     type_: Type,
@@ -191,7 +232,7 @@ def _values(
 
 
 def _fields(
-    form: SendForm | RaiseForm,
+    form: SendForm | CallForm | RaiseForm,
     given: Given,
     carrier: str,
     type_: RecordType,

@@ -206,7 +206,7 @@ class Place:
         return error("RV-0201", origin, f"the key `{name}` is unknown here", hint=hint)
 
 
-SHAPES = ("range", "values", "fields", "set", "send", "raise", "if", "in", "out")
+SHAPES = ("range", "values", "fields", "set", "send", "call", "raise", "if", "in", "out")
 """The keys by which forms are told apart."""
 
 

@@ -270,6 +270,10 @@ def vocabulary_of(
     inputs.open = members.ports.open
     for name, origin, type_ in members.data_types.items.values():
         readable.declare(name, origin, None if type_ is None else (Reading.DATA, name, type_))
+    for name, origin, item in members.data.items.values():  # the required commands among them
+        if not members.data_types.knows(name):
+            read = None if item is None else (Reading.DATA, name, item.type)
+            readable.declare(name, origin, read)
     for name, origin, parameter in members.parameters.items.values():
         told = None if parameter is None else (Reading.PARAMETER, name, parameter.type)
         readable.declare(name, origin, told)
@@ -284,9 +288,9 @@ def vocabulary_of(
 
 
 def outputs_of(members: Members) -> Scope[Type]:
-    """The types of the output ports by name."""
+    """The types of the output ports by name, required commands apart."""
     scope: Scope[Type] = Scope("output port", open=members.ports.open)
     for name, origin, port in members.ports.items.values():
-        if port is None or port.direction is Direction.OUT:
+        if port is None or (port.direction is Direction.OUT and not port.is_command):
             scope.declare(name, origin, None if port is None else port.type)
     return scope

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
+from .commands import Binding, Device, Need, Provided
+from .signals import Signal
 from .statechart import DONE, Overflow, Region, Timing
 from .terms import (
     Expression,
@@ -65,6 +67,10 @@ class Port:
     on_stale: str | None = None
     on_overflow: str | None = None
     """Events of the component, raised by the port's handler."""
+    is_command: bool = False
+    """An output port that is a required command: what is sent is the argument of a call."""
+    is_void: bool = False
+    """A command without argument: nothing but that it is called is sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +101,8 @@ class Data:
     origin: Origin
     type: Type
     initial: Value
+    is_command: bool = False
+    """A read command or the last reply to a call: somebody else writes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +165,8 @@ class Component:
     regions: tuple[Region, ...]
     activities: tuple[Activity, ...]
     invariants: tuple[Invariant, ...] = ()
+    needs: tuple[Need, ...] = ()
+    provides: tuple[Provided, ...] = ()
 
     def inputs(self) -> tuple[Port, ...]:
         """The input ports, in model order."""
@@ -187,7 +197,8 @@ class Component:
         if isinstance(row, Region) or row.while_in is not None:
             return False
         if row.flow is None:
-            return True
+            called = any(port.name == name and port.is_command for port in self.ports)
+            return not called and self.served_by(row.name) is None
         sure = always(row.flow)
         if name in sure:
             return True
@@ -204,6 +215,15 @@ class Component:
         """The do activities that complete a state of a region, each with that state."""
         all_of_them = ((a, a.completes) for a in self.activities)
         return tuple((a, at.state) for a, at in all_of_them if at and at.region == region)
+
+    def served_by(self, activity: str) -> Provided | None:
+        """The provided interface whose requests an activity executes."""
+        return next((one for one in self.provides if one.server == activity), None)
+
+    def from_outside(self) -> frozenset[str]:
+        """The data that may come to be anything in their types: by a user's body, or a command."""
+        written = {name for a in self.activities if a.flow is None for name in a.writes}
+        return frozenset(written | {data.name for data in self.data if data.is_command})
 
     def users(self, data: str) -> tuple[str, ...]:
         """The regions and activities that read or write ``data``, in model order."""
@@ -274,6 +294,8 @@ class Bus:
     errors: BusErrors | None = None
     data_rate: int | None = None
     """In bit/s, of the data of CAN FD frames; None: that of the rest."""
+    audsley: bool = False
+    """Identifiers that the model does not give are found by the analysis; else by deadline."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -301,26 +323,14 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """An output port wired to an input port of the same node."""
+    """An output port wired to an input port of the same node.
+
+    Between nodes there are messages; see `distribution`.
+    """
 
     origin: Origin
     source: End
     target: End
-
-
-@dataclass(frozen=True, slots=True)
-class Signal:
-    """One scalar in a frame: raw value = value - ``offset``, little-endian bits.
-
-    ``start`` counts bits from the least significant bit of byte 0. Enumerations
-    are coded by position.
-    """
-
-    field: str | None
-    type: ScalarType
-    start: int
-    width: int
-    offset: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -348,6 +358,8 @@ class Message:
     """From the event that leads to it; None: the period."""
     fd: bool = False
     """A CAN FD frame, which switches to the bus's data rate where there is one."""
+    given: bool = True
+    """The model gives the identifier."""
 
     @property
     def element(self) -> str:
@@ -533,6 +545,9 @@ class System:
     chains: tuple[Chain, ...] = ()
     traffic: tuple[Message, ...] = ()
     """Frames of the buses that are none of the system's ``messages``."""
+    devices: tuple[Device, ...] = ()
+    """Those that some command is bound to, pieces of an array before it."""
+    bindings: tuple[Binding, ...] = ()
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
 
@@ -559,6 +574,27 @@ class System:
         for instance in self.instances:
             found.setdefault(instance.component.name, []).append(instance.name)
         return {component: frozenset(names) for component, names in found.items()}
+
+    @cached_property
+    def bound(self) -> dict[tuple[str, str], Binding]:
+        """What provides each required command, by instance and command."""
+        return {(b.instance, b.need.name): b for b in self.bindings}
+
+    def sender(self, message: Message) -> str | None:
+        """The node that sends a message; None for one from outside."""
+        return None if message.source is None else self.home(message.source)
+
+    def receiver(self, message: Message) -> str | None:
+        """The node on which a message is received; None for one received outside."""
+        return self.home(message.targets[0]) if message.targets else None
+
+    def home(self, end: End) -> str:
+        """The node of an end's instance."""
+        return self.nodes[0].name if len(self.nodes) == 1 else self.instance(end.instance).node
+
+    def queue(self, message: Message) -> str:
+        """The queue of the controller that sends a message; "" for one from outside."""
+        return "" if message.source is None else f"{self.sender(message)}.{message.bus}"
 
     def node(self, name: str) -> Node:
         """The node called ``name``; KeyError where there is none."""

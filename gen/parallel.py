@@ -8,22 +8,27 @@ from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
 
 T = TypeVar("T")
+U = TypeVar("U")
 
 _shared: list[Callable[[int], object]] = []
 """What a forked process has of its parent: the model is not sent."""
 
 
-def made_by_all(make: Callable[[int], T], count: int) -> list[T]:
-    """``[make(0), ... make(count - 1)]``; what ``make`` gives is sent between processes.
+def made_by_all(
+    make: Callable[[int], T], count: int, meanwhile: Callable[[], U]
+) -> tuple[list[T], U]:
+    """``[make(0), ... make(count - 1)]``, and what this process makes ``meanwhile``.
 
-    Without `fork` one process makes all.
+    What ``make`` gives is sent between processes. Without `fork` one process makes all.
     """
     if "fork" not in multiprocessing.get_all_start_methods():
-        return [make(number) for number in range(count)]
+        return [make(number) for number in range(count)], meanwhile()
     _shared[:] = [make]
     try:
         with ProcessPoolExecutor(mp_context=multiprocessing.get_context("fork")) as pool:
-            return list(pool.map(_make, range(count), chunksize=count // 20 + 1))  # type: ignore[arg-type]
+            made = pool.map(_make, range(count), chunksize=count // 20 + 1)
+            besides = meanwhile()
+            return list(made), besides  # type: ignore[arg-type]
     finally:
         _shared.clear()
 

@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from .bindings import bindings_of, given_bindings, with_bindings
+from .commands import Binding, DeviceType
 from .components import parts_of
 from .deployment import (
     Site,
@@ -22,9 +24,14 @@ from .deployment import (
     processor_of,
     shutdown_of,
 )
-from .model import Connection, Shutdown, System
+from .devices import Devices, Provider, device_type_of
+from .distribution import Carrier, placed
+from .identifiers import identified
+from .interfaces import command_of, declare_vectors
+from .model import Connection, Instance, Shutdown, System
 from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
 from .schema import ModelFile
+from .schema_devices import DeviceForm
 from .terms import BOOLEAN, EnumerationType, Origin, Type
 from .values import types_of
 
@@ -116,13 +123,12 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
         if whole and empty and not model.is_lost(section):
             hint = f"declare one under `{section}:`"
             findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
-    for section, noun in (("nodes", "node"), ("buses", "bus")):
-        for _, form in model.entries(section)[1:]:
-            first = model.entries(section)[0][1].origin
-            message = f"a second {noun}: distribution over several {section} is not there yet"
-            hint = f"declare one {noun}; another system may hold the other"
-            notes = [(first, "the first is here")]
-            findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
+    for _, form in model.entries("buses")[1:]:
+        first = model.entries("buses")[0][1].origin
+        message = "a second bus: a system has one bus, so far"
+        hint = "declare one bus; another system may hold the other"
+        notes = [(first, "the first is here")]
+        findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
     for _, form in model.entries("processors")[MOST_PROCESSORS:]:
         message = f"a system has at most {MOST_PROCESSORS} processors"
         hint = "let one processor run more rows: each table holds many"
@@ -142,6 +148,8 @@ def _check_units(model: Merged, system: str, findings: Findings) -> None:
         ("buses", "bus"),
         ("instances", "instance"),
         ("processors", "processor"),
+        ("device_types", "device type"),
+        ("devices", "device"),
     ):
         for name, form in model.entries(section):
             other = None
@@ -204,6 +212,32 @@ class _Sections:
             self.sound.add("connections")
         return tuple(item for item in made if item is not None)
 
+    def bindings(
+        self,
+        kinds: Scope[DeviceType],
+        instances: Scope[Instance],
+        types: Scope[Type],
+        damaged: frozenset[str],
+    ) -> tuple[Binding, ...]:
+        """What provides each required command; none where something of it was lost."""
+        count = self.findings.count()
+        scope: Scope[Provider] = self.scope("devices", "device")
+        forms: Scope[DeviceForm] = Scope("device", open=scope.open)
+        for name, form in self.model.entries("devices"):
+            forms.declare(name, form.origin, form, self.findings)
+        devices = Devices(forms, scope, kinds, instances, types, self.findings, damaged)
+        given = given_bindings(
+            (form for file in self.model.files for form in file.bindings or ()), devices
+        )
+        known = devices.all().names()
+        lost = any(
+            file.list_damaged("bindings") or file.lost("bindings") for file in self.model.files
+        )
+        if lost or scope.has_lost() or self.findings.count() > count or not self.whole:
+            return ()
+        known += [f"{i.name}.{p.name}" for i in instances.sound() for p in i.component.provides]
+        return bindings_of(instances.sound(), given, known, self.findings)
+
     def shutdown(self, site: Site) -> Shutdown:
         """What a request to stop does."""
         given = [file.shutdown for file in self.model.files if file.shutdown is not None]
@@ -219,6 +253,10 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     type_forms = [(key, form.origin, form) for key, form in model.entries("types")]
     types = types_of(type_forms, model.dropped("types"), name, findings)
     types.open = model.is_lost("types") or not whole
+    dictionary = sections.named(
+        "commands", "command", lambda key, form: command_of(key, form, types, findings)
+    )
+    declare_vectors(dictionary, _axes(model), types)
     literals = frozenset(
         literal.lower()
         for type_ in types.sound()
@@ -228,7 +266,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     parts = sections.named(
         "components",
         "component",
-        lambda key, form: parts_of(key, form, types, literals, name, findings),
+        lambda key, form: parts_of(key, form, types, literals, dictionary, name, findings),
     )
     nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
     buses = sections.named("buses", "bus", lambda name, form: bus_of(name, form, findings))
@@ -236,6 +274,11 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     site = Site(nodes, buses, parts, instances, findings)
     sections.fill("instances", instances, lambda key, form: instance_of(key, form, site))
     connections = sections.connections(site)
+    kinds = sections.named(
+        "device_types",
+        "device type",
+        lambda key, form: device_type_of(key, form, dictionary, types, findings),
+    )
     messages = sections.named("messages", "message", lambda key, form: message_of(key, form, site))
     processors = sections.named(
         "processors", "processor", lambda key, form: processor_of(key, form, site)
@@ -250,8 +293,12 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     )
     stop = sections.shutdown(site)
     damaged = {part.component.name for part in parts.sound() if part.is_damaged}
+    bindings = sections.bindings(kinds, instances, types, frozenset(damaged))
     for part in parts.sound():
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
+    carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
+    connections, carried = carrier.carried(connections, messages.sound())
+    frames = identified(carried)
     system = System(
         name=name,
         origin=model.files[0].at_key("system"),
@@ -262,13 +309,23 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         buses=buses.sound(),
         instances=instances.sound(),
         connections=connections,
-        messages=tuple(m for m in messages.sound() if not m.is_foreign),
-        traffic=tuple(m for m in messages.sound() if m.is_foreign),
+        messages=tuple(m for m in frames if not m.is_foreign),
+        traffic=tuple(m for m in frames if m.is_foreign),
         processors=processors.sound(),
         shutdown=stop,
         chains=chains.sound(),
     )
+    system = placed(with_bindings(system, bindings))
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
+
+
+def _axes(model: Merged) -> list[int]:
+    """The numbers of axes that interfaces and devices of the model have."""
+    found = [form.axes for _, form in model.entries("device_types")]
+    for _, form in model.entries("components"):
+        sides = (*(form.requires or {}).values(), *(form.provides or {}).values())
+        found += [side.axes for side in sides]
+    return found
 
 
 def _declared(types: Scope[Type]) -> tuple[Type, ...]:

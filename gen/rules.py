@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from itertools import product
 
 from .diagnostics import Diagnostic, error, warning
 from .model import Bus, Component, Direction, Instance, Message, Processor, Slot, System, Work
 from .quantities import shown
 from .resolve import Resolved
 from .rules_components import COMPONENT_RULES
+from .rules_nodes import NODE_RULES
 from .signals import bits_of, room_of
 from .terms import EnumerationType, Origin
 
@@ -29,7 +31,7 @@ def violations(resolved: Resolved) -> Iterator[Diagnostic]:
     for component in resolved.system.components:
         for component_rule in COMPONENT_RULES:
             yield from component_rule(component, resolved)
-    for rule in RULES:
+    for rule in (*RULES, *NODE_RULES):
         yield from rule(resolved)
 
 
@@ -89,7 +91,11 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
                 f"{connection.source} is on {source.node}, and {connection.target} is on "
                 f"{target.node}"
             )
-            hint = "between nodes, values travel as `messages:` on a bus"
+            if system.buses:
+                bus = system.buses[0].name
+                hint = f"declare a message of {bus} with `from: {connection.source}`"
+            else:
+                hint = "declare a bus: between nodes, values travel as its messages"
             yield error("RV-0606", connection.origin, message, hint=hint)
 
 
@@ -144,7 +150,7 @@ def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
             used.add((item.source.instance, item.source.port))
     for instance in resolved.system.instances:
         for port in instance.component.outputs():
-            if (instance.name, port.name) not in used:
+            if (instance.name, port.name) not in used and not port.is_command:
                 message = f"{instance.name}.{port.name} leads nowhere: what it sends is lost"
                 notes = [(port.origin, f"`{port.name}` is declared here")]
                 yield warning("RV-0604", instance.origin, message, notes=notes)
@@ -226,7 +232,8 @@ def sections_are_part_of_work(resolved: Resolved) -> Iterator[Diagnostic]:
     """What runs inside a protected operation is part of some worst-case execution time."""
     system = resolved.system
     for node in system.nodes:
-        runs = [(p.origin, f"all of {p.name}", p.wcet) for p in system.processors if p.slots]
+        here = [p for p in system.processors if p.slots and p.node == node.name]
+        runs = [(p.origin, f"all of {p.name}", p.wcet) for p in here]
         runs += [(bus.origin, f"the driver of {bus.name}", bus.driver_wcet) for bus in system.buses]
         if node.probe is not None:
             runs.append((node.origin, "the probe", node.probe.wcet))
@@ -355,19 +362,23 @@ def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
                 yield error("RV-0705", slot.origin, message, hint=hint)
     if not {"processors", "messages"} <= resolved.sound_sections:
         return
-    for bus in system.buses:
-        receives = any(item.bus == bus.name and item.targets for item in system.messages)
+    for bus, node in product(system.buses, system.nodes):
+        receives = any(
+            item.bus == bus.name and system.receiver(item) == node.name for item in system.messages
+        )
         serving = [
             (processor, slot)
             for processor, slot in _rows(system)
-            if slot.work is Work.BUS_RECEIVE and slot.owner == bus.name
+            if slot.work is Work.BUS_RECEIVE
+            and (slot.owner, processor.node) == (bus.name, node.name)
         ]
         for _, slot in serving[1:]:
             message = f"{slot.element} is allocated twice"
             notes = [(serving[0][1].origin, "the first is here")]
             yield error("RV-0706", slot.origin, message, notes=notes, hint="remove one of the rows")
         if receives and not serving:
-            message = f"no processor receives the messages of {bus.name}"
+            where = "" if len(system.nodes) == 1 else f" on {node.name}"
+            message = f"no processor receives the messages of {bus.name}{where}"
             hint = (
                 f"add a processor with `released_by: {bus.name}` and the row `{bus.name}.receive`"
             )
@@ -385,7 +396,8 @@ def outputs_are_sent(resolved: Resolved) -> Iterator[Diagnostic]:
         sent = {name for item in component.runnables() for name in item.sends}
         for port in component.ports:
             if port.direction is Direction.OUT and port.name not in sent:
-                message = f"nothing in {component.name} sends on `{port.name}`"
+                verb = "calls" if port.is_command else "sends on"
+                message = f"nothing in {component.name} {verb} `{port.name}`"
                 yield warning("RV-0512", port.origin, message)
 
 

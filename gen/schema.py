@@ -13,9 +13,7 @@ from pydantic import Discriminator, Tag
 from pydantic import Field as PydanticField
 
 from .schema_base import (
-    BitRate,
     Constant,
-    DataRate,
     Element,
     ExpressionText,
     Name,
@@ -28,6 +26,15 @@ from .schema_base import (
     optional,
     shaped,
 )
+from .schema_devices import (
+    BindingForm,
+    CommandForm,
+    DeviceForm,
+    DeviceTypeForm,
+    ProvidedForm,
+    RequiredForm,
+)
+from .schema_frames import BusForm, MessageForm
 
 # --- Types -----------------------------------------------------------------------
 
@@ -109,6 +116,15 @@ class SendForm(Element):
     )
 
 
+class CallForm(Element):
+    """Call a required command."""
+
+    call: Reference = key("The command: `void`, `write` or `qualified_read`.")
+    with_: Carried | None = optional(
+        "Its argument: an expression, or for a record one for each field.", alias="with"
+    )
+
+
 class RaiseForm(Element):
     """Raise an event of the component; in a do activity also `done`."""
 
@@ -133,9 +149,10 @@ class IfForm(Element):
 ActionForm = Annotated[
     Annotated[SetForm, Tag("<set>")]
     | Annotated[SendForm, Tag("<send>")]
+    | Annotated[CallForm, Tag("<call>")]
     | Annotated[RaiseForm, Tag("<raise>")]
     | Annotated[IfForm, Tag("<if>")],
-    _one_of("an action", "set", "send", "raise", "if"),
+    _one_of("an action", "set", "send", "call", "raise", "if"),
 ]
 
 
@@ -322,9 +339,12 @@ class ActivityForm(Element):
     while_: OwnedReference | None = optional(
         "`Region.State`: it works only while that state is active.", alias="while"
     )
-    reads: list[Reference] | None = optional("Data, parameters, input ports and regions it reads.")
+    reads: list[Reference] | None = optional(
+        "Data, parameters, input ports, regions and read commands it reads."
+    )
     writes: list[Reference] | None = optional("Data items it writes.")
     sends: list[Reference] | None = optional("Output ports it sends on.")
+    calls: list[Reference] | None = optional("Required commands it calls.")
     raises: list[Reference] | None = optional(
         "Events it raises; with `while` also `done`, which completes the state."
     )
@@ -332,7 +352,7 @@ class ActivityForm(Element):
         Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],
         shaped("`user` or a list of actions"),
     ] = key(
-        "`user` for a procedure written by hand, or a list of actions; the four lists above may "
+        "`user` for a procedure written by hand, or a list of actions; the five lists above may "
         "then be left out."
     )
 
@@ -361,6 +381,8 @@ class ComponentForm(Element):
         ]
         | None
     ) = optional("Events, each offered to every region that names it.")
+    requires: dict[Name, RequiredForm] | None = optional("Interfaces it calls the commands of.")
+    provides: dict[Name, ProvidedForm] | None = optional("Interfaces whose commands it executes.")
     data: dict[Name, DataForm] | None = optional("Data items.")
     regions: dict[Name, RegionForm] | None = optional("State machines, run side by side.")
     activities: dict[Name, ActivityForm] | None = optional("Activities.")
@@ -413,32 +435,6 @@ class NodeForm(Element):
     )
 
 
-class ErrorsForm(Element):
-    """What errors of a bus are reckoned with."""
-
-    period: PositiveSpan = key("Least time from one error to the next.")
-    burst: int = PydanticField(
-        default=1, ge=1, le=1000, description="Errors that may come at once besides, 1 to 1000."
-    )
-
-
-class BusForm(Element):
-    """A CAN bus."""
-
-    bit_rate: BitRate = key("Nominal bit rate, 10 kbit/s to 1 Mbit/s.")
-    driver_wcet: PositiveSpan = key(
-        "Worst-case time of the driver for one frame in or out, and of the reception for handing "
-        "one to every port that it goes to."
-    )
-    receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
-    transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
-    errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
-    data_rate: DataRate | None = optional(
-        "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
-        "do not switch unless given."
-    )
-
-
 class InstanceForm(Element):
     """An instance of a component on a node."""
 
@@ -448,55 +444,19 @@ class InstanceForm(Element):
 
 
 class ConnectionForm(Element):
-    """An output port wired to an input port of the same node."""
+    """An output port wired to an input port; between nodes it is a message of the bus."""
 
     from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
     to: OwnedReference = key("`instance.port`, an input port.")
 
 
-class MessageForm(Element):
-    """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
-
-    bus: Reference = key("The bus.")
-    id: int = key("CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`.", ge=0)
-    extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
-    format: Literal["classic", "fd"] = PydanticField(
-        default="classic",
-        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64: analysed, "
-        "not generated yet.",
-    )
-    from_: OwnedReference | None = optional(
-        "`instance.port` that sends; without it the sender is outside the system.", alias="from"
-    )
-    to: (
-        Annotated[
-            Annotated[OwnedReference, Tag("<one>")]
-            | Annotated[list[OwnedReference], Tag("<list>")],
-            shaped("`instance.port`, or a list of these"),
-        ]
-        | None
-    ) = optional("`instance.port` that receives, or a list; without it all receivers are outside.")
-    period: PositiveSpan | None = optional(
-        "Least time between two frames; only for messages from outside, the others have the period "
-        "of what sends them."
-    )
-    bytes: int | None = PydanticField(
-        default=None,
-        ge=0,
-        le=8,
-        description="Data bytes of a frame with neither `from` nor `to`, 0 to 8: other nodes "
-        "exchange it, and here it only takes its time on the bus.",
-    )
-    deadline: PositiveSpan | None = optional(
-        "From the release of what sends it, or from its arrival, until it is received; the period "
-        "unless given."
-    )
-
-
 class ProcessorForm(Element):
     """A processor: one task with a fixed table of activities."""
 
-    node: Reference = key("The node it runs on.")
+    node: Reference | None = optional(
+        "The node it runs on; unless given, that of what it runs. A reception without it is on "
+        "every node that receives from its bus."
+    )
     released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
     core: int = PydanticField(
         default=1, ge=1, description="The core of the node that runs it, counted from 1."
@@ -558,6 +518,10 @@ class ModelFile(Element):
         "Files whose sections belong to the model, relative to this file."
     )
     types: dict[Name, TypeForm] | None = optional("Types of data, ports and parameters.")
+    commands: dict[Name, CommandForm] | None = optional("The command dictionary.")
+    device_types: dict[Name, DeviceTypeForm] | None = optional("Types of devices.")
+    devices: dict[Name, DeviceForm] | None = optional("Devices, and composites of them.")
+    bindings: list[BindingForm] | None = optional("What provides the required interfaces.")
     components: dict[Name, ComponentForm] | None = optional("Components.")
     nodes: dict[Name, NodeForm] | None = optional("Nodes; exactly one in this version.")
     buses: dict[Name, BusForm] | None = optional("CAN buses; at most one in this version.")

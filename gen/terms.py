@@ -239,3 +239,16 @@ def always(flow: Flow) -> set[str]:
             case If(_, _, then, otherwise):
                 sure |= always(then) & always(otherwise)
     return sure
+
+
+def default(of_type: Type) -> Value:
+    """The value before any is known: nearest to zero, first literal, field by field."""
+    if isinstance(of_type, RecordType):
+        return tuple((field.name, _scalar_default(field.type)) for field in of_type.fields)
+    return _scalar_default(of_type)
+
+
+def _scalar_default(of_type: ScalarType) -> Scalar:
+    if isinstance(of_type, IntegerType):
+        return min(max(0, of_type.first), of_type.last)
+    return of_type.literals[0]

@@ -42,6 +42,9 @@ def elements(system: System) -> tuple[Element, ...]:
         component = instance.component
         for port in component.ports:
             add(f"{instance.name}.{port.name}", "port", port.origin)
+        for provided in component.provides:
+            if provided.server is not None:
+                add(f"{instance.name}.{provided.name}", "port", provided.origin)
         for event in component.events:
             add(f"{instance.name}.{event.name}", "event", event.origin)
         for region in component.regions:

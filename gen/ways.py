@@ -12,6 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from .calls import published_by, rows_of
+from .commands import Server
 from .model import Chain, System
 
 Flow = Mapping[str, Sequence[str]]
@@ -32,6 +34,18 @@ def flow_of(system: System) -> Flow:
                 if name in known and name != row.name:
                     flow[f"{instance.name}.{name}"].append(own)
             flow[own] += [f"{instance.name}.{name}" for name in (*row.writes, *row.sends)]
+    for binding in system.bindings:
+        provider, need = binding.provider, binding.need
+        if isinstance(provider, Server):
+            item = published_by(binding)
+            if item is not None:
+                flow[f"{provider.instance}.{item}"] += rows_of(system, binding)
+            elif provider.interface.server is not None:
+                served = f"{provider.instance}.{provider.interface.server}"
+                flow[f"{binding.instance}.{need.name}"].append(served)
+        elif provider is None and need.stand_in is not None:
+            own = f"{binding.instance}.{need.stand_in.item}"
+            flow[own] += rows_of(system, binding)
     for connection in system.connections:
         flow[str(connection.source)].append(str(connection.target))
     for message in system.messages:

@@ -18,8 +18,20 @@ from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
 from hw_can.bench.peer import BenchError
 
-from . import allocate, draw, loopback, observed, plain, proving, simulate, steps
-from .run import RunRequest, run_model
+from . import (
+    allocate,
+    bus,
+    draw,
+    house,
+    import_dbc,
+    loopback,
+    observed,
+    plain,
+    proving,
+    simulate,
+    steps,
+)
+from .run import Controller, RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
 
@@ -65,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     build = command("build", _build, "generate, and compile the controller")
     prove = command("prove", _prove, "generate, and prove the controller with gnatprove")
     for sub in (build, prove):
-        sub.add_argument("--driver", choices=("slcan", "loopback"), help="the CAN driver")
+        sub.add_argument("--driver", choices=house.DRIVERS, help="the CAN driver")
     build.add_argument(
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",
@@ -100,6 +112,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
     _add_draw(commands)
     _add_loopback(commands)
+    _add_bus(commands)
+    _add_import(commands)
     simulation = command("simulate", _simulate, "run the model in virtual time, step by step")
     simulation.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
     simulation.add_argument(
@@ -132,6 +146,21 @@ def _add_loopback(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     sub = commands.add_parser("loopback", help=help_text, description=help_text)
     loopback.add_arguments(sub)
     sub.set_defaults(command=_loopback)
+
+
+def _add_bus(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    help_text = "put a simulated CAN bus behind a TCP port, for any number of processes"
+    sub = commands.add_parser("bus", help=help_text, description=help_text)
+    bus.add_arguments(sub)
+    sub.set_defaults(command=_bus)
+
+
+def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    help_text = "print the messages of a CAN database as types, ports and messages of a model"
+    sub = commands.add_parser("import-dbc", help=help_text, description=help_text)
+    sub.add_argument("database", type=Path, metavar="FILE", help="the database, a DBC file")
+    sub.add_argument("--node", required=True, help="the node of the database that the model is of")
+    sub.set_defaults(command=_import_dbc)
 
 
 def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
@@ -167,7 +196,8 @@ def _written(written: steps.Written) -> None:
 def _build(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
-    print(f"built {steps.build(checked, options.mode, options.driver)}")
+    for made in steps.programs_of(checked):
+        print(f"built {made.build(options.mode, options.driver)}")
     return OK
 
 
@@ -175,14 +205,20 @@ def _prove(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
     driver = options.driver or steps.default_driver(checked)
-    variables = steps.scenario(checked, "checks", driver)
-    folders = steps.proof_folders(checked, driver)
-    roots = (checked.folder / "generated", checked.folder / "user")
-    proof = proving.prove(steps.project_of(checked), variables, folders, roots)
-    print(f"{checked.system.name}: {proof.summary()}")
-    if options.record is not None:
-        options.record.write_text(proving.record_text(proof), encoding="utf-8")
-    return OK if proof.clean else WRONG
+    made = steps.programs_of(checked)
+    if options.record is not None and len(made) > 1:
+        raise Refused("ravenchart: error: --record is for a system with one node")
+    clean = True
+    for one in made:
+        roots = (one.generated, checked.folder / "user")
+        folders = one.proof_folders(driver)
+        proof = proving.prove(one.project, one.scenario("checks", driver), folders, roots)
+        where = f" on {one.node}" if len(made) > 1 else ""
+        print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
+        clean = clean and proof.clean
+        if options.record is not None:
+            options.record.write_text(proving.record_text(proof), encoding="utf-8")
+    return OK if clean else WRONG
 
 
 def _analyse(options: argparse.Namespace) -> int:
@@ -228,12 +264,17 @@ def _allocate(options: argparse.Namespace) -> int:
 def _run(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
-    executable = steps.build(checked)
-    print(f"built {executable}")
-    folder = options.report or executable.parent / "report"
+    controllers = []
+    for made in steps.programs_of(checked):
+        executable = made.build()
+        print(f"built {executable}")
+        trace_json = made.generated / "trace.json"
+        controllers.append(Controller(made.node, executable, trace_json))
+    home = steps.build_home(checked, steps.default_driver(checked))
+    folder = options.report or home / "report"
     request = RunRequest(
         checked.analysis,
-        executable,
+        tuple(controllers),
         checked.folder / "generated",
         options.scenario,
         options.seconds,
@@ -264,6 +305,18 @@ def _draw(options: argparse.Namespace) -> int:
 
 def _loopback(options: argparse.Namespace) -> int:
     return OK if loopback.tested(options) else WRONG
+
+
+def _bus(options: argparse.Namespace) -> int:
+    return bus.serve(bus.words(options))
+
+
+def _import_dbc(options: argparse.Namespace) -> int:
+    found = import_dbc.imported(options.database, options.node)
+    print(found.text, end="")
+    for problem in found.problems:
+        print(problem, file=sys.stderr)
+    return WRONG if found.problems else OK
 
 
 if __name__ == "__main__":

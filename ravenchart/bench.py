@@ -17,7 +17,7 @@ import behaviour.rules
 from gen.generate import generate
 from gen.load import load
 
-from . import bench_charts, bench_timing, steps, toolchain
+from . import bench_charts, bench_commands, bench_timing, steps, toolchain
 from .large_models import large_model
 from .toolchain import ROOT
 
@@ -82,6 +82,7 @@ def large_models() -> None:
 def main() -> None:
     """All figures."""
     runtime_operations()
+    bench_commands.main()
     bench_charts.main()
     generator()
     large_models()

@@ -2,7 +2,7 @@
 
 check: generated/ is what the models give, and every Ada unit compiles without
 a warning, with contracts executed and without. prove: gnatprove on the runtime
-and the HAL with each driver and on the examples, and the records of it.
+and the HAL with each driver, on the bus server and on the examples, and the records of it.
 """
 
 from __future__ import annotations
@@ -20,8 +20,16 @@ RECORDS = ROOT / "proofs" / "records"
 PATIENCE = 300.0
 """Seconds of processor time for the rules of behaviour: here they shall come to their end."""
 
-EXAMPLES = ("cartesian_robot", "crossing", "pump", "qhsmtst", "three_components")
-DRIVERS = ("loopback", "slcan")
+EXAMPLES = (
+    "cartesian_robot",
+    "crossing",
+    "pump",
+    "qhsmtst",
+    "surgical_robot",
+    "three_components",
+)
+DRIVERS = ("loopback", "slcan", "socketcan")
+BUS = "bus"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,18 +44,31 @@ class Target:
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
-    """The runtime with each driver, then the examples; only those named, where some are."""
+    """Runtime with each driver, bus server, examples; only those named, where some are."""
     for driver in DRIVERS:
         if not names or f"runtime-{driver}" in names:
             yield _runtime(driver)
+    if not names or BUS in names:
+        yield _bus()
     for example in EXAMPLES:
         if not names or example in names:
-            yield _example(example)
+            yield from _example(example)
+
+
+def _bus() -> Target:
+    folder, obj = ROOT / "hw_can" / "bus", ROOT / "obj"
+    return Target(
+        BUS,
+        folder / "can_bus.gpr",
+        {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
+        (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
+        (folder,),
+    )
 
 
 def _runtime(driver: str) -> Target:
     obj = ROOT / "obj"
-    body = ROOT / "hw_can" / ("loopback" if driver == "loopback" else "drivers/slcan")
+    body = ROOT / "hw_can" / ("loopback" if driver == "loopback" else f"drivers/{driver}")
     return Target(
         f"runtime-{driver}",
         ROOT / "proofs" / "proofs.gpr",
@@ -63,17 +84,18 @@ def _runtime(driver: str) -> Target:
     )
 
 
-def _example(name: str) -> Target:
+def _example(name: str) -> Iterator[Target]:
     checked = steps.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
     steps.write_program(checked)
     driver = steps.default_driver(checked)
-    return Target(
-        name,
-        steps.project_of(checked),
-        steps.scenario(checked, "checks", driver),
-        steps.proof_folders(checked, driver)[:1],
-        (checked.folder / "generated", checked.folder / "user"),
-    )
+    for made in steps.programs_of(checked):
+        yield Target(
+            f"{name}-{made.folder}" if made.folder else name,
+            made.project,
+            made.scenario("checks", driver),
+            made.proof_folders(driver)[:1],
+            (made.generated, checked.folder / "user") if made.folder else (checked.folder,),
+        )
 
 
 def prove(names: Sequence[str]) -> bool:
@@ -104,13 +126,20 @@ def check(_names: Sequence[str]) -> bool:
             print(f"{written.folder}: {written.changed} files were not what the model gives")
             fresh = False
         for mode in ("checks", "release"):
-            steps.build(checked, mode)
+            for made in steps.programs_of(checked):
+                made.build(mode)
             print(f"{example}: builds without a warning ({mode})", flush=True)
-    tests = ROOT / "tests" / "ada" / "tests.gpr"
+    others = (ROOT / "hw_can" / "bus" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")
     for mode in ("checks", "release"):
-        options = ["-p", "-q", "-j0", "-P", tests.name]
-        toolchain.run("gprbuild", options, tests.parent, {"MODE": mode, "CAN_DRIVER": "loopback"})
-        print(f"runtime, HAL and tests: build without a warning ({mode})", flush=True)
+        for project in others:
+            options = ["-p", "-q", "-j0", "-P", project.name]
+            variables = {"MODE": mode, "CAN_DRIVER": DRIVERS[0]}
+            toolchain.run("gprbuild", options, project.parent, variables)
+        for driver in DRIVERS[1:]:
+            options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
+            variables = {"MODE": mode, "CAN_DRIVER": driver}
+            toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
+        print(f"runtime, HAL, bus and tests: build without a warning ({mode})", flush=True)
     return fresh
 
 

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
 
-from analysis.observed import Observation, TraceError, TraceMap, read_map, read_trace
+from analysis.journeys import journeys
+from analysis.observed import (
+    Observation,
+    TraceError,
+    TraceMap,
+    read_map,
+    read_trace,
+    together,
+)
 from analysis.plots import svg
 from analysis.report import RunReport, compare, executions, render
 from analysis.timing import Analysis
 from gen.terms import Ns
+from hw_can.bench.bus_records import NAME_LENGTH
 from hw_can.bench.peer import BenchError, Codec, Peer
 from hw_can.bench.runner import ScenarioResult, run_scenario
-from hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
+from hw_can.bench.scenario import Mend, Scenario, ScenarioError, load_scenario
 
+from . import bus
 from .demo import judge, plots, result, summary
 from .demo.process import ControllerProcess, Ended, StartError, separate_cores
 from .demo.result import RunResult
@@ -28,15 +39,24 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
-class RunRequest:
-    """A built model to run: ``generated`` holds its trace map and DBC.
+class Controller:
+    """The program of a node, and the map of its trace."""
 
-    Without a scenario the controller runs on its own for ``seconds``. The report
+    node: str
+    executable: Path
+    trace_json: Path
+
+
+@dataclass(frozen=True, slots=True)
+class RunRequest:
+    """A built model to run: ``generated`` holds its DBC.
+
+    Without a scenario the controllers run on their own for ``seconds``. The report
     goes to ``folder``.
     """
 
     analysis: Analysis
-    executable: Path
+    controllers: tuple[Controller, ...]
     generated: Path
     scenario: Path | None
     seconds: float
@@ -46,21 +66,31 @@ class RunRequest:
 def run_model(request: RunRequest, console: Console | None = None) -> bool:
     """Run, print the summary and write the report; whether the verdict is PASS."""
     out = console or summary.terminal()
-    trace_json = request.generated / "trace.json"
+    first = request.controllers[0]
     try:
         with out.status("start the controller") as status:
-            if request.scenario is None:
+            if len(request.controllers) > 1:
+                outcome = run_nodes(
+                    request.controllers,
+                    request.analysis,
+                    _dbc(request),
+                    request.scenario,
+                    request.seconds,
+                    request.folder,
+                    lambda text: status.update(text),
+                )
+            elif request.scenario is None:
                 outcome = run_alone(
-                    request.executable,
-                    trace_json,
+                    first.executable,
+                    first.trace_json,
                     request.seconds,
                     request.folder,
                     analysis=request.analysis,
                 )
             else:
                 outcome = run_controller(
-                    request.executable,
-                    trace_json,
+                    first.executable,
+                    first.trace_json,
                     _dbc(request),
                     request.scenario,
                     None,
@@ -99,6 +129,8 @@ def run_controller(
     anything runs; whatever goes wrong later is a failure in the result.
     """
     plan = load_scenario(scenario)
+    if plan.bus_events:
+        raise ScenarioError(f"{scenario.name}: error: `bus` is for a system with several nodes")
     codec = Codec.from_file(dbc)
 
     def play(process: ControllerProcess, grace: float) -> ScenarioResult:
@@ -153,6 +185,7 @@ def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple
         steps=outcome.steps,
         frames=tuple(result.frames(outcome)),
         comparable=outcome.ended.real_time,
+        journeys=outcome.journeys,
         observation=outcome.observation,
         pictures=tuple(pictures),
     )
@@ -173,6 +206,8 @@ def print_summary(outcome: RunResult, console: Console | None = None) -> None:
         summary.print_frames(out, frames)
     if outcome.compared:
         summary.print_comparison(out, outcome.compared, comparable=outcome.ended.real_time)
+    if outcome.journeys:
+        summary.print_journeys(out, outcome.journeys)
     summary.print_positions(out, list(result.positions(outcome)))
     for note in outcome.notes:
         out.print(f"note: {note}", markup=False)
@@ -208,9 +243,24 @@ def _run(
                 problems.append(str(fault))
             finally:
                 ended = process.stop(grace)
-    seen = None if problems else _read(trace, trace_map, problems)
+    seen = None if problems else read(trace, trace_map, problems)
+    return concluded(title, plan, played, seen, ended, problems, analysis)
+
+
+def concluded(
+    title: str,
+    plan: Scenario | None,
+    played: ScenarioResult | None,
+    seen: Observation | None,
+    ended: Ended,
+    problems: list[str],
+    analysis: Analysis | None,
+) -> RunResult:
+    """Everything that a run showed, put together and judged."""
     if seen is not None:
         seen.stolen = Ns(ended.stolen)
+    disturbed = plan is not None and bool(plan.bus_events)
+    took = journeys(analysis, seen) if analysis and seen and not disturbed else ()
     compared = compare(analysis, seen) if analysis and seen else ()
     executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
@@ -222,13 +272,14 @@ def _run(
         ended=ended,
         steps=judge.step_rows(played, checks) if played else (),
         compared=compared,
-        failures=(*problems, *judge.failures(ended, played, seen, checks, compared)),
+        journeys=took,
+        failures=(*problems, *judge.failures(ended, played, seen, checks, compared, took)),
         notes=tuple(result.notes(ended, played, seen, executed, compared)),
         clock_offset=result.clock_offset(played, seen, analysis.system) if analysis else None,
     )
 
 
-def _read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation | None:
+def read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation | None:
     """The trace, or one more problem."""
     try:
         with trace.open(encoding="ascii", errors="replace") as lines:
@@ -242,8 +293,8 @@ def _read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation 
 
 def _dbc(request: RunRequest) -> Path:
     """The DBC of the model's bus; BenchError when it has none."""
-    for bus in request.analysis.system.buses:
-        return request.generated / f"{bus.name.lower()}.dbc"
+    for one in request.analysis.system.buses:
+        return request.generated / f"{one.name.lower()}.dbc"
     raise BenchError(f"{request.analysis.system.name} has no bus for a scenario to play on")
 
 
@@ -253,3 +304,93 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as fault:
         raise TraceError(f"{path}: error: cannot be read: {fault}") from None
+
+
+def run_nodes(
+    controllers: Sequence[Controller],
+    analysis: Analysis,
+    dbc: Path,
+    scenario: Path | None,
+    seconds: float,
+    out_dir: Path,
+    progress: Progress = lambda text: None,
+) -> RunResult:
+    """Run the controllers of several nodes on one simulated bus, through ``scenario``.
+
+    Without one they run for ``seconds``. Each gets a core as far as there are as many.
+    Raises as `run_controller`; ToolMissing and ToolFailed where the bus cannot be built.
+    """
+    plan = None if scenario is None else load_scenario(scenario)
+    codec = Codec.from_file(dbc)
+    maps = [read_map(_text(c.trace_json), c.trace_json.name) for c in controllers]
+    out_dir.mkdir(parents=True, exist_ok=True)
+    traces = [(out_dir / f"trace-{c.node}.txt").absolute() for c in controllers]
+    for trace in traces:
+        trace.unlink(missing_ok=True)
+    grace = analysis.system.shutdown.grace / 1e9
+    problems: list[str] = []
+    played: ScenarioResult | None = None
+    ended: list[Ended] = []
+    cores = sorted(os.sched_getaffinity(0))
+    with separate_cores(), bus.started(*_bus_words(analysis, controllers, plan)) as channel:
+        running: list[ControllerProcess] = []
+        try:
+            for number, (one, trace) in enumerate(zip(controllers, traces, strict=True)):
+                told = {
+                    "RAVENCHART_BUS_PORT": channel.rpartition(":")[2],
+                    "RAVENCHART_BUS_NAME": one.node[:NAME_LENGTH],
+                }
+                core = cores[number % len(cores)]
+                running.append(ControllerProcess(one.executable, trace, core, **told))
+                running[-1].wait_until_joined()
+            if plan is None:
+                early = next((p for p in running if not p.runs_for(seconds / len(running))), None)
+                if early is not None:
+                    raise StartError(f"a controller ended by itself within {seconds:g} s")
+            else:
+                peer = Peer.join(channel, codec)
+                played = run_scenario(plan, peer, progress=progress)
+        except (StartError, BenchError) as fault:
+            problems.append(str(fault))
+        finally:
+            ended = [process.stop(grace) for process in running]
+    seen: Observation | None = None
+    if not problems:
+        parts = [read(t, m, problems) for t, m in zip(traces, maps, strict=True)]
+        if not problems:
+            named = zip(controllers, parts, strict=True)
+            seen = together({c.node: part for c, part in named if part is not None})
+    title = plan.title if plan else f"{seconds:g} s without a scenario"
+    return concluded(title, plan, played, seen, _all_ended(ended), problems, analysis)
+
+
+def _bus_words(
+    analysis: Analysis, controllers: Sequence[Controller], plan: Scenario | None
+) -> list[str]:
+    """What the bus server is told: its bit rate, and what happens on the bus when.
+
+    Raises ScenarioError where the scenario cuts off a node that there is not.
+    """
+    words = [f"bitrate={analysis.system.buses[0].bit_rate}"]
+    numbers = {controller.node.lower(): n for n, controller in enumerate(controllers, 1)}
+    for event in plan.bus_events if plan else ():
+        at = round(event.at * 1e9)
+        if isinstance(event, Mend):
+            words.append(f"event={at}:mend")
+        elif numbers.get(event.cut.lower(), 1) > 1:
+            words.append(f"event={at}:cut:{numbers[event.cut.lower()]}")
+        else:
+            known = ", ".join(c.node for c in controllers[1:])
+            raise ScenarioError(f"error: bus: cut takes one of {known}, not {event.cut}")
+    return words
+
+
+def _all_ended(ended: Sequence[Ended]) -> Ended:
+    """How several controllers ended, as of one: the worst of each."""
+    return Ended(
+        exit_code=next((one.exit_code for one in ended if one.exit_code), 0),
+        killed=any(one.killed for one in ended),
+        real_time=all(one.real_time for one in ended),
+        warnings=tuple(dict.fromkeys(line for one in ended for line in one.warnings)),
+        stolen=max((one.stolen for one in ended), default=0),
+    )

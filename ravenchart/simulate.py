@@ -16,6 +16,7 @@ from behaviour.machine import Machine
 from behaviour.stimuli import Stimuli, read
 from behaviour.traces import Record, parsed
 from gen.diagnostics import Diagnostic, error, render
+from gen.distribution import as_one
 from gen.emit.simulation import numbers
 from gen.emit.simulation import stimuli as stimuli_of_system
 from gen.generate import simulation, user_units
@@ -25,7 +26,7 @@ from gen.terms import Origin
 from gen.tree import lines_of
 
 from . import toolchain
-from .steps import Checked, Refused, build_folder, replace_file
+from .steps import Checked, Refused, build_home, replace_file
 
 
 def stimuli_of(system: System, path: Path) -> Stimuli:
@@ -59,7 +60,7 @@ def _refused(found: Iterable[Diagnostic], path: Path, text: str) -> Refused:
 def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
     """What the interpreter executes; Refused when the chart gets stuck."""
     try:
-        return list(Machine(system).run(stimuli))
+        return list(Machine(as_one(system)).run(stimuli))
     except Stuck as stuck:
         hint = "give it a segment with the guard `else`"
         raise Refused(render(error("RV-1007", stuck.origin, str(stuck), hint=hint), {})) from stuck
@@ -72,7 +73,7 @@ def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
 
 
 def _home(checked: Checked) -> Path:
-    return build_folder(checked, "simulation")
+    return build_home(checked, "simulation")
 
 
 def build_simulation(system: System, user: Path, home: Path) -> Path:
@@ -112,6 +113,8 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Reco
 
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
     """The trace of a model under the stimuli of a file, one step a line."""
+    if checked.system.bindings:
+        raise Refused(f"{checked.path}: error: a simulation has no devices and no commands yet")
     stimuli = stimuli_of(checked.system, events)
     if interpreter:
         records = simulated_by_interpreter(checked.system, stimuli)

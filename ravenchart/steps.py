@@ -6,18 +6,21 @@ import gc
 import hashlib
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import behaviour.rules
 from analysis.claims import Unclaimed, claims_of
 from analysis.findings import findings
+from analysis.identifiers import order_of
 from analysis.timing import Analysis, analyse
 from gen.claims import Claims
+from gen.derive import programs
 from gen.diagnostics import Diagnostic, render
 from gen.emit.naming import ada_case
-from gen.generate import generate, user_units
+from gen.generate import folder_of, generate, simulated_drivers, source_folders, user_units
+from gen.identifiers import with_order
 from gen.load import Loaded, load
 from gen.model import System
 from gen.unready import unready
@@ -77,12 +80,28 @@ def check(
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics))
+    system, unordered = identified(system)
     analysis = analyse(system)
-    late = findings(analysis) if deadlines else ()
+    late = (unordered or findings(analysis)) if deadlines else ()
     everything = (*loaded.diagnostics, *behaviour.rules.findings(system, patience), *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything))
     return Checked(path, system, analysis, _rendered(loaded, everything))
+
+
+def identified(system: System) -> tuple[System, tuple[Diagnostic, ...]]:
+    """The system with the identifiers that the analysis finds for buses that ask for it.
+
+    A bus without a good order keeps that by deadline, and there is a diagnostic of it.
+    """
+    failed: list[Diagnostic] = []
+    for bus in system.buses:
+        found = order_of(bus, system) if bus.audsley else ()
+        if isinstance(found, Diagnostic):
+            failed.append(found)
+        else:
+            system = with_order(system, found)
+    return system, tuple(failed)
 
 
 def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
@@ -125,15 +144,27 @@ def write_program(checked: Checked) -> Written:
     old = manifest.read_text(encoding="utf-8").split() if manifest.is_file() else []
     changed = 0
     for name, text in {**files, MANIFEST: "".join(f"{n}\n" for n in sorted(files))}.items():
+        (folder / name).parent.mkdir(exist_ok=True)
         changed += replace_file(folder / name, text)
-    for name in old:
-        if name not in files and Path(name).name == name:
-            (folder / name).unlink(missing_ok=True)
-    user = checked.folder / "user"
-    if user_units(checked.system):
-        user.mkdir(exist_ok=True)
-    missing = tuple(user / n for n in user_units(checked.system) if not (user / n).is_file())
+    for gone in {name for name in old if name not in files and _is_inside(name)}:
+        (folder / gone).unlink(missing_ok=True)
+        if (folder / gone).parent != folder:
+            with suppress(OSError):  # it is not empty, or was never there
+                (folder / gone).parent.rmdir()
+    for place in source_folders(checked.system):
+        (checked.folder / place).mkdir(parents=True, exist_ok=True)
+    for name, text in simulated_drivers(checked.system).items():
+        if not (checked.folder / name).exists():
+            replace_file(checked.folder / name, text)
+    units = (checked.folder / name for name in user_units(checked.system))
+    missing = tuple(unit for unit in units if not unit.is_file())
     return Written(folder, len(files), changed, missing)
+
+
+def _is_inside(name: str) -> bool:
+    """Whether a generated file can have that name: one of generated/, or of a node's folder."""
+    parts = Path(name).parts
+    return len(parts) in (1, 2) and ".." not in parts and not Path(name).is_absolute()
 
 
 def replace_file(path: Path, text: str) -> bool:
@@ -147,40 +178,67 @@ def replace_file(path: Path, text: str) -> bool:
     return True
 
 
-def project_of(checked: Checked) -> Path:
-    """The generated GNAT project."""
-    return checked.folder / "generated" / f"{checked.stem}.gpr"
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What runs on one node: where its sources are, its objects, itself and its proof.
+
+    ``folder`` is below generated/ and below the place of the objects: "" of the only node.
+    """
+
+    checked: Checked
+    node: str
+    folder: str
+
+    @property
+    def generated(self) -> Path:
+        """Its generated sources and its trace map."""
+        return self.checked.folder / "generated" / self.folder
+
+    @property
+    def project(self) -> Path:
+        """Its GNAT project."""
+        return self.generated / f"{self.checked.stem}.gpr"
+
+    def home(self, driver: str) -> Path:
+        """Where its objects and the program itself go."""
+        return build_home(self.checked, driver) / self.folder
+
+    def scenario(self, mode: str, driver: str) -> dict[str, str]:
+        """The scenario variables of a build: mode, CAN driver, and where objects go."""
+        return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(self.home(driver))}
+
+    def build(self, mode: str = "checks", driver: str | None = None) -> Path:
+        """Compile it; the path of the executable. ToolFailed with the compiler's words."""
+        chosen = driver or default_driver(self.checked)
+        variables = self.scenario(mode, chosen)
+        options = ["-p", "-q", "-j0", "-P", self.project.name]
+        toolchain.run("gprbuild", options, self.project.parent, variables)
+        return self.home(chosen) / f"{self.checked.stem}_main"
+
+    def proof_folders(self, driver: str) -> tuple[Path, Path]:
+        """Where gnatprove leaves its results: for the program, and for the runtime."""
+        return (
+            self.home(driver) / "checks" / "gnatprove",
+            ROOT / "obj" / f"checks-{driver}" / "gnatprove",
+        )
 
 
-def scenario(checked: Checked, mode: str, driver: str) -> dict[str, str]:
-    """The scenario variables of a build: mode, CAN driver, and where objects go."""
-    folder = build_folder(checked, driver)
-    return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(folder)}
+def programs_of(checked: Checked) -> tuple[Program, ...]:
+    """The program of each node that runs something."""
+    return tuple(
+        Program(checked, part.nodes[0].name, folder_of(part, checked.system).rstrip("/"))
+        for part in programs(checked.system)
+    )
 
 
-def build_folder(checked: Checked, driver: str) -> Path:
-    """Objects and program, below build/ of the checkout, apart for each model and driver."""
+def build_home(checked: Checked, driver: str) -> Path:
+    """What is built of a model, below build/ of the checkout, apart for each driver."""
     place = hashlib.sha256(str(checked.folder.resolve()).encode()).hexdigest()[:8]
     return ROOT / "build" / f"{checked.stem}-{place}-{driver}"
 
 
-def build(checked: Checked, mode: str = "checks", driver: str | None = None) -> Path:
-    """Compile the program; the path of the executable. ToolFailed with the compiler's words."""
-    chosen = driver or default_driver(checked)
-    project = project_of(checked)
-    variables = scenario(checked, mode, chosen)
-    toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project.name], project.parent, variables)
-    return build_folder(checked, chosen) / f"{checked.stem}_main"
-
-
 def default_driver(checked: Checked) -> str:
-    """slcan for a system with a bus: python-can talks to it; loopback otherwise."""
+    """For one node with a bus slcan: python-can talks to it. For several what joins a bus."""
+    if len(checked.system.nodes) > 1:
+        return "bus"
     return "slcan" if checked.system.buses else "loopback"
-
-
-def proof_folders(checked: Checked, driver: str) -> tuple[Path, Path]:
-    """Where gnatprove leaves its results: for the program, and for the runtime."""
-    return (
-        build_folder(checked, driver) / "checks" / "gnatprove",
-        ROOT / "obj" / f"checks-{driver}" / "gnatprove",
-    )

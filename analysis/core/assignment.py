@@ -10,13 +10,14 @@ holds for ceiling blocking too, which depends on the same two sets.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from . import can
 from .blocking import Section
 from .bus import Bus, Frame
+from .can_response import FrameResponse
 from .fixed_priority import NO_OVERHEAD, response_under
 from .platform import Platform
 from .tasks import Task
@@ -68,21 +69,48 @@ def audsley_tasks(
         )
         return response_under(task, above, below, blocking, platform).met
 
-    return _audsley(tasks, fits)
+    return _audsley(tasks, fits, longest_deadline_first)
 
 
-def audsley_frames(frames: Sequence[Frame], bus: Bus) -> Order:
+Candidates = Callable[[Sequence[Item], Sequence[Item]], Iterable[Item]]
+"""Who may go directly above those placed, in the order to try: of those left, those placed."""
+
+
+def longest_deadline_first(left: Sequence[Item], _: Sequence[Item]) -> Iterable[Item]:
+    """All that are left, from the longest deadline less jitter."""
+    return reversed(left)
+
+
+def audsley_frames(
+    frames: Sequence[Frame], bus: Bus, candidates: Candidates[Frame] = longest_deadline_first
+) -> Order:
     """An order of the frames of one bus in which all deadlines are met, if there is one.
 
-    Their ranks are not looked at. ValueError for frames with a first-in first-out
-    queue: their responses depend on the order within the queue's ranks.
+    Their ranks are not looked at. Optimal on CAN too: of the less urgent frames only the
+    longest counts, which does not depend on their order (Davis et al. 2007).
+    ``candidates`` may hold back frames whose place is bound. ValueError for a
+    first-in first-out queue that is not ``reloaded``: there the order within it counts.
     """
-    for frame in frames:
+    fits = responses_in_place(frames, bus)
+    return _audsley(frames, lambda frame, above, below: fits(frame, above, below).met, candidates)
+
+
+def responses_in_place(
+    frames: Sequence[Frame], bus: Bus
+) -> Callable[[Frame, Sequence[Frame], Sequence[Frame]], FrameResponse]:
+    """The response of a frame, of the frames above it and of those below it.
+
+    ValueError as for `audsley_frames`.
+    """
+    delays = can.delays_in_any_order(frames, bus)
+    known = {name: delay for name, delay in delays.items() if delay is not None}
+
+    def response(frame: Frame, above: Sequence[Frame], below: Sequence[Frame]) -> FrameResponse:
         if frame.queue:
-            raise ValueError(f"queue of message {frame.name} must be empty here")
-    return _audsley(
-        frames, lambda frame, above, below: can.response_under(frame, above, below, bus).met
-    )
+            above, below = (*above, *below), ()
+        return can.response_under(frame, above, below, bus, known)
+
+    return response
 
 
 def with_priorities(tasks: Sequence[Task], order: Order, lowest: int = 1) -> tuple[Task, ...]:
@@ -98,13 +126,15 @@ def with_ranks(frames: Sequence[Frame], order: Order, ranks: Sequence[int]) -> t
 
 
 def _audsley(
-    items: Sequence[Item], fits: Callable[[Item, Sequence[Item], Sequence[Item]], bool]
+    items: Sequence[Item],
+    fits: Callable[[Item, Sequence[Item], Sequence[Item]], bool],
+    candidates: Candidates[Item],
 ) -> Order:
-    """From the lowest place up, whichever fits there; the longest deadline is tried first."""
+    """From the lowest place up, the first of the candidates that fits there."""
     left = deadline_monotonic(items)
     placed: list[Item] = []
     while left:
-        for item in reversed(left):
+        for item in candidates(left, placed):
             above = [other for other in left if other is not item]
             if fits(item, above, placed):
                 left = above

@@ -64,14 +64,31 @@ def analyse(frames: Sequence[Frame], bus: Bus) -> tuple[FrameResponse, ...]:
 
 
 def response_under(
-    frame: Frame, rivals: Sequence[Frame], others: Sequence[Frame], bus: Bus
+    frame: Frame,
+    rivals: Sequence[Frame],
+    others: Sequence[Frame],
+    bus: Bus,
+    delays: Mapping[str, int] | None = None,
 ) -> FrameResponse:
     """The response when ``rivals`` are more urgent than ``frame`` and ``others`` are less.
 
-    Ranks are not looked at, and no frame has a first-in first-out queue.
+    Ranks are not looked at. ``delays`` is needed for frames with first-in first-out
+    queues, all ``reloaded`` (`delays_in_any_order`); of such a frame all others are rivals.
     """
-    level = FrameLevel((*rivals, frame, *others), len(rivals) + 1, bus, {})
+    level = FrameLevel((*rivals, frame, *others), len(rivals) + 1, bus, delays or {})
     return _alone(frame, level, Effort(FRAME_EFFORT))
+
+
+def delays_in_any_order(frames: Sequence[Frame], bus: Bus) -> Delays:
+    """How long each frame of a ``reloaded`` queue waits, whatever the ranks are.
+
+    All frames of the bus may go before it, so its wait is that of every order.
+    ValueError for a queue that the controller holds as a whole: there ranks count.
+    """
+    for frame in frames:
+        if frame.queue and not frame.reloaded:
+            raise ValueError(f"queue of message {frame.name} must be empty here, or reloaded")
+    return _queue_delays(tuple(frames), bus, Effort(WHOLE_EFFORT))
 
 
 def load(frames: Sequence[Frame]) -> Fraction:

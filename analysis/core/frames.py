@@ -75,6 +75,10 @@ def fd_bits(
     return Bits(nominal, body) if switched else Bits(nominal + body)
 
 
+_LEADING_SHIFT = 20
+"""Bits of a rank behind the 11 that come first."""
+
+
 def rank(identifier: int, *, extended: bool = False) -> int:
     """The place of a data frame in arbitration: of two frames the lower rank wins.
 
@@ -87,6 +91,11 @@ def rank(identifier: int, *, extended: bool = False) -> int:
     if identifier >= 1 << width:
         raise ValueError(f"identifier of a frame must fit {width} bits, not {identifier}")
     if not extended:
-        return identifier << 20
-    leading, rest = identifier >> 18, identifier & ((1 << 18) - 1)
-    return leading << 20 | 0b11 << 18 | rest
+        return identifier << _LEADING_SHIFT
+    first, rest = identifier >> 18, identifier & ((1 << 18) - 1)
+    return first << _LEADING_SHIFT | 0b11 << 18 | rest
+
+
+def leading(rank: int) -> int:
+    """The 11 leading bits of the identifier that has this rank."""
+    return rank >> _LEADING_SHIFT

@@ -171,6 +171,10 @@ def _inputs(reach: Reach) -> Iterator[tuple[str, Origin, list[Variable]]]:
         if activity.flow is None:
             names = [n for n in reach.types if n[0] == "data" and n[1] in activity.writes]
             yield f"the body of {activity.name}", activity.origin, names
+    for data in reach.component.data:
+        if data.is_command:
+            names = [n for n in reach.types if n[0] == "data" and n[1] == data.name]
+            yield f"the command {data.name}", data.origin, names
 
 
 def _distinct(thread: Thread) -> Iterator[Edge]:

@@ -149,11 +149,11 @@ class Reach:
                 yield activity.while_in.state
 
     def _user_bodies(self) -> None:
-        """A body of the user's may write anything in its types."""
-        for activity in self.component.activities:
-            for name, cells in self.cells.items():
-                if activity.flow is None and name[1] in activity.writes:
-                    self.values[name] = set(range(len(cells)))
+        """A body of the user's may write anything in its types, and so may a command give."""
+        outside = self.component.from_outside()
+        for name, cells in self.cells.items():
+            if name[1] in outside:
+                self.values[name] = set(range(len(cells)))
 
     def regions(self) -> set[str]:
         """The names of the regions, which publish where they are."""

@@ -171,8 +171,8 @@ class Search:
         return z3.simplify(z3.substitute(term, *pairs)) if pairs else term
 
     def is_outside(self, name: Variable) -> bool:
-        """Whether data are written by a body of the user's."""
-        return any(a.flow is None and name[1] in a.writes for a in self.reach.component.activities)
+        """Whether data are written by a body of the user's, or come by a command."""
+        return name[1] in self.reach.component.from_outside()
 
     def read(self, name: Variable, number: int) -> Term:
         """What a step reads from outside."""

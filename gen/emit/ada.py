@@ -6,20 +6,21 @@ An emitter builds a `Unit` from these nodes; `ada_text.print_unit` lays it out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
+
+from ..frozen import frozen
 
 # --- Expressions -------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ref:
     """A name or literal, as it is to stand in the text."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Chain:
     """Operands joined by one operator; operands that are chains get parentheses."""
 
@@ -27,7 +28,7 @@ class Chain:
     operands: tuple[Expr, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Prefix:
     """``not``, ``-`` or ``abs`` before one operand."""
 
@@ -42,7 +43,7 @@ class Arg(NamedTuple):
     value: Expr
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Call:
     """A function call, conversion or attribute with arguments."""
 
@@ -50,7 +51,7 @@ class Call:
     args: tuple[Arg, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Aggregate:
     """A parenthesised list of associations, qualified by ``of_type`` where given."""
 
@@ -58,7 +59,7 @@ class Aggregate:
     of_type: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IfExpr:
     """``(if a then b elsif c then d else e)``; without ``otherwise``, an implication."""
 
@@ -66,7 +67,7 @@ class IfExpr:
     otherwise: Expr | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CaseExpr:
     """``(case s is when c => e, ...)``."""
 
@@ -74,7 +75,7 @@ class CaseExpr:
     branches: tuple[tuple[str, Expr], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForAll:
     """``(for all v in domain => condition)``."""
 
@@ -83,7 +84,7 @@ class ForAll:
     condition: Expr
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForSome:
     """``(for some v in domain => condition)``."""
 
@@ -97,7 +98,7 @@ Expr = Ref | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | Fo
 # --- Statements --------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Assign:
     """``target := value;``"""
 
@@ -105,7 +106,7 @@ class Assign:
     value: Expr
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Do:
     """A procedure call."""
 
@@ -113,7 +114,7 @@ class Do:
     args: tuple[Arg, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class If:
     """``if ... then ... elsif ... else ... end if;``"""
 
@@ -121,7 +122,7 @@ class If:
     otherwise: tuple[Stmt, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Case:
     """``case ... is when ... => ... end case;``"""
 
@@ -129,7 +130,7 @@ class Case:
     branches: tuple[tuple[str, tuple[Stmt, ...]], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Loop:
     """``head loop ... end loop;``; an empty ``head`` loops until an exit."""
 
@@ -137,21 +138,21 @@ class Loop:
     body: tuple[Stmt, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Say:
     """A simple statement given as it stands: ``null``, ``exit when X``, ``delay until T``."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Return:
     """``return value;``"""
 
     value: Expr
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pragma:
     """A pragma, among statements or declarations."""
 
@@ -159,7 +160,7 @@ class Pragma:
     args: tuple[Expr, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Comment:
     """Comment lines; wrapped to the width."""
 
@@ -186,7 +187,7 @@ class Param(NamedTuple):
     type: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EnumType:
     """An enumeration type."""
 
@@ -194,7 +195,7 @@ class EnumType:
     literals: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlainType:
     """``type name is definition;`` or, with ``subtype``, a subtype."""
 
@@ -211,7 +212,7 @@ class Component(NamedTuple):
     initial: Expr | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordType:
     """A record type."""
 
@@ -219,7 +220,7 @@ class RecordType:
     components: tuple[Component, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Object:
     """An object or, without type, a named number."""
 
@@ -230,7 +231,7 @@ class Object:
     aspects: tuple[Aspect, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Subprogram:
     """A subprogram: its spec, or its body when ``body`` or ``expression`` is given."""
 
@@ -243,7 +244,7 @@ class Subprogram:
     expression: Expr | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Instance:
     """``package name is new generic (...);``, or a ``procedure``."""
 
@@ -253,7 +254,7 @@ class Instance:
     kind: str = "package"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Package:
     """A package spec, or a body; nested or the unit itself."""
 
@@ -263,7 +264,17 @@ class Package:
     is_body: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
+class Protected:
+    """A single protected object: its spec with what it holds, or without that its body."""
+
+    name: str
+    items: tuple[Subprogram, ...]
+    kept: tuple[Object, ...] = ()
+    aspects: tuple[Aspect, ...] = ()
+
+
+@frozen
 class Rename:
     """``package name renames other;``"""
 
@@ -271,7 +282,7 @@ class Rename:
     other: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class UseType:
     """``use type name;``"""
 
@@ -286,6 +297,7 @@ Decl = (
     | Subprogram
     | Instance
     | Package
+    | Protected
     | Rename
     | UseType
     | Pragma
@@ -293,7 +305,7 @@ Decl = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unit:
     """A compilation unit with its context clause and header comment."""
 
@@ -340,7 +352,7 @@ def do(name: str, *args: Expr, **named: Expr) -> Do:
 
 def arguments(*args: Expr, **named: Expr) -> tuple[Arg, ...]:
     """Associations, positional first."""
-    return (*(Arg(None, a) for a in args), *(Arg(n, a) for n, a in named.items()))
+    return (*[Arg(None, a) for a in args], *[Arg(n, a) for n, a in named.items()])
 
 
 def chain(operator: str, operands: Sequence[Expr], empty: Expr = TRUE) -> Expr:

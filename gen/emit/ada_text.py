@@ -36,6 +36,7 @@ from .ada import (
     PlainType,
     Pragma,
     Prefix,
+    Protected,
     RecordType,
     Ref,
     Rename,
@@ -143,6 +144,7 @@ def expression(expr: Expr) -> Doc:
             return _bare(f"for {word} {variable} in {domain} =>", nest(SOFT, expression(condition)))
 
 
+@lru_cache(maxsize=8192)
 def _comment(text: str) -> Doc:
     lines: list[str] = []
     for paragraph in text.split("\n"):
@@ -202,6 +204,7 @@ def _pragma(name: str, args: Sequence[Expr]) -> Doc:
     return group(f"pragma {name}", nest(SOFT, _args(arguments(*args)), by=2), ";")
 
 
+@lru_cache(maxsize=8192)
 def _aspects(aspects: Sequence[Aspect]) -> Doc:
     docs = [
         a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, expression(a.value), by=2))
@@ -210,6 +213,7 @@ def _aspects(aspects: Sequence[Aspect]) -> Doc:
     return cat(SOFT, group("with", nest(SOFT, *_join(docs, ","), by=2)))
 
 
+@lru_cache(maxsize=8192)
 def _params(params: Sequence[Param]) -> Doc:
     texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
     plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
@@ -279,6 +283,8 @@ def _declaration(decl: Decl) -> Doc:
             return group(head, nest(SOFT, _args(args), by=2), ";")
         case Package():
             return _package(decl)
+        case Protected():
+            return _protected(decl)
         case Rename(name, other):
             return f"package {name} renames {other};"
         case UseType(name):
@@ -324,6 +330,16 @@ def _package(package: Package) -> Doc:
     return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name};")
 
 
+def _protected(decl: Protected) -> Doc:
+    operations = _lines(_items(decl.items))
+    if not decl.kept:
+        return upright(f"protected body {decl.name} is", operations, SOFT, f"end {decl.name};")
+    head = cat(_aspects(decl.aspects), SOFT, "is")
+    kept = _lines(_items(decl.kept))
+    parts = (f"protected {decl.name}", head, operations, SOFT, "private", kept)
+    return upright(*parts, SOFT, f"end {decl.name};")
+
+
 def print_item(unit: Unit) -> str:
     """The text of ``unit`` without its header and context, ending in a newline."""
     return _laid_out(_declaration(unit.item))
@@ -340,4 +356,4 @@ def print_unit(unit: Unit, item: str | None = None) -> str:
 
 def _laid_out(doc: Doc) -> str:
     text = laid_out(doc, WIDTH - 3)
-    return "\n".join(line.rstrip() for line in text.split("\n")) + "\n"
+    return "\n".join(map(str.rstrip, text.split("\n"))) + "\n"

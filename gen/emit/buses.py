@@ -28,6 +28,7 @@ from .ada import (
     member,
     number,
 )
+from .codecs import codec_name
 from .naming import ada_case, priority, root_package, type_name
 from .trace_calls import note, traced
 
@@ -115,7 +116,7 @@ def _send_body(system: System, message: Message) -> Subprogram:
         Id=number(message.identifier),
         Format=_format(message),
         Length=number(message.length),
-        Payload=call(f"Codecs.Pack_{ada_case(message.type.name)}", Ref("Item")),
+        Payload=call(f"Codecs.Pack_{codec_name(message)}", Ref("Item")),
     )
     lost: list[Stmt] = [
         Do("Health_Counts.Record_Fault", arguments(Ref("Ravenchart.Health.Queue_Overflow"))),
@@ -176,7 +177,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             for t in message.targets
         )
         unpack = Do(
-            f"Codecs.Unpack_{ada_case(message.type.name)}",
+            f"Codecs.Unpack_{codec_name(message)}",
             arguments(call("Ravenchart.Can.Payload", Ref("Frame")), Ref(item), Ref("Valid")),
         )
         good = Chain(

@@ -13,6 +13,7 @@ from collections.abc import Callable, Set
 from dataclasses import dataclass
 
 from ..claims import Claim, Claims
+from ..identifiers import leading
 from ..model import Bus, Message, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
 from .certificate_terms import (
@@ -39,8 +40,7 @@ ERROR_BITS = 31
 
 def arbitration(message: Message) -> tuple[int, bool, int]:
     """Of two frames the one with the lesser key wins."""
-    leading = message.identifier >> 18 if message.extended else message.identifier
-    return leading, message.extended, message.identifier
+    return leading(message), message.extended, message.identifier
 
 
 def _of(system: System, bus: Bus) -> list[Message]:
@@ -111,6 +111,7 @@ class _Level:
     message: Message
     before: list[Message]
     behind: list[Message]
+    queue: Callable[[Message], str]
 
     @property
     def blocking(self) -> Expr:
@@ -139,7 +140,7 @@ class _Level:
         but those in the same queue.
         """
         own = name_of(other.element)
-        if other.source is None or self.message.source is not None:
+        if other.source is None or self.queue(other) == self.queue(self.message):
             return within(own, window)
         if other.element in claims.waits:
             return within(own, plus(window, Ref(f"{own}_Wait")))
@@ -156,10 +157,10 @@ def _bits(message: Message) -> int:
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
     """The instances of each message, and what they show of its response; then those handed over."""
     order = _of(system, bus)
-    items = _waits(bus, order, claims)
+    items = _waits(system, bus, order, claims)
     for number_, message in enumerate(order, 1):
         reach = len(order) if message.source is not None else number_
-        level = _Level(message, order[:reach], order[reach:])
+        level = _Level(message, order[:reach], order[reach:], system.queue)
         items += _of_message(bus, level, claims)
     for message in order:
         if message.element in handed:
@@ -167,7 +168,7 @@ def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> li
     return items
 
 
-def _waits(bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
+def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
     """What waits no longer than the bus is ever busy, whatever the order."""
     if bus.name not in claims.busiest:
         return []
@@ -176,7 +177,7 @@ def _waits(bus: Bus, order: list[Message], claims: Claims) -> list[Decl]:
     works = [
         times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
     ]
-    lost = _Level(order[0], order, []).lost(bus, busiest)
+    lost = _Level(order[0], order, [], system.queue).lost(bus, busiest)
     problem = "can be busy longer than claimed"
     items = [
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
@@ -266,9 +267,10 @@ def _instances(
 
 def _turns(system: System, message: Message, claim: Claim) -> list[Decl]:
     """When the reception, which keeps its least separation, has handed a message over."""
-    processor = next(p for p in system.processors if p.released_by == message.bus)
+    here = message.bus, system.receiver(message)
+    processor = next(p for p in system.processors if (p.released_by, p.node) == here)
     separation, response = (Ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
-    received = [m for m in system.messages if m.bus == message.bus and m.targets]
+    received = [m for m in system.messages if (m.bus, system.receiver(m)) == here]
     own = name_of(message.element)
 
     def served(window: Expr, among: list[Message]) -> list[Expr]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..model import Activity, Component, Direction, System
+from ..model import Activity, Component, Direction, Port, System
 from ..statechart import RAISED_PER_STEP, Region
 from ..terms import Type, always
 from .ada import (
@@ -27,9 +27,18 @@ from .ada import (
     number,
 )
 from .charts.places import Places
+from .device_calls import request_types, serving_params
 from .events import event_types, null_event
 from .naming import ada_case, component_package, default_value, type_name
-from .terms import Scope, effective, emit_flow, flow_names, flow_operators
+from .terms import (
+    Scope,
+    compared_states,
+    effective,
+    emit_flow,
+    expressions_in,
+    flow_names,
+    flow_operators,
+)
 
 
 def leaf_type(component: Component, region: Region) -> str:
@@ -76,6 +85,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
                 ),
             )
         )
+    items += request_types(system, component)
     for region in component.regions:
         items.append(Comment(f"[{component.name}.{region.name}.states]"))
         items.append(Places(region).package_of_states())
@@ -122,14 +132,20 @@ def _raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
     return (Assign(raise_flag(event), TRUE), *value)
 
 
-def send_flag(port: str) -> str:
-    """The parameter by which a flow says that it sends."""
-    return f"Send_{ada_case(port)}"
+def send_flag(port: Port) -> str:
+    """The parameter by which a flow says that it sends, or a body that it calls."""
+    return f"{'Call' if port.is_command else 'Send'}_{ada_case(port.name)}"
+
+
+def has_flag(activity: Activity, port: Port) -> bool:
+    """Whether an execution may go without sending: a user's body always sends on its ports."""
+    return activity.flow is not None or port.is_command
 
 
 def activity_params(system: System, component: Component, activity: Activity) -> tuple[Param, ...]:
     """The profile of an activity: what it reads, what it writes, what it raises."""
-    params = [
+    params = list(serving_params(system, component, activity.name))
+    params += [
         Param(ada_case(name), "in", reading_type(system, component, name))
         for name in activity.reads
         if name not in activity.writes
@@ -140,14 +156,32 @@ def activity_params(system: System, component: Component, activity: Activity) ->
     ]
     for port in component.ports:
         if port.direction is Direction.OUT and port.name in activity.sends:
-            params.append(Param(ada_case(port.name), "out", type_name(system, port.type)))
-            if activity.flow is not None:
-                params.append(Param(send_flag(port.name), "out", "Boolean"))
+            if not port.is_void:
+                params.append(Param(ada_case(port.name), "out", type_name(system, port.type)))
+            if has_flag(activity, port):
+                params.append(Param(send_flag(port), "out", "Boolean"))
     for event in activity.raises:
         params.append(Param(raise_flag(event), "out", "Boolean"))
         if (carried := raised_type(component, event)) is not None:
             params.append(Param(raise_value(event), "out", type_name(system, carried)))
     return tuple(params)
+
+
+def stand_ins(component: Component) -> set[str]:
+    """The activities that stand in for a command, where nothing provides it."""
+    return {need.stand_in.activity for need in component.needs if need.stand_in is not None}
+
+
+def activity_package(component: Component, activity: Activity) -> str:
+    """The child of the component's package that holds an activity.
+
+    A stand-in by the user has one of its own, for its body is left out where nobody needs it.
+    """
+    if activity.flow is not None:
+        return "Flows"
+    if activity.name in stand_ins(component):
+        return f"{ada_case(activity.name)}_Stand_In"
+    return "Activities"
 
 
 def emit_activities(system: System, component: Component, header: str) -> tuple[Unit, ...]:
@@ -156,13 +190,17 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
     users = tuple(a for a in component.activities if a.flow is None)
     flows = tuple(a for a in component.activities if a.flow is not None)
     units: list[Unit] = []
-    if users:
-        items = _specs(system, component, users, Aspect("Global", Ref("null")))
-        units.append(Unit(header, (), Package(f"{package}.Activities", items, (SPARK,))))
+    for home in dict.fromkeys(activity_package(component, a) for a in users):
+        inside = tuple(a for a in users if activity_package(component, a) == home)
+        items = _specs(system, component, inside, Aspect("Global", Ref("null")))
+        units.append(Unit(header, (), Package(f"{package}.{home}", items, (SPARK,))))
     if flows:
         items = _specs(system, component, flows, Aspect("Global", Ref("null")))
         units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
         operators = {name for a in flows for name in flow_operators(a.flow or ())}
+        operators |= compared_states(
+            component, [e for a in flows for e in expressions_in(a.flow or ())]
+        )
         bodies: tuple[Decl, ...] = (
             *(UseType(name) for name in sorted(operators)),
             *(_flow_body(system, component, a) for a in flows),
@@ -204,15 +242,16 @@ def _flow_body(system: System, component: Component, activity: Activity) -> Subp
         component,
         variable=ada_case,
         target=ada_case,
-        sent=lambda port: (ada_case(port), send_flag(port)),
+        sent=lambda port: (ada_case(port), send_flag(component.port(port))),
         raised=_raised,
     )
     sure = always(activity.flow)  # needs no value before
     start: list[Stmt] = []
     for port in component.outputs():
         if port.name in activity.sends and port.name not in sure:
-            start.append(Assign(ada_case(port.name), default_value(system, port.type)))
-            start.append(Assign(send_flag(port.name), FALSE))
+            if not port.is_void:
+                start.append(Assign(ada_case(port.name), default_value(system, port.type)))
+            start.append(Assign(send_flag(port), FALSE))
     for event in activity.raises:
         if event not in sure:
             start.append(Assign(raise_flag(event), FALSE))

@@ -185,7 +185,8 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
     for slot in processor.slots:
         owner = ada_case(slot.owner)
         package = f"{owner}.Receiver" if slot.work is Work.BUS_RECEIVE else owner
-        rows.append((row_name(slot), (Do(f"{package}.Run_{ada_case(slot.name)}"),)))
+        name = "receive" if slot.work is Work.BUS_RECEIVE else slot.name
+        rows.append((row_name(slot), (Do(f"{package}.Run_{ada_case(name)}"),)))
     execute: list[Stmt] = []
     if traced(system):
         execute.append(

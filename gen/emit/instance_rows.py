@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..commands import Binding, Server
 from ..model import Activity, Port
 from ..statechart import DONE, Region
 from .ada import (
@@ -31,13 +32,16 @@ from .ada import (
 from .charts.places import Places
 from .charts.shape import RegionShape
 from .components import (
+    activity_package,
     activity_params,
+    has_flag,
     raise_flag,
     raise_value,
     raised_type,
     reading_type,
     send_flag,
 )
+from .device_calls import asked, asked_args, served
 from .events import null_event
 from .instance_site import Site
 from .naming import (
@@ -170,9 +174,21 @@ class Rows(Site):
         component = self.instance.component
         if (given := self._parameter(name)) is not None:
             return Assign(target, given)
+        binding = self.system.bound.get((self.instance.name, name))
+        if binding is not None and binding.need.is_read:
+            return self._read_command(binding, target)
         if any(d.name == name for d in component.data) and not self._has_object(name):
             return Assign(target, Ref(f"{ada_case(name)}_Own"))
         return Do(f"{ada_case(name)}_Board.Read", arguments(Ref(target)))
+
+    def _read_command(self, binding: Binding, target: str) -> Stmt:
+        """Read what a required command gives: of a device, of a task, or what stands in."""
+        need, provider = binding.need, binding.provider
+        if need.stand_in is not None and provider is None:
+            return self._copy_in(need.stand_in.item, target)
+        assert provider is not None
+        owner = provider.instance if isinstance(provider, Server) else provider.name
+        return Do(f"{ada_case(owner)}.{ada_case(need.name)}", arguments(Ref(target)))
 
     def _step_region(self, shape: RegionShape, package: str) -> Subprogram:
         region = shape.region
@@ -233,9 +249,10 @@ class Rows(Site):
         moved = self._report_firings(shape, package)
         moved += self._report_leaves(shape)
         for port in self.instance.component.outputs():
-            if port.name in region.sends:
+            if port.name in region.sends and not self._is_idle(port):
                 box = f"Box.{ada_case(port.name)}"
-                send = Do(f"Send_{ada_case(port.name)}", arguments(Ref(box)))
+                item = () if port.is_void else arguments(Ref(box))
+                send = Do(send_flag(port), item)
                 moved.append(If(((Ref(f"{box}_Sent"), (send,)),)))
         if region.raises:
             lists = f"{self.component}.Event_Lists"
@@ -281,6 +298,10 @@ class Rows(Site):
         args: list[Arg] = []
         after: list[Stmt] = []
         reads = [n for n in activity.reads if n not in activity.writes]
+        provided = component.served_by(activity.name)
+        if provided is not None:
+            declarations += asked(self.system, self.instance, provided)
+            args += asked_args(provided)
         guard: Expr | None = None
         if activity.while_in is not None:
             region = component.region(activity.while_in.region)
@@ -288,17 +309,7 @@ class Rows(Site):
         if activity.completes is not None:
             declarations.append(Object("Visit", "Ravenchart.Event_Count"))
             before.append(do(f"{ada_case(activity.name)}_Visit_Board.Read", Ref("Visit")))
-        for name in reads:
-            read_as = reading_type(self.system, component, name)
-            constant = self._parameter(name)
-            if constant is not None and read_as == "Boolean":
-                #  the compiler warns of a variable that it knows to be true
-                args.append(Arg(ada_case(name), constant))
-                continue
-            local = f"{ada_case(name)}_Value"
-            declarations.append(Object(local, read_as))
-            before.append(self._copy_in(name, local))
-            args.append(Arg(ada_case(name), Ref(local)))
+        self._take_in(reads, declarations, before, args)
         for name in activity.writes:
             own = f"{ada_case(name)}_Own"
             args.append(Arg(ada_case(name), Ref(own)))
@@ -306,16 +317,7 @@ class Rows(Site):
                 after.append(Do(f"{ada_case(name)}_Board.Write", arguments(Ref(own))))
         for port in component.outputs():
             if port.name in activity.sends:
-                local = f"{ada_case(port.name)}_Value"
-                declarations.append(Object(local, type_name(self.system, port.type)))
-                args.append(Arg(ada_case(port.name), Ref(local)))
-                send: Stmt = Do(f"Send_{ada_case(port.name)}", arguments(Ref(local)))
-                if activity.flow is not None:
-                    flag = send_flag(port.name)
-                    declarations.append(Object(f"{flag}_Asked", "Boolean"))
-                    args.append(Arg(flag, Ref(f"{flag}_Asked")))
-                    send = If(((Ref(f"{flag}_Asked"), (send,)),))
-                after.append(send)
+                after += self._send_from(activity, port, declarations, args)
         for event in activity.raises:
             flag = raise_flag(event)
             declarations.append(Object(flag, "Boolean"))
@@ -330,11 +332,14 @@ class Rows(Site):
                 declarations.append(Object(raise_value(event), type_name(self.system, carried)))
                 args.append(Arg(raise_value(event), given))
             after.append(If(((Ref(flag), (self._raise(event, given),)),)))
-        home = "Activities" if activity.flow is None else "Flows"
+        home = activity_package(component, activity)
         work = Do(f"{self.component}.{home}.{ada_case(activity.name)}", tuple(args))
         expected = [p.name for p in activity_params(self.system, component, activity)]
         assert expected == [a.name for a in args], (expected, args)
         body: tuple[Stmt, ...] = (*before, work, *after)
+        if provided is not None:
+            loop = served(self.system, self.instance, provided, body)
+            body = (Loop(f"for Unused in 1 .. {provided.depth}", loop),)
         if guard is not None:
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = Do(f"{region_name}_Board.Read", arguments(Ref(f"{region_name}_Now")))
@@ -342,6 +347,41 @@ class Rows(Site):
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )
+
+    def _take_in(
+        self, reads: list[str], declarations: list[Decl], before: list[Stmt], args: list[Arg]
+    ) -> None:
+        """Copies of what an activity reads."""
+        component = self.instance.component
+        for name in reads:
+            read_as = reading_type(self.system, component, name)
+            constant = self._parameter(name)
+            if constant is not None and read_as == "Boolean":
+                #  the compiler warns of a variable that it knows to be true
+                args.append(Arg(ada_case(name), constant))
+                continue
+            local = f"{ada_case(name)}_Value"
+            declarations.append(Object(local, read_as))
+            before.append(self._copy_in(name, local))
+            args.append(Arg(ada_case(name), Ref(local)))
+
+    def _send_from(
+        self, activity: Activity, port: Port, declarations: list[Decl], args: list[Arg]
+    ) -> list[Stmt]:
+        """Take a value to send from an activity, and send it; nothing where nobody takes it."""
+        name, idle = ada_case(port.name), "Unused_" if self._is_idle(port) else ""
+        send: Stmt = Do(send_flag(port))
+        if not port.is_void:
+            local = f"{idle}{name}_Value"
+            declarations.append(Object(local, type_name(self.system, port.type)))
+            args.append(Arg(name, Ref(local)))
+            send = Do(send_flag(port), arguments(Ref(local)))
+        if has_flag(activity, port):
+            flag, asked = send_flag(port), f"{idle}{send_flag(port)}_Asked"
+            declarations.append(Object(asked, "Boolean"))
+            args.append(Arg(flag, Ref(asked)))
+            send = If(((Ref(asked), (send,)),))
+        return [] if idle else [send]
 
     def _active_in(self, region: Region, state: str, declarations: list[Decl]) -> Expr:
         now = f"{ada_case(region.name)}_Now"

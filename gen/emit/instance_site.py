@@ -61,6 +61,10 @@ class Site:
         messages = [m for m in self.system.messages if m.source == end]
         return ports, [m.name for m in messages]
 
+    def _is_idle(self, port: Port) -> bool:
+        """Whether nothing takes what is sent there: a command that nothing stands in for."""
+        return port.is_command and self.system.bound[self.instance.name, port.name].provider is None
+
     def _connected_inputs(self) -> tuple[Port, ...]:
         targets = [c.target for c in self.system.connections]
         targets += [t for m in self.system.messages for t in m.targets]

@@ -6,11 +6,15 @@ logic, and publishes what came out. Logic stays in the component's packages.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from ..commands import Provided
 from ..model import Activity, Event, Port, PortKind, System, Work
 from ..statechart import Overflow, Region
 from ..terms import named
 from .ada import (
     SPARK,
+    Assign,
     Case,
     Chain,
     Comment,
@@ -32,7 +36,19 @@ from .ada import (
 )
 from .ada import Instance as Instantiation
 from .charts.places import Places
-from .components import leaf_type
+from .components import activity_package, leaf_type
+from .device_calls import (
+    call_body,
+    providers,
+    published,
+    put_body,
+    put_spec,
+    reply_boards,
+    request_queue,
+    take_body,
+    take_spec,
+    taken_replies,
+)
 from .events import event_value, name_of, null_event
 from .instance_rows import Rows
 from .instance_site import Site
@@ -59,32 +75,33 @@ class Glue(Site):
     # --- contexts
 
     def _spec_withs(self) -> tuple[str, ...]:
-        return (
-            (f"{ada_case(self.system.name)}.{self.component}",)
-            if self.instance.component.events
-            else ()
-        )
+        component = self.instance.component
+        own = (f"{ada_case(self.system.name)}.{self.component}",)
+        asked = ("Ravenchart.Queueing",) if self._served() else ()
+        return (*asked, *(own if component.events or asked else ()))
 
     def _body_withs(self) -> tuple[str, ...]:
         root = ada_case(self.system.name)
         component = self.instance.component
         names = {"Ravenchart.Queueing", "Ravenchart.Health", "System", f"{root}.Health_Counts"}
-        if not component.inputs() and not any(r.events() for r in component.regions):
+        queued = bool(component.inputs()) or any(r.events() for r in component.regions)
+        if not queued and not self._served():
             names -= {"Ravenchart.Queueing", "Ravenchart.Health", f"{root}.Health_Counts"}
-        if not component.events:
+        if not component.events and not self._served():
             names.add(f"{root}.{self.component}")
         if any(n.trace_depth for n in self.system.nodes):
             names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
-        if component.inputs() or any(r.events() for r in component.regions):
+        if queued or self._served():
             names.add("Ravenchart.Queues")
+        if any(b.instance == self.instance.name for b in self.system.bindings):
+            names.add("Ravenchart.Queueing")
         names.add("Ravenchart.Blackboards")
         if self.noted:
             names.add("Ravenchart.Steps")
         names |= {f"{root}.{self.component}.{ada_case(r.name)}" for r in component.regions}
-        if any(a.flow is None for a in component.activities):
-            names.add(f"{root}.{self.component}.Activities")
-        if any(a.flow is not None for a in component.activities):
-            names.add(f"{root}.{self.component}.Flows")
+        for activity in component.activities:
+            names.add(f"{root}.{self.component}.{activity_package(component, activity)}")
+        names |= {f"{root}.{unit}" for unit in providers(self.system, self.instance)}
         for port in component.outputs():
             ends, messages = self._targets(port.name)
             names |= {
@@ -93,7 +110,8 @@ class Glue(Site):
             for message in self.system.messages:
                 if message.name in messages:
                     names.add(f"{root}.{ada_case(message.bus)}")
-        return tuple(sorted(names - {instance_package(self.system, self.instance)}))
+        names -= {instance_package(self.system, self.instance), *self._spec_withs()}
+        return tuple(sorted(names))
 
     # --- spec
 
@@ -112,6 +130,7 @@ class Glue(Site):
                     "never blocks."
                 )
             )
+        items += self._command_specs()
         for slot in self._slots():
             items.append(Subprogram(f"Run_{ada_case(slot.name)}"))
             items.append(Comment(f"[{slot.element}] one execution, by its processor alone."))
@@ -124,17 +143,54 @@ class Glue(Site):
     def _offer_spec(self) -> Subprogram:
         return Subprogram("Offer", (Param("Item", "in", f"{self.component}.Event"),))
 
+    def _command_specs(self) -> Iterator[Decl]:
+        for provided in self._served():
+            yield put_spec(self.instance, provided)
+            yield Comment(f"[{self._element(provided.name)}] by its callers; never blocks.")
+        for spec, item in published(self.system, self.instance):
+            yield spec
+            yield Comment(f"[{self._element(item)}] what was published last.")
+        for binding in taken_replies(self.system, self.instance):
+            yield take_spec(self.system, binding.need)
+            yield Comment(f"[{self._element(binding.need.name)}] its reply.")
+
+    def _served(self) -> tuple[Provided, ...]:
+        return tuple(one for one in self.instance.component.provides if one.server is not None)
+
+    def _command_bodies(self) -> Iterator[Decl]:
+        system, instance = self.system, self.instance
+        for provided in self._served():
+            lost = (
+                self._fault("Queue_Overflow"),
+                *self._note("Fault", provided.name, "port", self._fault_number("Queue_Overflow")),
+            )
+            yield put_body(instance, provided, lost)
+        for spec, item in published(system, instance):
+            read: Stmt = Do(f"{ada_case(item)}_Board.Read", arguments(Ref("Reply")))
+            if not self._has_object(item):
+                read = Assign("Reply", Ref(f"{ada_case(item)}_Own"))
+            yield Subprogram(spec.name, spec.params, body=(read,))
+        for binding in taken_replies(system, instance):
+            yield take_body(system, instance, binding.need)
+
     # --- body: objects
 
     def _body(self) -> tuple[Decl, ...]:
         items: list[Decl] = [*self._port_objects(), *self._data_objects(), *self._region_objects()]
+        items += [request_queue(self.system, self.instance, one) for one in self._served()]
+        items += reply_boards(self.system, self.instance)
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]
         if component.events:
             items.append(self._offer_body())
+        items += self._command_bodies()
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
-        items += [self._send_body(p) for p in component.outputs() if p.name in used]
+        items += [
+            self._send_body(p)
+            for p in component.outputs()
+            if p.name in used and not self._is_idle(p)
+        ]
         rows = Rows(self.system, self.instance, self.noted)
         for slot in self._slots():
             match slot.work:
@@ -197,7 +253,7 @@ class Glue(Site):
             initial = value(self.system, data.type, data.initial)
             of_type = type_name(self.system, data.type)
             writer = self._writer(data)
-            if writer is None and not self.instance.component.users(data.name):
+            if data.is_command or (writer is None and not self.instance.component.users(data.name)):
                 continue
             if writer is None:
                 items.append(Object(f"{name}_Own", of_type, initial, constant=True))
@@ -322,6 +378,8 @@ class Glue(Site):
         ]
 
     def _send_body(self, port: Port) -> Subprogram:
+        if port.is_command:
+            return call_body(self.system, self.instance, port)
         ends, messages = self._targets(port.name)
         body: list[Stmt] = [*self._note("Sent", port.name, "port")]
         for end in ends:

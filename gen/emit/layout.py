@@ -74,29 +74,30 @@ def upright(*docs: Doc) -> Doc:
 def laid_out(doc: Doc, width: int) -> str:
     """The text of ``doc`` in lines of ``width`` columns, as far as its soft places allow that."""
     out: list[str] = []
-
-    def put(doc: Parts, column: int, indent: int, broken: bool) -> int:
-        """Add a document that begins in ``column``; the column behind it."""
-        indent += doc.step
-        for part in doc.parts:
-            if isinstance(part, str):
-                out.append(part)
-                column += len(part)
-                continue
-            on_one_line = not broken
-            if part.way is not _AS_AROUND:
-                on_one_line = part.way is not _UPRIGHT and (
-                    on_one_line or len(part.flat) <= width - column
-                )
-            if on_one_line and not part.has_upright:
-                out.append(part.flat)
-                column += len(part.flat)
-            elif part is SOFT:
-                out.append("\n" + " " * indent)
-                column = indent
-            else:
-                column = put(part, column, indent, not on_one_line)
-        return column
-
-    put(Parts((group(doc),)), 0, 0, True)
+    _put(out, Parts((group(doc),)), width, 0, 0, True)
     return "".join(out)
+
+
+def _put(out: list[str], doc: Parts, width: int, column: int, indent: int, broken: bool) -> int:
+    """Add a document that begins in ``column``; the column behind it."""
+    indent += doc.step
+    for part in doc.parts:
+        if isinstance(part, str):
+            out.append(part)
+            column += len(part)
+            continue
+        if part is SOFT and broken:
+            out.append("\n" + " " * indent)
+            column = indent
+            continue
+        on_one_line = not broken
+        if part.way is not _AS_AROUND:
+            on_one_line = part.way is not _UPRIGHT and (
+                on_one_line or len(part.flat) <= width - column
+            )
+        if on_one_line and not part.has_upright:
+            out.append(part.flat)
+            column += len(part.flat)
+        else:
+            column = _put(out, part, width, column, indent, not on_one_line)
+    return column

@@ -6,7 +6,16 @@ from functools import lru_cache
 
 from ..model import Component, Instance, Processor, Slot, System
 from ..statechart import Region
-from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Scalar, Type, Value
+from ..terms import (
+    BOOLEAN,
+    EnumerationType,
+    IntegerType,
+    RecordType,
+    Scalar,
+    Type,
+    Value,
+    default,
+)
 from .ada import Aggregate, Arg, Expr, Ref, number
 
 
@@ -67,21 +76,6 @@ def value(system: System, of_type: Type, given: Value) -> Expr:
             for field, item in given
         )
     )
-
-
-def default(of_type: Type) -> Value:
-    """The value before any is known: nearest to zero, first literal, field by field."""
-    if isinstance(of_type, IntegerType):
-        return min(max(0, of_type.first), of_type.last)
-    if isinstance(of_type, EnumerationType):
-        return of_type.literals[0]
-    return tuple((f.name, _scalar_default(f.type)) for f in of_type.fields)
-
-
-def _scalar_default(of_type: IntegerType | EnumerationType) -> Scalar:
-    given = default(of_type)
-    assert not isinstance(given, tuple)
-    return given
 
 
 def default_value(system: System, of_type: Type) -> Expr:

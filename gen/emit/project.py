@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..model import System
 from .naming import ada_case
 
@@ -12,10 +14,10 @@ with "ravenchart.gpr";
 
 project {name} is
 
-   Build := external ("RAVENCHART_BUILD", "../build");
+   Build := external ("RAVENCHART_BUILD", "{up}build");
    --  Where objects and the program go.
 
-   for Source_Dirs use ({sources});
+   for Source_Dirs use{sources};
    for Object_Dir use Build & "/" & Ravenchart.Mode;
    for Exec_Dir use Build;
    for Create_Missing_Dirs use "True";
@@ -38,12 +40,20 @@ end {name};
 """
 
 
-def project_text(system: System, *, has_user_code: bool) -> str:
-    """The project file; it finds the runtime through GPR_PROJECT_PATH."""
-    sources = '".", "../user"' if has_user_code else '"."'
+def project_text(system: System, folders: Sequence[str], up: str) -> str:
+    """The project file; it finds the runtime through GPR_PROJECT_PATH.
+
+    ``folders`` have the sources that are not generated, below the model's folder, to which
+    ``up`` leads.
+    """
+    gap = ", " if len(folders) < 2 else ",\n      "
+    sources = gap.join(('"."', *(f'"{up}{folder}"' for folder in folders)))
+    start = " " if len(folders) < 2 else "\n     "
     name = ada_case(system.name)
     main = f"{name.lower()}_main"
-    return _TEXT.format(model=system.name, name=name, main=main, sources=sources)
+    return _TEXT.format(
+        model=system.name, name=name, main=main, up=up, sources=f"{start}({sources})"
+    )
 
 
 _SIMULATION = """\

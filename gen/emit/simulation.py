@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..derive import on_one_node
 from ..model import Instance, Port, System, Work
 from ..terms import IntegerType, RecordType, ScalarType, Type, Value
 from .ada import (
@@ -43,7 +44,8 @@ Stimulus = tuple[str, str, Type | None]
 
 
 def simulated(system: System) -> System:
-    """The part of a system that can be simulated: no bus, no trace."""
+    """The part of a system that can be simulated: no bus, no trace, all on one node."""
+    system = on_one_node(system)
     processors = tuple(p for p in system.processors if p.released_by is None)
     nodes = tuple(replace(n, trace_depth=0, probe=None) for n in system.nodes)
     return replace(system, nodes=nodes, buses=(), messages=(), processors=processors)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from .. import terms as m
@@ -89,6 +89,17 @@ def states_in(expression: m.Expression) -> set[tuple[str, str]]:
             return {pair for operand in operands for pair in states_in(operand)}
         case _:
             return set()
+
+
+def compared_states(component: Component, expressions: Iterable[m.Expression]) -> set[str]:
+    """The types of states that expressions compare, seen from the component's package."""
+    asked = {pair for e in expressions for pair in states_in(e)}
+    return {
+        f"{places.states}.{kind}"
+        for name, state in asked
+        for places in (Places(component.region(name)),)
+        for kind in places.compared_types(state)
+    }
 
 
 def operators_in(expression: m.Expression) -> set[str]:
@@ -287,6 +298,8 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
             return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
         case m.Send(_, port, values):
             slot, flag = scope.sent(port)
+            if scope.component.port(port).is_void:
+                return (Assign(flag, TRUE),)
             given = _given(scope, scope.component.port(port).type, values)
             return (Assign(slot, given), Assign(flag, TRUE))
         case m.Raise(_, event, values):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from ..model import System
-from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Type
+from ..terms import BOOLEAN, EnumerationType, IntegerType, RecordType, Type, default
 from .ada import SPARK, Aspect, Comment, Decl, EnumType, Object, Package, PlainType, Ref, Unit
 from .ada import Component as RecordComponent
 from .ada import RecordType as AdaRecord
-from .naming import ada_case, counted, default, default_name, type_name, unit_type, value
+from .naming import ada_case, counted, default_name, type_name, unit_type, value
 
 
 def emit_root(system: System, header: str) -> Unit:

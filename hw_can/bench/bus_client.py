@@ -41,6 +41,9 @@ PATIENCE = 5.0
 SLICE = 0.01
 """Seconds for which a sender reads before it lets another thread read."""
 
+LINGER = 0.5
+"""Seconds for which the end of a bus waits for what is still to be transmitted."""
+
 _STATES = {
     State.ERROR_ACTIVE: can.BusState.ACTIVE,
     State.ERROR_PASSIVE: can.BusState.PASSIVE,
@@ -162,9 +165,10 @@ class RavenchartBus(can.BusABC):
             self._await(number, timeout)
 
     def shutdown(self) -> None:
-        """Leave the bus; a second call does nothing."""
+        """Leave the bus, once all is transmitted or a moment later; a second call does nothing."""
         if not self._is_shutdown:
             super().shutdown()
+            self._linger()
             self._broken = self._broken or "the bus was shut down"
             self._release()
 
@@ -326,6 +330,13 @@ class RavenchartBus(can.BusABC):
         except OSError as fault:
             self._broken = f"the bus server is gone: {fault}"
             raise can.CanOperationError(self._broken) from None
+
+    def _linger(self) -> None:
+        """Wait a moment for requests that are open: who leaves takes them along."""
+        end = time.monotonic() + LINGER
+        with suppress(can.CanOperationError):
+            while self._open and (rest := end - time.monotonic()) > 0:
+                self._take(rest)
 
     def _release(self) -> None:
         """Close everything; a thread that waits for a record is woken first."""

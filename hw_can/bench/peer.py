@@ -114,6 +114,14 @@ class Peer:
         link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         return Peer(bus, codec, link)
 
+    @staticmethod
+    def join(channel: str, codec: Codec) -> Peer:
+        """A peer that is a node of the bus behind ``host:port``; BenchError where there is none."""
+        try:
+            return Peer(can.Bus(interface="ravenchart", channel=channel, name="bench"), codec)
+        except (can.CanError, OSError) as fault:
+            raise BenchError(f"no bus at {channel}: {fault}") from None
+
     @property
     def is_open(self) -> bool:
         """Neither dropped nor closed."""

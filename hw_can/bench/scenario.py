@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -185,30 +186,55 @@ STEPS: Mapping[str, type[Step]] = {
 """Each step by the key that tells it from the others."""
 
 
+class Cut(_Form):
+    """A node, and those behind it in the model, are cut off the bus at that time."""
+
+    at: Time
+    cut: str
+
+
+class Mend(_Form):
+    """The bus is whole again from that time on."""
+
+    at: Time
+    mend: Literal[True]
+
+
 class TraceCheck(_Form):
     """After the run, the controller's trace must show that a region reached a state.
 
-    With ``within`` and ``after_last`` the state was entered at most that long after
-    the last arrival at that port.
+    With ``within`` the state was entered at most that long after the last arrival at
+    the port ``after_last``, or after the one before the longest silence at the port
+    ``after_silence``. With ``then`` it went on to that state later.
     """
 
     region: Element
     reaches: str
     within: Time | None = None
     after_last: Element | None = None
+    after_silence: Element | None = None
+    then: str | None = None
+
+    @property
+    def port(self) -> str | None:
+        """The port from whose arrival the time counts."""
+        return self.after_last or self.after_silence
 
     def __str__(self) -> str:
         limit = ""
-        if self.within is not None and self.after_last is not None:
-            limit = f" within {self.within * 1e3:g} ms of the last {self.after_last}"
-        return f"trace: {self.region} in {self.reaches}{limit}"
+        if self.within is not None and self.port is not None:
+            which = "of the last" if self.after_last else "of the silence at"
+            limit = f" within {self.within * 1e3:g} ms {which} {self.port}"
+        later = "" if self.then is None else f", then in {self.then}"
+        return f"trace: {self.region} in {self.reaches}{limit}{later}"
 
 
 class _File(_Form):
     """The whole file; its steps are checked one by one."""
 
     scenario: str
-    drives: Annotated[dict[str, DriveForm], Field(min_length=1)]
+    drives: dict[str, DriveForm] = {}
+    bus: list[Cut | Mend] = []
     steps: Annotated[list[dict[str, Any]], Field(min_length=1)]
     expect_trace: list[TraceCheck] = []
 
@@ -222,6 +248,8 @@ class Scenario:
     steps: tuple[Step, ...]
     lines: tuple[int, ...]
     trace_checks: tuple[TraceCheck, ...]
+    bus_events: tuple[Cut | Mend, ...] = ()
+    """What happens on the bus between several nodes; times in s since it was started."""
 
 
 def load_scenario(path: Path) -> Scenario:
@@ -273,7 +301,14 @@ def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
     if problems:
         raise _failure(file, problems)
     lines = tuple(_line(root, ("steps", index)) for index in range(len(steps)))
-    return Scenario(form.scenario, form.drives, tuple(steps), lines, tuple(form.expect_trace))
+    return Scenario(
+        form.scenario,
+        form.drives,
+        tuple(steps),
+        lines,
+        tuple(form.expect_trace),
+        tuple(form.bus),
+    )
 
 
 def _misfits(form: _File, steps: list[Step]) -> Iterator[tuple[tuple[int | str, ...], str]]:
@@ -290,9 +325,16 @@ def _misfits(form: _File, steps: list[Step]) -> Iterator[tuple[tuple[int | str, 
             if name not in form.drives:
                 yield ("steps", index), f"steps.{index}: there is no drive {name}"
     for index, check in enumerate(form.expect_trace):
-        if (check.within is None) != (check.after_last is None):
-            place = ("expect_trace", index)
-            yield place, f"expect_trace.{index}: within and after_last go together"
+        place = ("expect_trace", index)
+        if (check.within is None) != (check.port is None):
+            what = "within and after_last or after_silence go together"
+            yield place, f"expect_trace.{index}: {what}"
+        if check.after_last is not None and check.after_silence is not None:
+            yield place, f"expect_trace.{index}: after_last or after_silence, not both"
+    times = [event.at for event in form.bus]
+    for index, (one, other) in enumerate(pairwise(times), 1):
+        if other <= one:
+            yield ("bus", index), f"bus.{index}: comes no later than the event before it"
 
 
 def _drives_of(step: Step) -> tuple[str, ...]:

@@ -4,6 +4,8 @@
 with System;
 with Ada.Real_Time;
 with Instance_Bus;
+with Instance_Simulator;
+pragma Unreferenced (Instance_Simulator);
 with Instance_Store;
 with Instance_Tasks;
 with Ravenchart.Can;

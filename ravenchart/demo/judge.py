@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
+from analysis.journeys import Journey
 from analysis.observed import Observation
 from analysis.report import Comparison, StepRow
 from analysis.units import microseconds
@@ -33,6 +35,7 @@ def failures(
     seen: Observation | None,
     checks: Sequence[StepRow],
     compared: Sequence[Comparison],
+    took: Sequence[Journey] = (),
 ) -> Iterator[str]:
     """Every reason for which the run failed; none when it passed.
 
@@ -68,6 +71,12 @@ def failures(
             for row in compared
             if row.exceeded and not row.explained
         )
+        yield from (
+            f"the chain {row.chain} was observed to react after {microseconds(row.observed)} us, "
+            f"above its bound of {microseconds(row.bound)} us"
+            for row in took
+            if row.exceeded
+        )
 
 
 def _reached(check: TraceCheck, seen: Observation) -> tuple[bool, str, float]:
@@ -79,11 +88,23 @@ def _reached(check: TraceCheck, seen: Observation) -> tuple[bool, str, float]:
         visited = ", ".join(seen.states_visited()[check.region]) or "none"
         return False, f"never: it visited {visited}", 0.0
     entered = entries[-1]
-    if check.within is None or check.after_last is None:
-        return True, f"at {entered / 1e9:.3f} s", entered / 1e9
-    arrivals = seen.of("arrived", check.after_last)
-    if not arrivals:
-        return False, f"nothing arrived at {check.after_last}", entered / 1e9
-    delay = (entered - arrivals[-1].time) / 1e9
-    outcome = f"after {delay * 1e3:.1f} ms"
-    return 0 <= delay <= check.within, outcome, entered / 1e9
+    passed, outcome = True, f"at {entered / 1e9:.3f} s"
+    if check.within is not None and check.port is not None:
+        arrivals = [record.time for record in seen.of("arrived", check.port)]
+        if not arrivals:
+            return False, f"nothing arrived at {check.port}", entered / 1e9
+        since = arrivals[-1] if check.after_last else _silence(arrivals)
+        delay = (next((e for e in entries if e >= since), entered) - since) / 1e9
+        passed, outcome = 0 <= delay <= check.within, f"after {delay * 1e3:.1f} ms"
+    if check.then is not None:
+        later = [v.start for v in seen.visits(check.region) if v.state == check.then]
+        if not later or later[-1] < entries[0]:
+            return False, f"{outcome}, but never in {check.then} later", entered / 1e9
+        outcome += f", then at {later[-1] / 1e9:.3f} s"
+    return passed, outcome, entered / 1e9
+
+
+def _silence(arrivals: Sequence[int]) -> int:
+    """The arrival before the longest time without one."""
+    gaps = [(later - time, time) for time, later in pairwise(arrivals)]
+    return max(gaps, default=(0, arrivals[-1]), key=lambda gap: gap[0])[1]

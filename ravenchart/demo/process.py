@@ -21,6 +21,7 @@ STOP_MARGIN = 3.0
 """How long it may take to end beyond its own grace, in s."""
 
 _PORT = re.compile(r"can: slcan on 127\.0\.0\.1:(\d{1,5})")
+_JOINED = re.compile(r"can: joined the bus at 127\.0\.0\.1:(\d{1,5})")
 _REAL_TIME = (os.SCHED_FIFO, os.SCHED_RR)
 
 
@@ -56,9 +57,17 @@ def stolen_time(core: int) -> int:
 class ControllerProcess:
     """A running controller; its output is read all the time, so it never blocks on it."""
 
-    def __init__(self, executable: Path, trace: Path, core: int) -> None:
-        """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError."""
-        environment = {**os.environ, "RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace)}
+    def __init__(self, executable: Path, trace: Path, core: int, **environment: str) -> None:
+        """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
+
+        ``environment`` is what it is told besides: by whom the bus is reached.
+        """
+        environment = {
+            **os.environ,
+            "RAVENCHART_CAN_PORT": "0",
+            "RAVENCHART_TRACE": str(trace),
+            **environment,
+        }
         try:
             self._process = subprocess.Popen(
                 [executable.absolute()],
@@ -87,6 +96,13 @@ class ControllerProcess:
 
     def wait_for_port(self) -> int:
         """The TCP port of its bus, once it says so; StartError when it does not."""
+        return self._wait_for(_PORT)
+
+    def wait_until_joined(self) -> None:
+        """Until it is a node of the bus that it was told of; StartError when it does not say so."""
+        self._wait_for(_JOINED)
+
+    def _wait_for(self, said: re.Pattern[str]) -> int:
         deadline = time.monotonic() + START_LIMIT
         while (rest := deadline - time.monotonic()) > 0:
             try:
@@ -98,7 +114,7 @@ class ControllerProcess:
                     self._process.wait(timeout=1.0)
                     self._readers[-1].join(timeout=1.0)
                 raise StartError(self._early_end())
-            match = _PORT.fullmatch(line.strip())
+            match = said.fullmatch(line.strip())
             if match:
                 return int(match[1])
         raise StartError(f"the controller did not open its bus within {START_LIMIT:g} s")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from analysis.journeys import Journey
 from analysis.observed import Observation
 from analysis.report import Comparison, Execution, FrameRow, StepRow
 from analysis.units import microseconds
@@ -32,6 +33,7 @@ class RunResult:
     ended: Ended
     steps: tuple[StepRow, ...]
     compared: tuple[Comparison, ...]
+    journeys: tuple[Journey, ...]
     failures: tuple[str, ...]
     notes: tuple[str, ...]
     clock_offset: float | None

@@ -9,6 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from analysis.journeys import Journey
 from analysis.report import Comparison, FrameRow, StepRow
 from analysis.table import WIDTH
 from analysis.units import microseconds
@@ -66,6 +67,22 @@ def print_comparison(console: Console, compared: Sequence[Comparison], *, compar
     _section(console, "longest responses", table)
     if not comparable:
         console.print("not comparable: the controller had no real-time priorities")
+
+
+def print_journeys(console: Console, took: Sequence[Journey]) -> None:
+    """The longest reaction of each chain beside its bound."""
+    table = _table("chain", "reactions>", "observed us>", "bound us>", "limit us>", "")
+    for row in took:
+        table.add_row(
+            row.chain,
+            str(row.count),
+            microseconds(row.observed),
+            microseconds(row.bound),
+            microseconds(row.limit),
+            "ABOVE" if row.exceeded else "ok",
+            style="bold red" if row.exceeded else "",
+        )
+    _section(console, "longest reactions of chains", table)
 
 
 def print_positions(console: Console, lines: Sequence[str]) -> None:

@@ -16,7 +16,7 @@ from .catalogue import KINDS, mutants_of
 from .mutants import Mutant, sampled
 from .observing import Observer, Played, Simulated
 from .report import Explained, Outcome, as_json, explanations, reason_of, survivors, table
-from .workbench import Verdict, Workbench
+from .workbench import PATIENCE, Verdict, Workbench
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,9 @@ def tried(
         for number in range(min(jobs, len(chosen))):
             bench = Workbench(subject.model, Path(place) / str(number), subject.observer)
             units = {u: None for m in chosen for u in bench.units_of(m)}
-            bench.prepare(list(units))
+            if number == 0 and units:
+                bench.prove(list(units), jobs=jobs, patience=PATIENCE)
+            bench.prepare()
             free.put(bench)
 
         def judged(mutant: Mutant) -> Outcome:

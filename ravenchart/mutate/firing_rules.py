@@ -143,8 +143,11 @@ def _ordered(first: str, second: str) -> bool:
         return False
     if any(s.startswith(("if ", "case ")) for s in (first, second)):
         return False
-    set_first, set_second = _assigned(first), _assigned(second)
-    return bool(set_first and set_first in second) or bool(set_second and set_second in first)
+    return _uses(second, _assigned(first)) or _uses(first, _assigned(second))
+
+
+def _uses(statement: str, name: str | None) -> bool:
+    return name is not None and bool(re.search(rf"\b{re.escape(name)}\b", statement))
 
 
 def _assigned(statement: str) -> str | None:

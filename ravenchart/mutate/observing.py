@@ -16,6 +16,7 @@ from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
 from behaviour.stimuli import Arrived, Raised, Stimuli
 from behaviour.traces import Record
+from gen.emit.naming import ada_case
 from gen.generate import simulation
 from gen.model import End, Event, Port, System
 from gen.terms import IntegerType, Ns, RecordType, Scalar, ScalarType, Type, Value
@@ -30,6 +31,10 @@ SEEDS = range(4)
 """The first run gets no stimuli, the others random ones."""
 VIRTUAL = Ns(4 * 10**9)
 SECONDS = 1.5
+HOLDS = 40
+"""How often a program is held up to see whether it notices missed deadlines."""
+
+Process = subprocess.Popen[bytes]
 
 
 class Observer:
@@ -164,6 +169,58 @@ def _records(found: Iterable[Record]) -> list[str]:
     return [one.text() for one in found]
 
 
+def ran(executable: Path, folder: Path, meanwhile: Callable[[Process], None]) -> Observation:
+    """What a program has traced when it is ended after ``meanwhile``; TraceError if it fails."""
+    trace = folder / "trace.txt"
+    trace.unlink(missing_ok=True)
+    process = subprocess.Popen(
+        [executable],
+        env={"RAVENCHART_TRACE": str(trace)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    meanwhile(process)
+    process.send_signal(signal.SIGTERM)
+    try:
+        status = process.wait(5)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        raise TraceError("it does not end") from None
+    if status != 0:
+        raise TraceError(f"it ends with status {status}")
+    names = read_map((folder / "model" / "generated" / "trace.json").read_text(encoding="utf-8"))
+    return read_trace(trace.read_text(encoding="ascii").splitlines(), names)
+
+
+def unnoticed(system: System, file: str, executable: Path, folder: Path) -> str:
+    """Does a periodic processor, held up for longer than its deadline, count few misses?
+
+    ``file`` is the spec of its package. It is held up for less than twice its deadline:
+    what starts in the first 0.75 of one must be seen to miss it, which is so often half
+    of the time at least that this is said of less.
+    """
+    processor = next(
+        p for p in system.processors if file.endswith(f"-{ada_case(p.name).lower()}.ads")
+    )
+    deadline, period = processor.deadline / 1e9, processor.period / 1e9
+
+    def hold_up(process: Process) -> None:
+        for _ in range(HOLDS):
+            time.sleep(period + 2 * deadline)
+            process.send_signal(signal.SIGSTOP)
+            time.sleep(1.75 * deadline)
+            process.send_signal(signal.SIGCONT)
+        time.sleep(2 * period)
+
+    try:
+        misses = ran(executable, folder, hold_up).processors[processor.name].misses
+    except (TraceError, OSError) as problem:
+        return str(problem)
+    expected = HOLDS * min(1.0, 0.75 * deadline / period)
+    return f"{misses} misses, not about {expected:.0f}" if misses < expected / 2 else ""
+
+
 class Real(Observer):
     """The program itself for a moment: its transitions in order, and how often rows run."""
 
@@ -174,30 +231,12 @@ class Real(Observer):
         self.expected = self._seen(executable)
 
     def _seen(self, executable: Path) -> Observation:
-        trace = self.folder / "trace.txt"
-        trace.unlink(missing_ok=True)
-        generated = self.folder / "model" / "generated"
-        process = subprocess.Popen(
-            [executable],
-            env={"RAVENCHART_TRACE": str(trace)},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        time.sleep(SECONDS)
-        process.send_signal(signal.SIGTERM)
-        try:
-            status = process.wait(5)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-            raise TraceError("it does not end") from None
-        if status != 0:
-            raise TraceError(f"it ends with status {status}")
-        names = read_map((generated / "trace.json").read_text(encoding="utf-8"))
-        return read_trace(trace.read_text(encoding="ascii").splitlines(), names)
+        return ran(executable, self.folder, lambda process: time.sleep(SECONDS))
 
     def differs(self, mutant: Mutant, executable: Path) -> str:
         """Another transition, another rate, or an end with an error."""
+        if mutant.rule == "Deadline":
+            return unnoticed(self.checked.system, mutant.file, executable, self.folder)
         try:
             seen = self._seen(executable)
         except (TraceError, OSError) as problem:
@@ -236,6 +275,8 @@ class Played(Observer):
 
     def differs(self, mutant: Mutant, executable: Path) -> str:
         """What failed."""
+        if mutant.rule == "Deadline":
+            return unnoticed(self.checked.system, mutant.file, executable, self.folder)
         return self._failures(executable)
 
     def prepare(self, executable: Path) -> None:

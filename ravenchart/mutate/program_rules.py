@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from .mutants import Files, Found, replaced
-from .source import Span, subprograms
+from .source import Span, Subprogram, subprograms
 
 
 def _matches(text: str, pattern: str) -> Iterator[re.Match[str]]:
@@ -61,11 +61,16 @@ def codec_in_code(file: str, files: Files) -> Iterator[Found]:
             ):
                 new = str(int(match.group(1)) + 1)
                 yield one.name, "bit", replaced(Span(*match.span(1)), new)
-        for match in re.compile(r"[-+] \((-[\d_]+)\)").finditer(
-            text, one.inner.start, one.inner.end
-        ):
-            value = int(match.group(1).replace("_", "")) - 1
-            yield one.name, "offset", replaced(Span(*match.span(1)), str(value))
+        if one.name.startswith("Bits_Of_"):
+            yield from _offsets(text, one)
+
+
+def _offsets(text: str, one: Subprogram) -> Iterator[Found]:
+    """What is added to or taken from a value is one more."""
+    offset = re.compile(r" [-+] (\d[\d_]*)")
+    for match in offset.finditer(text, one.whole.start, one.whole.end):
+        more = int(match.group(1).replace("_", "")) + 1
+        yield one.name, "offset", replaced(Span(*match.span(1)), str(more))
 
 
 def codec_declared(file: str, files: Files) -> Iterator[Found]:
@@ -74,6 +79,8 @@ def codec_declared(file: str, files: Files) -> Iterator[Found]:
     for one in subprograms(text):
         if not one.is_expression:
             continue
+        if one.name.endswith("_Of_Bits"):
+            yield from _offsets(text, one)
         inner = one.inner
         for match in re.compile(r"Shift_Right \(Word, (\d+)\)").finditer(
             text, inner.start, inner.end

@@ -9,6 +9,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 
 import yaml
 
@@ -23,6 +24,13 @@ from .source import choices, subprogram, subprograms
 
 LONGEST = 1200
 """Seconds after which a tool is given up: the mutant counts as not caught by it."""
+PATIENCE = 3
+"""Seconds that a prover has for a check of a mutant, and for one of the unbroken program
+before: with the ten of `make prove`, what a mutant falsifies would cost them all, each time."""
+
+
+_RULES = Lock()
+"""The solver behind the model rules knows one thread at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +77,9 @@ class Workbench:
 
     # --- the unbroken program
 
-    def prepare(self, units: Sequence[str]) -> None:
-        """Compile, prove and run the unbroken program; ToolFailed when it is not clean."""
+    def prepare(self) -> None:
+        """Compile and run the unbroken program; ToolFailed when it is not clean."""
         self._compile()
-        if units:
-            self.prove(units)
         self.observer.prepare(self.executable)
 
     @property
@@ -103,9 +109,10 @@ class Workbench:
             return Verdict("compiler", _first(str(failed)))
         try:
             for name in self._focus(mutant):
-                self.prove([_body(mutant.file)], self._place(name, mutant, broken))
+                place = self._place(name, mutant, broken)
+                self.prove([_body(mutant.file)], place, patience=PATIENCE)
             if not self._is_modular(mutant):
-                self.prove(self.units_of(mutant))
+                self.prove(self.units_of(mutant), patience=PATIENCE)
         except ToolFailed as failed:
             return Verdict("gnatprove", _first(str(failed)))
         seen = self.observer.differs(mutant, self.executable)
@@ -117,7 +124,8 @@ class Workbench:
         for name, text in _model_files(self.model).items():
             (folder / name).write_text(broken if name == file else text)
         try:
-            checked = steps.check(folder / self.model.name)
+            with _RULES:
+                checked = steps.check(folder / self.model.name)
         except Refused as refused:
             return Verdict("model rules", _first_error(str(refused)))
         seen = self.observer.model_differs(checked.system)
@@ -176,10 +184,17 @@ class Workbench:
     def _compile(self) -> None:
         self._run(["gprbuild", "-p", "-q", "-j1", "-P", self.project])
 
-    def prove(self, units: Sequence[str], only: str | None = None, *, jobs: int = 1) -> None:
+    def prove(
+        self,
+        units: Sequence[str],
+        only: str | None = None,
+        *,
+        jobs: int = 1,
+        patience: int | None = None,
+    ) -> None:
         """Prove units, or one subprogram of one; ToolFailed with what is left.
 
-        With the switches of the project, as `make prove`.
+        With the switches of the project, as `make prove`, or another time for each prover.
         What earlier runs left unproved would count again: their results go first.
         """
         for old in self.folder.rglob("*.spark"):
@@ -188,6 +203,8 @@ class Workbench:
         command += [f"-j{jobs}", "-u", *units]
         if only is not None:
             command.append(f"--limit-subp={only}")
+        if patience is not None:
+            command.append(f"--timeout={patience}")
         self._run(command)
 
     def _run(self, command: list[str]) -> None:

@@ -1,3 +1,4 @@
+with Ada.Real_Time;
 with Interfaces.C.Strings;
 with System;
 
@@ -186,6 +187,8 @@ is
 
    procedure Start is
       Ignored : System.Address;
+      Whole   : Ada.Real_Time.Seconds_Count;
+      Rest    : Ada.Real_Time.Time_Span;
       Path    : constant Interfaces.C.Strings.chars_ptr :=
         C_Get_Environment (Interfaces.C.To_C ("RAVENCHART_TRACE"));
       Stream  : C_Int := Standard_Error;
@@ -204,6 +207,11 @@ is
                & " written: this run leaves no trace" & ASCII.LF);
          end if;
       end if;
+      Ada.Real_Time.Split (Epochs.Start, Whole, Rest);
+      Put_Line
+        ("E " & Image
+           (Long_Long_Integer (Whole) * 1_000_000_000
+            + Long_Long_Integer (Epochs.To_Nanoseconds (Rest))));
       if C_Get_Scheduler (0) /= Fifo_Policy then
          Write_All
            (Stream,

@@ -8,11 +8,13 @@
 --  Timing       not bounded: it may wait for the disk
 --
 --  The report goes to the file that the environment variable RAVENCHART_TRACE
---  names, and nowhere when it is not set. Lines: T time kind element value;
+--  names, and nowhere when it is not set. Lines: E clock, the time of this
+--  machine's real-time clock at Start of Epochs; T time kind element value;
 --  P processor releases misses worst_response; A activity worst_execution;
 --  H kind count; L what count; W host_latency; END last. Times are in
 --  nanoseconds.
 
+with Ravenchart.Epochs;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -25,8 +27,8 @@ package Ravenchart.Hosts
     Initializes    => Process
 is
    procedure Start
-   with Global => (In_Out => Process);
-   --  Catch SIGTERM and SIGINT, open the report, and warn on standard error
+   with Global => (Input => Epochs.Start, In_Out => Process);
+   --  Catch SIGTERM and SIGINT, begin the report, and warn on standard error
    --  when the process has no real-time priorities.
 
    function Stop_Requested return Boolean

@@ -1,7 +1,7 @@
-"""A stand-in for the bus server: it passes records between its clients, and is no bus.
+"""A bus server that does what a right one never does: it harms, refuses, says garbage.
 
-It knows no bit times, arbitration, acknowledgement or error counters: a frame is over the
-moment it is read, and errors and states are those that a test injects.
+It is no bus and knows no bit times, arbitration, acknowledgement or error counters: a frame
+is over the moment it is read, and errors and states are those that a test injects.
 """
 
 from __future__ import annotations

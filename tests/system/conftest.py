@@ -18,7 +18,7 @@ CopyOf = Callable[[str], Path]
 def _built(name: str) -> tuple[steps.Checked, Path]:
     checked = steps.check(ROOT / "examples" / name / "model.yaml")
     steps.write_program(checked)
-    return checked, steps.build(checked)
+    return checked, steps.programs_of(checked)[0].build()
 
 
 @pytest.fixture(scope="session")

@@ -42,7 +42,9 @@ def _run(folder: Path, expected: dict[str, Any]) -> tuple[steps.Checked, Observa
     assert re.findall(r"\[(RV-\d+)\]", checked.warnings) == expected.get("warnings", [])
     steps.write_program(checked)
     trace = folder / "trace"
-    process = subprocess.Popen([steps.build(checked)], env={"RAVENCHART_TRACE": str(trace)})
+    process = subprocess.Popen(
+        [steps.programs_of(checked)[0].build()], env={"RAVENCHART_TRACE": str(trace)}
+    )
     time.sleep(expected["seconds"])
     process.send_signal(signal.SIGTERM)
     assert process.wait(5) == 0

@@ -10,7 +10,7 @@ import pytest
 from ravenchart import house, proving
 from ravenchart.toolchain import ROOT
 
-NAMES = ("runtime-loopback", "runtime-slcan", *house.EXAMPLES)
+NAMES = (*(f"runtime-{d}" for d in house.DRIVERS), house.BUS, *house.EXAMPLES)
 
 
 def _record(name: str) -> Path:

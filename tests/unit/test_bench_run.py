@@ -18,6 +18,7 @@ from ravenchart.demo import judge, summary
 from ravenchart.demo.process import Ended
 from ravenchart.demo.result import RunResult
 from ravenchart.run import (
+    Controller,
     RunRequest,
     print_summary,
     run_alone,
@@ -195,7 +196,8 @@ def test_an_executable_that_is_none_fails_the_run(tmp_path: Path) -> None:
 
 
 def request(files: Files, scenario: Path | None) -> RunRequest:
-    return RunRequest(files.analysis, files.executable, files.dbc.parent, scenario, 0.8, files.out)
+    one = Controller("node", files.executable, files.dbc.parent / "trace.json")
+    return RunRequest(files.analysis, (one,), files.dbc.parent, scenario, 0.8, files.out)
 
 
 def test_one_call_runs_prints_and_reports(tmp_path: Path) -> None:

@@ -120,8 +120,12 @@ def test_an_axis_that_cannot_be_is_refused_at_its_drive() -> None:
         ("a: [", r"scenario.yaml:\d+: error: "),
         ("[1]", "scenario.yaml:1: error: a scenario is a mapping"),
         ("", "scenario.yaml:1: error: a scenario is a mapping"),
-        ("scenario: x\nsteps: [{wait: 1 s}]\n", "drives: Field required"),
-        ("scenario: x\ndrives: {}\nsteps: [{wait: 1 s}]\n", ":2: error: drives: "),
+        ("scenario: x\ndrives: 1\nsteps: [{wait: 1 s}]\n", ":2: error: drives: "),
+        (
+            "scenario: x\nbus: [{at: 2 s, cut: b}, {at: 2 s, mend: true}]\nsteps: [{wait: 1 s}]\n",
+            ":2: error: bus.1: comes no later than the event before it",
+        ),
+        ("scenario: x\nbus: [{at: 2 s}]\nsteps: [{wait: 1 s}]\n", ":2: error: bus.0"),
         (scenario_text(" []\n"), "steps: List should have at least 1 item"),
     ],
 )
@@ -132,7 +136,7 @@ def test_a_file_that_is_no_scenario_is_refused(text: str, message: str) -> None:
 
 def test_a_time_limit_of_the_trace_needs_what_it_counts_from() -> None:
     checks = "expect_trace:\n  - {region: a.B, reaches: C, within: 1 s}\n"
-    with pytest.raises(ScenarioError, match="within and after_last go together"):
+    with pytest.raises(ScenarioError, match="within and after_last or after_silence go together"):
         parse_scenario(scenario_text(ONE_STEP, checks))
 
 

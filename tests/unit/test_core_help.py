@@ -60,13 +60,14 @@ def test_audsley_finds_an_order_exactly_when_there_is_one(
 
 
 @settings(max_examples=100, deadline=None)
-@given(task_sets(), st.integers(0, 3))
+@given(task_sets(), st.integers(0, 3), st.sets(st.integers(0, 3)))
 def test_audsley_finds_identifiers_exactly_when_there_are_some(
-    drawn: tuple[list[Task], list[Section]], unknown: int
+    drawn: tuple[list[Task], list[Section]], unknown: int, queued: set[int]
 ) -> None:
     bus = Bus(1, unknown)
     frames = [
-        Frame(t.name, n, t.period, t.deadline, t.cost, t.jitter) for n, t in enumerate(drawn[0])
+        Frame(t.name, n, t.period, t.deadline, t.cost, t.jitter, "q" * (n in queued), reloaded=True)
+        for n, t in enumerate(drawn[0])
     ]
 
     def good(order: Order) -> bool:
@@ -88,7 +89,7 @@ def test_deadline_monotonic_goes_by_deadline_less_jitter() -> None:
 def test_what_cannot_be_ordered_is_refused() -> None:
     with pytest.raises(ValueError, match="several cores"):
         audsley_tasks([Task("a", 0, 9, 9, 1), Task("b", 0, 9, 9, 1, core="other")])
-    with pytest.raises(ValueError, match="queue of message m must be empty"):
+    with pytest.raises(ValueError, match="queue of message m must be empty here, or reloaded"):
         audsley_frames([Frame("m", 0, 9, 9, 1, queue="q")], Bus(1))
 
 

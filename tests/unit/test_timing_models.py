@@ -168,7 +168,7 @@ def test_frames_that_others_send_to_others_take_their_time(tmp_path: Path) -> No
         ("id: 0x700, period: 1 ms", "RV-0608"),
         ("id: 0x700, bytes: 8", "RV-0609"),
         ("id: 0x110, bytes: 8, period: 1 ms", "RV-0607"),
-        ("id: 0x700, bytes: 9, period: 1 ms", "RV-02"),
+        ("id: 0x700, bytes: 9, period: 1 ms", "RV-0616"),
     ],
 )
 def test_traffic_of_others_that_says_too_little_is_refused(line: str, problem: str) -> None:
@@ -176,9 +176,9 @@ def test_traffic_of_others_that_says_too_little_is_refused(line: str, problem: s
     result = load(Path("model.yaml"), lambda path, limit: text.encode()[:limit])
     assert any(item.code.startswith(problem) for item in result.diagnostics), result.diagnostics
     mine = text.replace(f"  x: {{bus: can0, {line}}}\n", "")
-    mine = mine.replace("id: 0x110, to: d.i", "id: 0x110, bytes: 3, to: d.i")
+    mine = mine.replace("id: 0x110, to: d.i", "id: 0x110, bytes: 0, to: d.i")
     result = load(Path("model.yaml"), lambda path, limit: mine.encode()[:limit])
-    assert [item.code for item in result.diagnostics] == ["RV-0608"]
+    assert [item.code for item in result.diagnostics] == ["RV-0616"]
 
 
 def test_less_urgent_frames_go_between_those_of_a_queue_in_memory(tmp_path: Path) -> None:

@@ -12,38 +12,24 @@ is
    with
      Post =>
        Bits_Of_Order_Kind'Result <= 3
-       and then Ravenchart.Number (Bits_Of_Order_Kind'Result)
-         = Cartesian_Robot.Order_Kind'Pos (Item);
-
-   function Order_Kind_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Order_Kind is
-     (Cartesian_Robot.Order_Kind'Val (Raw))
-   with
-     Pre => Raw <= 3,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Cartesian_Robot.Order_Kind'Pos (Order_Kind_Of_Bits'Result);
+       and then Order_Kind_Of_Bits (Bits_Of_Order_Kind'Result) = Item;
 
    function Bits_Of_Position
      (Item : Cartesian_Robot.Position)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32 (Ravenchart.Number (Item) - (-20_000)))
+     return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Position'Result <= 520_000
-       and then Ravenchart.Number (Bits_Of_Position'Result)
-         = (Ravenchart.Number (Item) - (-20_000));
-
-   function Position_Of_Bits
-     (Raw : Interfaces.Unsigned_32)
-     return Cartesian_Robot.Position is
-     (Cartesian_Robot.Position (Ravenchart.Number (Raw) + (-20_000)))
-   with
-     Pre => Raw <= 520_000,
-     Post =>
-       Ravenchart.Number (Raw)
-       = (Ravenchart.Number (Position_Of_Bits'Result) - (-20_000));
+       and then Position_Of_Bits (Bits_Of_Position'Result) = Item
+   is
+      Whole : constant Ravenchart.Number range 0 .. 524_287 :=
+        Ravenchart.Number (Item) + 20_000;
+      Raw : constant Interfaces.Unsigned_32 :=
+        Interfaces.Unsigned_32 (Whole);
+   begin
+      pragma Assert (Ravenchart.Number (Raw) = Whole);
+      return Raw;
+   end Bits_Of_Position;
 
    function Bits_Of_Robot_Condition
      (Item : Cartesian_Robot.Robot_Condition)
@@ -52,19 +38,8 @@ is
    with
      Post =>
        Bits_Of_Robot_Condition'Result <= 5
-       and then Ravenchart.Number (Bits_Of_Robot_Condition'Result)
-         = Cartesian_Robot.Robot_Condition'Pos (Item);
-
-   function Robot_Condition_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Robot_Condition is
-     (Cartesian_Robot.Robot_Condition'Val (Raw))
-   with
-     Pre => Raw <= 5,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Cartesian_Robot.Robot_Condition'Pos
-           (Robot_Condition_Of_Bits'Result);
+       and then Robot_Condition_Of_Bits (Bits_Of_Robot_Condition'Result)
+         = Item;
 
    function Bits_Of_Drive_Mode
      (Item : Cartesian_Robot.Drive_Mode)
@@ -73,58 +48,41 @@ is
    with
      Post =>
        Bits_Of_Drive_Mode'Result <= 1
-       and then Ravenchart.Number (Bits_Of_Drive_Mode'Result)
-         = Cartesian_Robot.Drive_Mode'Pos (Item);
-
-   function Drive_Mode_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Drive_Mode is
-     (Cartesian_Robot.Drive_Mode'Val (Raw))
-   with
-     Pre => Raw <= 1,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Cartesian_Robot.Drive_Mode'Pos (Drive_Mode_Of_Bits'Result);
+       and then Drive_Mode_Of_Bits (Bits_Of_Drive_Mode'Result) = Item;
 
    function Bits_Of_Speed
      (Item : Cartesian_Robot.Speed)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32 (Ravenchart.Number (Item) - (-400_000)))
+     return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Speed'Result <= 800_000
-       and then Ravenchart.Number (Bits_Of_Speed'Result)
-         = (Ravenchart.Number (Item) - (-400_000));
-
-   function Speed_Of_Bits
-     (Raw : Interfaces.Unsigned_32)
-     return Cartesian_Robot.Speed is
-     (Cartesian_Robot.Speed (Ravenchart.Number (Raw) + (-400_000)))
-   with
-     Pre => Raw <= 800_000,
-     Post =>
-       Ravenchart.Number (Raw)
-       = (Ravenchart.Number (Speed_Of_Bits'Result) - (-400_000));
+       and then Speed_Of_Bits (Bits_Of_Speed'Result) = Item
+   is
+      Whole : constant Ravenchart.Number range 0 .. 1_048_575 :=
+        Ravenchart.Number (Item) + 400_000;
+      Raw : constant Interfaces.Unsigned_32 :=
+        Interfaces.Unsigned_32 (Whole);
+   begin
+      pragma Assert (Ravenchart.Number (Raw) = Whole);
+      return Raw;
+   end Bits_Of_Speed;
 
    function Bits_Of_Encoder_Count
      (Item : Cartesian_Robot.Encoder_Count)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32 (Ravenchart.Number (Item) - (-1_000_000)))
+     return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Encoder_Count'Result <= 2_000_000
-       and then Ravenchart.Number (Bits_Of_Encoder_Count'Result)
-         = (Ravenchart.Number (Item) - (-1_000_000));
-
-   function Encoder_Count_Of_Bits
-     (Raw : Interfaces.Unsigned_32)
-     return Cartesian_Robot.Encoder_Count is
-     (Cartesian_Robot.Encoder_Count (Ravenchart.Number (Raw) + (-1_000_000)))
-   with
-     Pre => Raw <= 2_000_000,
-     Post =>
-       Ravenchart.Number (Raw)
-       = (Ravenchart.Number (Encoder_Count_Of_Bits'Result) - (-1_000_000));
+       and then Encoder_Count_Of_Bits (Bits_Of_Encoder_Count'Result) = Item
+   is
+      Whole : constant Ravenchart.Number range 0 .. 2_097_151 :=
+        Ravenchart.Number (Item) + 1_000_000;
+      Raw : constant Interfaces.Unsigned_32 :=
+        Interfaces.Unsigned_32 (Whole);
+   begin
+      pragma Assert (Ravenchart.Number (Raw) = Whole);
+      return Raw;
+   end Bits_Of_Encoder_Count;
 
    function Bits_Of_Switch
      (Item : Cartesian_Robot.Switch)
@@ -133,18 +91,7 @@ is
    with
      Post =>
        Bits_Of_Switch'Result <= 2
-       and then Ravenchart.Number (Bits_Of_Switch'Result)
-         = Cartesian_Robot.Switch'Pos (Item);
-
-   function Switch_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Switch is
-     (Cartesian_Robot.Switch'Val (Raw))
-   with
-     Pre => Raw <= 2,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Cartesian_Robot.Switch'Pos (Switch_Of_Bits'Result);
+       and then Switch_Of_Bits (Bits_Of_Switch'Result) = Item;
 
    function Bits_Of_Drive_Condition
      (Item : Cartesian_Robot.Drive_Condition)
@@ -153,19 +100,8 @@ is
    with
      Post =>
        Bits_Of_Drive_Condition'Result <= 1
-       and then Ravenchart.Number (Bits_Of_Drive_Condition'Result)
-         = Cartesian_Robot.Drive_Condition'Pos (Item);
-
-   function Drive_Condition_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Cartesian_Robot.Drive_Condition is
-     (Cartesian_Robot.Drive_Condition'Val (Raw))
-   with
-     Pre => Raw <= 1,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Cartesian_Robot.Drive_Condition'Pos
-           (Drive_Condition_Of_Bits'Result);
+       and then Drive_Condition_Of_Bits (Bits_Of_Drive_Condition'Result)
+         = Item;
 
    function Word_Of_Robot_Order
      (Kind_Raw : Interfaces.Unsigned_8;

@@ -12,6 +12,54 @@ is
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
+   function Order_Kind_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Order_Kind is
+     (Cartesian_Robot.Order_Kind'Val (Raw))
+   with Pre => Raw <= 3;
+
+   function Position_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Cartesian_Robot.Position is
+     (Cartesian_Robot.Position (Ravenchart.Number (Raw) - 20_000))
+   with Pre => Raw <= 520_000;
+
+   function Robot_Condition_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Robot_Condition is
+     (Cartesian_Robot.Robot_Condition'Val (Raw))
+   with Pre => Raw <= 5;
+
+   function Drive_Mode_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Drive_Mode is
+     (Cartesian_Robot.Drive_Mode'Val (Raw))
+   with Pre => Raw <= 1;
+
+   function Speed_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Cartesian_Robot.Speed is
+     (Cartesian_Robot.Speed (Ravenchart.Number (Raw) - 400_000))
+   with Pre => Raw <= 800_000;
+
+   function Encoder_Count_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Cartesian_Robot.Encoder_Count is
+     (Cartesian_Robot.Encoder_Count (Ravenchart.Number (Raw) - 1_000_000))
+   with Pre => Raw <= 2_000_000;
+
+   function Switch_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Switch is
+     (Cartesian_Robot.Switch'Val (Raw))
+   with Pre => Raw <= 2;
+
+   function Drive_Condition_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Cartesian_Robot.Drive_Condition is
+     (Cartesian_Robot.Drive_Condition'Val (Raw))
+   with Pre => Raw <= 1;
+
    function Robot_Order_Kind_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_8 is
@@ -45,21 +93,21 @@ is
    with
      Post =>
        Robot_Order_Kind_Raw (Pack_Robot_Order'Result) <= 3
-       and then Ravenchart.Number
+       and then Order_Kind_Of_Bits
            (Robot_Order_Kind_Raw (Pack_Robot_Order'Result))
-         = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
+         = Item.Kind
        and then Robot_Order_X_Raw (Pack_Robot_Order'Result) <= 520_000
-       and then Ravenchart.Number
+       and then Position_Of_Bits
            (Robot_Order_X_Raw (Pack_Robot_Order'Result))
-         = (Ravenchart.Number (Item.X) - (-20_000))
+         = Item.X
        and then Robot_Order_Y_Raw (Pack_Robot_Order'Result) <= 520_000
-       and then Ravenchart.Number
+       and then Position_Of_Bits
            (Robot_Order_Y_Raw (Pack_Robot_Order'Result))
-         = (Ravenchart.Number (Item.Y) - (-20_000))
+         = Item.Y
        and then Robot_Order_Z_Raw (Pack_Robot_Order'Result) <= 520_000
-       and then Ravenchart.Number
+       and then Position_Of_Bits
            (Robot_Order_Z_Raw (Pack_Robot_Order'Result))
-         = (Ravenchart.Number (Item.Z) - (-20_000));
+         = Item.Z;
 
    procedure Unpack_Robot_Order
      (Word  : Interfaces.Unsigned_64;
@@ -73,20 +121,16 @@ is
           and then Robot_Order_Y_Raw (Word) <= 520_000
           and then Robot_Order_Z_Raw (Word) <= 520_000)
        and then (if Valid
-             then Robot_Order_Kind_Raw (Word) <= 3
-                and then Ravenchart.Number (Robot_Order_Kind_Raw (Word))
-                  = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
-                and then Robot_Order_X_Raw (Word) <= 520_000
-                and then Ravenchart.Number (Robot_Order_X_Raw (Word))
-                  = (Ravenchart.Number (Item.X) - (-20_000))
-                and then Robot_Order_Y_Raw (Word) <= 520_000
-                and then Ravenchart.Number (Robot_Order_Y_Raw (Word))
-                  = (Ravenchart.Number (Item.Y) - (-20_000))
-                and then Robot_Order_Z_Raw (Word) <= 520_000
-                and then Ravenchart.Number (Robot_Order_Z_Raw (Word))
-                  = (Ravenchart.Number (Item.Z) - (-20_000)));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item.Kind
+                = Order_Kind_Of_Bits (Robot_Order_Kind_Raw (Word))
+                and then Item.X
+                  = Position_Of_Bits (Robot_Order_X_Raw (Word))
+                and then Item.Y
+                  = Position_Of_Bits (Robot_Order_Y_Raw (Word))
+                and then Item.Z
+                  = Position_Of_Bits (Robot_Order_Z_Raw (Word))
+          else Item = Cartesian_Robot.Default_Robot_Order);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Robot_Order_Survives (Item : Cartesian_Robot.Robot_Order)
    with Ghost;
@@ -118,17 +162,17 @@ is
    with
      Post =>
        Robot_Report_Condition_Raw (Pack_Robot_Report'Result) <= 5
-       and then Ravenchart.Number
+       and then Robot_Condition_Of_Bits
            (Robot_Report_Condition_Raw (Pack_Robot_Report'Result))
-         = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
+         = Item.Condition
        and then Robot_Report_X_Raw (Pack_Robot_Report'Result) <= 520_000
-       and then Ravenchart.Number
+       and then Position_Of_Bits
            (Robot_Report_X_Raw (Pack_Robot_Report'Result))
-         = (Ravenchart.Number (Item.X) - (-20_000))
+         = Item.X
        and then Robot_Report_Y_Raw (Pack_Robot_Report'Result) <= 520_000
-       and then Ravenchart.Number
+       and then Position_Of_Bits
            (Robot_Report_Y_Raw (Pack_Robot_Report'Result))
-         = (Ravenchart.Number (Item.Y) - (-20_000));
+         = Item.Y;
 
    procedure Unpack_Robot_Report
      (Word  : Interfaces.Unsigned_64;
@@ -141,18 +185,15 @@ is
           and then Robot_Report_X_Raw (Word) <= 520_000
           and then Robot_Report_Y_Raw (Word) <= 520_000)
        and then (if Valid
-             then Robot_Report_Condition_Raw (Word) <= 5
-                and then Ravenchart.Number
+             then Item.Condition
+                = Robot_Condition_Of_Bits
                     (Robot_Report_Condition_Raw (Word))
-                  = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
-                and then Robot_Report_X_Raw (Word) <= 520_000
-                and then Ravenchart.Number (Robot_Report_X_Raw (Word))
-                  = (Ravenchart.Number (Item.X) - (-20_000))
-                and then Robot_Report_Y_Raw (Word) <= 520_000
-                and then Ravenchart.Number (Robot_Report_Y_Raw (Word))
-                  = (Ravenchart.Number (Item.Y) - (-20_000)));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+                and then Item.X
+                  = Position_Of_Bits (Robot_Report_X_Raw (Word))
+                and then Item.Y
+                  = Position_Of_Bits (Robot_Report_Y_Raw (Word))
+          else Item = Cartesian_Robot.Default_Robot_Report);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Robot_Report_Survives
      (Item : Cartesian_Robot.Robot_Report)
@@ -178,14 +219,14 @@ is
    with
      Post =>
        Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result) <= 1
-       and then Ravenchart.Number
+       and then Drive_Mode_Of_Bits
            (Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result))
-         = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
+         = Item.Mode
        and then Drive_Set_Point_Speed_Raw (Pack_Drive_Set_Point'Result)
          <= 800_000
-       and then Ravenchart.Number
+       and then Speed_Of_Bits
            (Drive_Set_Point_Speed_Raw (Pack_Drive_Set_Point'Result))
-         = (Ravenchart.Number (Item.Speed) - (-400_000));
+         = Item.Speed;
 
    procedure Unpack_Drive_Set_Point
      (Word  : Interfaces.Unsigned_64;
@@ -197,15 +238,12 @@ is
        = (Drive_Set_Point_Mode_Raw (Word) <= 1
           and then Drive_Set_Point_Speed_Raw (Word) <= 800_000)
        and then (if Valid
-             then Drive_Set_Point_Mode_Raw (Word) <= 1
-                and then Ravenchart.Number (Drive_Set_Point_Mode_Raw (Word))
-                  = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
-                and then Drive_Set_Point_Speed_Raw (Word) <= 800_000
-                and then Ravenchart.Number
-                    (Drive_Set_Point_Speed_Raw (Word))
-                  = (Ravenchart.Number (Item.Speed) - (-400_000)));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item.Mode
+                = Drive_Mode_Of_Bits (Drive_Set_Point_Mode_Raw (Word))
+                and then Item.Speed
+                  = Speed_Of_Bits (Drive_Set_Point_Speed_Raw (Word))
+          else Item = Cartesian_Robot.Default_Drive_Set_Point);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Drive_Set_Point_Survives
      (Item : Cartesian_Robot.Drive_Set_Point)
@@ -243,23 +281,23 @@ is
    with
      Post =>
        Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result) <= 2_000_000
-       and then Ravenchart.Number
+       and then Encoder_Count_Of_Bits
            (Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result))
-         = (Ravenchart.Number (Item.Count) - (-1_000_000))
+         = Item.Count
        and then Drive_Feedback_Speed_Raw (Pack_Drive_Feedback'Result)
          <= 800_000
-       and then Ravenchart.Number
+       and then Speed_Of_Bits
            (Drive_Feedback_Speed_Raw (Pack_Drive_Feedback'Result))
-         = (Ravenchart.Number (Item.Speed) - (-400_000))
+         = Item.Speed
        and then Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result) <= 2
-       and then Ravenchart.Number
+       and then Switch_Of_Bits
            (Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result))
-         = Cartesian_Robot.Switch'Pos (Item.Limit)
+         = Item.Limit
        and then Drive_Feedback_Condition_Raw (Pack_Drive_Feedback'Result)
          <= 1
-       and then Ravenchart.Number
+       and then Drive_Condition_Of_Bits
            (Drive_Feedback_Condition_Raw (Pack_Drive_Feedback'Result))
-         = Cartesian_Robot.Drive_Condition'Pos (Item.Condition);
+         = Item.Condition;
 
    procedure Unpack_Drive_Feedback
      (Word  : Interfaces.Unsigned_64;
@@ -273,21 +311,17 @@ is
           and then Drive_Feedback_Limit_Raw (Word) <= 2
           and then Drive_Feedback_Condition_Raw (Word) <= 1)
        and then (if Valid
-             then Drive_Feedback_Count_Raw (Word) <= 2_000_000
-                and then Ravenchart.Number (Drive_Feedback_Count_Raw (Word))
-                  = (Ravenchart.Number (Item.Count) - (-1_000_000))
-                and then Drive_Feedback_Speed_Raw (Word) <= 800_000
-                and then Ravenchart.Number (Drive_Feedback_Speed_Raw (Word))
-                  = (Ravenchart.Number (Item.Speed) - (-400_000))
-                and then Drive_Feedback_Limit_Raw (Word) <= 2
-                and then Ravenchart.Number (Drive_Feedback_Limit_Raw (Word))
-                  = Cartesian_Robot.Switch'Pos (Item.Limit)
-                and then Drive_Feedback_Condition_Raw (Word) <= 1
-                and then Ravenchart.Number
-                    (Drive_Feedback_Condition_Raw (Word))
-                  = Cartesian_Robot.Drive_Condition'Pos (Item.Condition));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item.Count
+                = Encoder_Count_Of_Bits (Drive_Feedback_Count_Raw (Word))
+                and then Item.Speed
+                  = Speed_Of_Bits (Drive_Feedback_Speed_Raw (Word))
+                and then Item.Limit
+                  = Switch_Of_Bits (Drive_Feedback_Limit_Raw (Word))
+                and then Item.Condition
+                  = Drive_Condition_Of_Bits
+                      (Drive_Feedback_Condition_Raw (Word))
+          else Item = Cartesian_Robot.Default_Drive_Feedback);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Drive_Feedback_Survives
      (Item : Cartesian_Robot.Drive_Feedback)

@@ -135,21 +135,25 @@ is
             Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Strayed);
+            pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when Limit_Hit =>
             Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
+            pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when End_Reached =>
             Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Limit_Hit);
+            pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when Drive_Failed =>
             Active := Chart.Moved (Active, Chart.Watching, Chart.Nowhere);
             pragma Assert (Active = Chart.Nowhere);
             Event_Lists.Append (Box.Raised, Joint.Drive_Failed);
+            pragma Assert (Active = Chart.Nowhere);
             Enter_Alarmed;
          when Calm =>
             Exit_Alarmed;

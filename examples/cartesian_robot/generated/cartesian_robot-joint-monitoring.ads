@@ -18,13 +18,13 @@ is
    --  [Joint.Monitoring.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (None,
-      Initial_Entry,
+     (Initial_Entry,
       Strayed,
       Limit_Hit,
       End_Reached,
       Drive_Failed,
-      Calm);
+      Calm,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Calm;
    subtype Transition is Selection range Strayed .. Calm;
@@ -143,13 +143,11 @@ is
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now, Ins))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now, Ins)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+     ((Chosen = None
+       or else (Chosen in Transition
+          and then Enabled (Chosen, Leaf, Now, Ins)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

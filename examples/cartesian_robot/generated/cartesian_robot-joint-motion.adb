@@ -234,67 +234,6 @@ is
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Homing, Chart.Operational);
       end Exit_Homing;
-      procedure Leave_Fault
-      with
-        Pre =>
-          Self.Leaf in Motion_States.Fault
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Fault
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         case Motion_States.Fault'(Self.Leaf) is
-            when Motion_States.Limit =>
-               Active := Chart.Moved (Active, Chart.Limit, Chart.Fault);
-            when Motion_States.Drive =>
-               Active := Chart.Moved (Active, Chart.Drive, Chart.Fault);
-         end case;
-      end Leave_Fault;
-      procedure Leave_Moving
-      with
-        Pre =>
-          Self.Leaf in Motion_States.Moving
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Moving
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         case Motion_States.Moving'(Self.Leaf) is
-            when Motion_States.Accelerating =>
-               Active :=
-                 Chart.Moved (Active, Chart.Accelerating, Chart.Moving);
-            when Motion_States.Cruising =>
-               Active := Chart.Moved (Active, Chart.Cruising, Chart.Moving);
-            when Motion_States.Braking =>
-               Active := Chart.Moved (Active, Chart.Braking, Chart.Moving);
-         end case;
-      end Leave_Moving;
-      procedure Leave_Homing
-      with
-        Pre =>
-          Self.Leaf in Motion_States.Homing
-          and then Active = Chart.Innermost (Self.Leaf),
-        Post =>
-          Self.Leaf = Self.Leaf'Old
-          and then Active = Chart.Homing
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         case Motion_States.Homing'(Self.Leaf) is
-            when Motion_States.Seeking =>
-               Active := Chart.Moved (Active, Chart.Seeking, Chart.Homing);
-            when Motion_States.Backing_Off =>
-               Active :=
-                 Chart.Moved (Active, Chart.Backing_Off, Chart.Homing);
-         end case;
-      end Leave_Homing;
       procedure Leave_Operational
       with
         Pre =>
@@ -315,10 +254,22 @@ is
                Active :=
                  Chart.Moved (Active, Chart.Idle, Chart.Operational);
             when Motion_States.Homing =>
-               Leave_Homing;
+               Active :=
+                 (if Self.Leaf in Motion_States.Homing
+                     then Chart.Moved
+                          (Active,
+                           Chart.Innermost (Self.Leaf),
+                           Chart.Homing)
+                  else Chart.Disorder);
                Exit_Homing;
             when Motion_States.Moving =>
-               Leave_Moving;
+               Active :=
+                 (if Self.Leaf in Motion_States.Moving
+                     then Chart.Moved
+                          (Active,
+                           Chart.Innermost (Self.Leaf),
+                           Chart.Moving)
+                  else Chart.Disorder);
                Active :=
                  Chart.Moved (Active, Chart.Moving, Chart.Operational);
          end case;
@@ -425,6 +376,7 @@ is
             Exit_Homing;
             pragma Assert (Active = Chart.Operational);
             Self.Data.Homed := True;
+            pragma Assert (Active = Chart.Operational);
             Enter_Idle;
          when At_Speed =>
             Active :=
@@ -442,7 +394,13 @@ is
             Enter_Homing;
             Enter_Seeking;
          when No_End =>
-            Leave_Homing;
+            Active :=
+              (if Self.Leaf in Motion_States.Homing
+                  then Chart.Moved
+                       (Active,
+                        Chart.Innermost (Self.Leaf),
+                        Chart.Homing)
+               else Chart.Disorder);
             Exit_Homing;
             Active :=
               Chart.Moved (Active, Chart.Operational, Chart.Nowhere);
@@ -456,7 +414,13 @@ is
               Chart.Moved (Active, Chart.Moving, Chart.Accelerating);
             Self.Leaf := Motion_States.Accelerating;
          when Arrived =>
-            Leave_Moving;
+            Active :=
+              (if Self.Leaf in Motion_States.Moving
+                  then Chart.Moved
+                       (Active,
+                        Chart.Innermost (Self.Leaf),
+                        Chart.Moving)
+               else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Moving, Chart.Operational);
             Enter_Idle;
          when Halt =>
@@ -493,7 +457,13 @@ is
             Active := Chart.Moved (Active, Chart.Fault, Chart.Limit);
             Self.Leaf := Motion_States.Limit;
          when Reset =>
-            Leave_Fault;
+            Active :=
+              (if Self.Leaf in Motion_States.Fault
+                  then Chart.Moved
+                       (Active,
+                        Chart.Innermost (Self.Leaf),
+                        Chart.Fault)
+               else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Fault, Chart.Operational);
             Enter_Idle;
       end case;

@@ -26,8 +26,7 @@ is
    --  [Joint.Motion.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (None,
-      Initial_Entry,
+     (Initial_Entry,
       End_Found,
       End_Left,
       At_Speed,
@@ -42,7 +41,8 @@ is
       Failed,
       Strayed,
       Limit,
-      Reset);
+      Reset,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Reset;
    subtype Transition is Selection range End_Found .. Reset;
@@ -238,14 +238,11 @@ is
       Data   : Variables;
       Ins    : Inputs)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition =>
-                not Enabled (T, Leaf, Now, Data, Ins))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now, Data, Ins)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now, Data, Ins))))
+     ((Chosen = None
+       or else (Chosen in Transition
+          and then Enabled (Chosen, Leaf, Now, Data, Ins)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now, Data, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

@@ -410,6 +410,7 @@ is
               Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
                Target => 0);
             Box.Order_Z_Sent := True;
+            pragma Assert (Active = Chart.Nowhere);
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
          when Joint_Failed =>

@@ -23,8 +23,7 @@ is
    --  [Robot_Coordinator.Mission.transitions] in order of precedence,
    --  innermost source first
    type Selection is
-     (None,
-      Initial_Entry,
+     (Initial_Entry,
       Under_Way,
       Arrived,
       Home,
@@ -37,7 +36,8 @@ is
       Recover,
       Joint_Failed,
       Joint_Lost,
-      Shut_Down);
+      Shut_Down,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Shut_Down;
    subtype Transition is Selection range Under_Way .. Shut_Down;
@@ -225,13 +225,11 @@ is
       Now    : Occurrence;
       Ins    : Inputs)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now, Ins))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now, Ins)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
+     ((Chosen = None
+       or else (Chosen in Transition
+          and then Enabled (Chosen, Leaf, Now, Ins)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now, Ins))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

@@ -17,18 +17,7 @@ is
    with
      Post =>
        Bits_Of_Order'Result <= 1
-       and then Ravenchart.Number (Bits_Of_Order'Result)
-         = Crossing_System.Order'Pos (Item);
-
-   function Order_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Order is
-     (Crossing_System.Order'Val (Raw))
-   with
-     Pre => Raw <= 1,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Crossing_System.Order'Pos (Order_Of_Bits'Result);
+       and then Order_Of_Bits (Bits_Of_Order'Result) = Item;
 
    function Bits_Of_Press
      (Item : Crossing_System.Press)
@@ -37,18 +26,7 @@ is
    with
      Post =>
        Bits_Of_Press'Result <= 0
-       and then Ravenchart.Number (Bits_Of_Press'Result)
-         = Crossing_System.Press'Pos (Item);
-
-   function Press_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Press is
-     (Crossing_System.Press'Val (Raw))
-   with
-     Pre => Raw <= 0,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Crossing_System.Press'Pos (Press_Of_Bits'Result);
+       and then Press_Of_Bits (Bits_Of_Press'Result) = Item;
 
    function Bits_Of_Car_Light
      (Item : Crossing_System.Car_Light)
@@ -57,18 +35,7 @@ is
    with
      Post =>
        Bits_Of_Car_Light'Result <= 4
-       and then Ravenchart.Number (Bits_Of_Car_Light'Result)
-         = Crossing_System.Car_Light'Pos (Item);
-
-   function Car_Light_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Car_Light is
-     (Crossing_System.Car_Light'Val (Raw))
-   with
-     Pre => Raw <= 4,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Crossing_System.Car_Light'Pos (Car_Light_Of_Bits'Result);
+       and then Car_Light_Of_Bits (Bits_Of_Car_Light'Result) = Item;
 
    function Bits_Of_Walk_Light
      (Item : Crossing_System.Walk_Light)
@@ -77,32 +44,14 @@ is
    with
      Post =>
        Bits_Of_Walk_Light'Result <= 2
-       and then Ravenchart.Number (Bits_Of_Walk_Light'Result)
-         = Crossing_System.Walk_Light'Pos (Item);
-
-   function Walk_Light_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Crossing_System.Walk_Light is
-     (Crossing_System.Walk_Light'Val (Raw))
-   with
-     Pre => Raw <= 2,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Crossing_System.Walk_Light'Pos (Walk_Light_Of_Bits'Result);
+       and then Walk_Light_Of_Bits (Bits_Of_Walk_Light'Result) = Item;
 
    function Bits_Of_Boolean (Item : Boolean) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
        Bits_Of_Boolean'Result <= 1
-       and then Ravenchart.Number (Bits_Of_Boolean'Result)
-         = Boolean'Pos (Item);
-
-   function Boolean_Of_Bits (Raw : Interfaces.Unsigned_8) return Boolean is
-     (Boolean'Val (Raw))
-   with
-     Pre => Raw <= 1,
-     Post => Ravenchart.Number (Raw) = Boolean'Pos (Boolean_Of_Bits'Result);
+       and then Boolean_Of_Bits (Bits_Of_Boolean'Result) = Item;
 
    function Word_Of_Order
      (Value_Raw : Interfaces.Unsigned_8)

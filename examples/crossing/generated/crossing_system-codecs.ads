@@ -2,7 +2,6 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Ravenchart;
 with Interfaces;
 
 package Crossing_System.Codecs
@@ -15,7 +14,34 @@ is
 
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
-   use type Ravenchart.Number;
+
+   function Order_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Crossing_System.Order is
+     (Crossing_System.Order'Val (Raw))
+   with Pre => Raw <= 1;
+
+   function Press_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Crossing_System.Press is
+     (Crossing_System.Press'Val (Raw))
+   with Pre => Raw <= 0;
+
+   function Car_Light_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Crossing_System.Car_Light is
+     (Crossing_System.Car_Light'Val (Raw))
+   with Pre => Raw <= 4;
+
+   function Walk_Light_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Crossing_System.Walk_Light is
+     (Crossing_System.Walk_Light'Val (Raw))
+   with Pre => Raw <= 2;
+
+   function Boolean_Of_Bits (Raw : Interfaces.Unsigned_8) return Boolean is
+     (Boolean'Val (Raw))
+   with Pre => Raw <= 1;
 
    function Order_Value_Raw
      (Word : Interfaces.Unsigned_64)
@@ -29,8 +55,7 @@ is
    with
      Post =>
        Order_Value_Raw (Pack_Order'Result) <= 1
-       and then Ravenchart.Number (Order_Value_Raw (Pack_Order'Result))
-         = Crossing_System.Order'Pos (Item);
+       and then Order_Of_Bits (Order_Value_Raw (Pack_Order'Result)) = Item;
 
    procedure Unpack_Order
      (Word  : Interfaces.Unsigned_64;
@@ -40,11 +65,9 @@ is
      Post =>
        Valid = (Order_Value_Raw (Word) <= 1)
        and then (if Valid
-             then Order_Value_Raw (Word) <= 1
-                and then Ravenchart.Number (Order_Value_Raw (Word))
-                  = Crossing_System.Order'Pos (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Order_Of_Bits (Order_Value_Raw (Word))
+          else Item = Crossing_System.Blink);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Order_Survives (Item : Crossing_System.Order)
    with Ghost;
@@ -62,8 +85,7 @@ is
    with
      Post =>
        Press_Value_Raw (Pack_Press'Result) <= 0
-       and then Ravenchart.Number (Press_Value_Raw (Pack_Press'Result))
-         = Crossing_System.Press'Pos (Item);
+       and then Press_Of_Bits (Press_Value_Raw (Pack_Press'Result)) = Item;
 
    procedure Unpack_Press
      (Word  : Interfaces.Unsigned_64;
@@ -73,11 +95,9 @@ is
      Post =>
        Valid = (Press_Value_Raw (Word) <= 0)
        and then (if Valid
-             then Press_Value_Raw (Word) <= 0
-                and then Ravenchart.Number (Press_Value_Raw (Word))
-                  = Crossing_System.Press'Pos (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Press_Of_Bits (Press_Value_Raw (Word))
+          else Item = Crossing_System.Pressed);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Press_Survives (Item : Crossing_System.Press)
    with Ghost;
@@ -95,9 +115,9 @@ is
    with
      Post =>
        Car_Light_Value_Raw (Pack_Car_Light'Result) <= 4
-       and then Ravenchart.Number
+       and then Car_Light_Of_Bits
            (Car_Light_Value_Raw (Pack_Car_Light'Result))
-         = Crossing_System.Car_Light'Pos (Item);
+         = Item;
 
    procedure Unpack_Car_Light
      (Word  : Interfaces.Unsigned_64;
@@ -107,11 +127,9 @@ is
      Post =>
        Valid = (Car_Light_Value_Raw (Word) <= 4)
        and then (if Valid
-             then Car_Light_Value_Raw (Word) <= 4
-                and then Ravenchart.Number (Car_Light_Value_Raw (Word))
-                  = Crossing_System.Car_Light'Pos (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Car_Light_Of_Bits (Car_Light_Value_Raw (Word))
+          else Item = Crossing_System.Dark);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Car_Light_Survives (Item : Crossing_System.Car_Light)
    with Ghost;
@@ -129,9 +147,9 @@ is
    with
      Post =>
        Walk_Light_Value_Raw (Pack_Walk_Light'Result) <= 2
-       and then Ravenchart.Number
+       and then Walk_Light_Of_Bits
            (Walk_Light_Value_Raw (Pack_Walk_Light'Result))
-         = Crossing_System.Walk_Light'Pos (Item);
+         = Item;
 
    procedure Unpack_Walk_Light
      (Word  : Interfaces.Unsigned_64;
@@ -141,11 +159,9 @@ is
      Post =>
        Valid = (Walk_Light_Value_Raw (Word) <= 2)
        and then (if Valid
-             then Walk_Light_Value_Raw (Word) <= 2
-                and then Ravenchart.Number (Walk_Light_Value_Raw (Word))
-                  = Crossing_System.Walk_Light'Pos (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Walk_Light_Of_Bits (Walk_Light_Value_Raw (Word))
+          else Item = Crossing_System.Dark);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Walk_Light_Survives (Item : Crossing_System.Walk_Light)
    with Ghost;
@@ -161,8 +177,8 @@ is
    with
      Post =>
        Boolean_Value_Raw (Pack_Boolean'Result) <= 1
-       and then Ravenchart.Number (Boolean_Value_Raw (Pack_Boolean'Result))
-         = Boolean'Pos (Item);
+       and then Boolean_Of_Bits (Boolean_Value_Raw (Pack_Boolean'Result))
+         = Item;
 
    procedure Unpack_Boolean
      (Word  : Interfaces.Unsigned_64;
@@ -172,11 +188,9 @@ is
      Post =>
        Valid = (Boolean_Value_Raw (Word) <= 1)
        and then (if Valid
-             then Boolean_Value_Raw (Word) <= 1
-                and then Ravenchart.Number (Boolean_Value_Raw (Word))
-                  = Boolean'Pos (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Boolean_Of_Bits (Boolean_Value_Raw (Word))
+          else Item = False);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Boolean_Survives (Item : Boolean)
    with Ghost;

@@ -426,31 +426,6 @@ is
                     Chart.On_The_Road);
          end case;
       end Leave_On_The_Road;
-      procedure Leave_Dont_Walk
-      with
-        Pre =>
-          Self.Place.Top = Lights_States.Working
-          and then Self.Place.In_Walkers in Lights_States.Dont_Walk
-          and then Active_Walkers = Chart.Innermost_Walkers (Self.Place),
-        Post =>
-          Self.Place = Self.Place'Old
-          and then Active_Walkers = Chart.Dont_Walk
-          and then Self.Timers = Self.Timers'Old
-          and then Self.Started = Self.Started'Old
-      is
-      begin
-         case Lights_States.Dont_Walk'(Self.Place.In_Walkers) is
-            when Lights_States.Nobody =>
-               Active_Walkers :=
-                 Chart.Moved (Active_Walkers, Chart.Nobody, Chart.Dont_Walk);
-            when Lights_States.Waiting =>
-               Active_Walkers :=
-                 Chart.Moved
-                   (Active_Walkers,
-                    Chart.Waiting,
-                    Chart.Dont_Walk);
-         end case;
-      end Leave_Dont_Walk;
       procedure Leave_Green
       with
         Pre =>
@@ -580,7 +555,15 @@ is
       begin
          case Self.Place.In_Walkers is
             when Lights_States.Dont_Walk =>
-               Leave_Dont_Walk;
+               Active_Walkers :=
+                 (if Self.Place.Top = Lights_States.Working
+                     and then Self.Place.In_Walkers
+                       in Lights_States.Dont_Walk
+                     then Chart.Moved
+                          (Active_Walkers,
+                           Chart.Innermost_Walkers (Self.Place),
+                           Chart.Dont_Walk)
+                  else Chart.Disorder);
                Active_Walkers :=
                  Chart.Moved
                    (Active_Walkers,

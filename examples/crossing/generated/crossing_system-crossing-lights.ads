@@ -36,8 +36,7 @@ is
    --  [Crossing.Lights.transitions] in order of precedence, innermost
    --  source first
    type Selection is
-     (None,
-      Initial_Entry,
+     (Initial_Entry,
       Stopped,
       Get_Ready,
       Long_Enough,
@@ -50,7 +49,8 @@ is
       Gone,
       Into_Service,
       Out_Of_Service,
-      Blink);
+      Blink,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Blink;
    subtype Transition is Selection range Stopped .. Blink;
@@ -383,14 +383,11 @@ is
       Data   : Variables;
       Item   : Event)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Cars_Transition =>
-                not Enabled (T, Place, Now, Data, Item))
-      elsif Chosen not in Cars_Transition
-         then False
-      else Enabled (Chosen, Place, Now, Data, Item)
-         and then (for all T in Cars_Transition =>
-               (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
+     ((Chosen = None
+       or else (Chosen in Cars_Transition
+          and then Enabled (Chosen, Place, Now, Data, Item)))
+      and then (for all T in Cars_Transition =>
+            (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
    with Ghost;
 
    function Is_Walkers_Selection
@@ -400,14 +397,11 @@ is
       Data   : Variables;
       Item   : Event)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Walkers_Transition =>
-                not Enabled (T, Place, Now, Data, Item))
-      elsif Chosen not in Walkers_Transition
-         then False
-      else Enabled (Chosen, Place, Now, Data, Item)
-         and then (for all T in Walkers_Transition =>
-               (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
+     ((Chosen = None
+       or else (Chosen in Walkers_Transition
+          and then Enabled (Chosen, Place, Now, Data, Item)))
+      and then (for all T in Walkers_Transition =>
+            (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
    with Ghost;
 
    function Is_Top_Selection
@@ -417,14 +411,11 @@ is
       Data   : Variables;
       Item   : Event)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Top_Transition =>
-                not Enabled (T, Place, Now, Data, Item))
-      elsif Chosen not in Top_Transition
-         then False
-      else Enabled (Chosen, Place, Now, Data, Item)
-         and then (for all T in Top_Transition =>
-               (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
+     ((Chosen = None
+       or else (Chosen in Top_Transition
+          and then Enabled (Chosen, Place, Now, Data, Item)))
+      and then (for all T in Top_Transition =>
+            (if T < Chosen then not Enabled (T, Place, Now, Data, Item))))
    with Ghost;
    --  The first transition of the lane that is enabled, or None when none
    --  is.

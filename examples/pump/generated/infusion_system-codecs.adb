@@ -17,37 +17,24 @@ is
    with
      Post =>
        Bits_Of_Line'Result <= 2
-       and then Ravenchart.Number (Bits_Of_Line'Result)
-         = Infusion_System.Line'Pos (Item);
-
-   function Line_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Infusion_System.Line is
-     (Infusion_System.Line'Val (Raw))
-   with
-     Pre => Raw <= 2,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Infusion_System.Line'Pos (Line_Of_Bits'Result);
+       and then Line_Of_Bits (Bits_Of_Line'Result) = Item;
 
    function Bits_Of_Portion
      (Item : Infusion_System.Portion)
-     return Interfaces.Unsigned_16 is
-     (Interfaces.Unsigned_16 (Ravenchart.Number (Item)))
+     return Interfaces.Unsigned_16
    with
      Post =>
        Bits_Of_Portion'Result <= 500
-       and then Ravenchart.Number (Bits_Of_Portion'Result)
-         = Ravenchart.Number (Item);
-
-   function Portion_Of_Bits
-     (Raw : Interfaces.Unsigned_16)
-     return Infusion_System.Portion is
-     (Infusion_System.Portion (Ravenchart.Number (Raw)))
-   with
-     Pre => Raw <= 500,
-     Post =>
-       Ravenchart.Number (Raw) = Ravenchart.Number (Portion_Of_Bits'Result);
+       and then Portion_Of_Bits (Bits_Of_Portion'Result) = Item
+   is
+      Whole : constant Ravenchart.Number range 0 .. 511 :=
+        Ravenchart.Number (Item);
+      Raw : constant Interfaces.Unsigned_16 :=
+        Interfaces.Unsigned_16 (Whole);
+   begin
+      pragma Assert (Ravenchart.Number (Raw) = Whole);
+      return Raw;
+   end Bits_Of_Portion;
 
    function Bits_Of_Key
      (Item : Infusion_System.Key)
@@ -56,37 +43,24 @@ is
    with
      Post =>
        Bits_Of_Key'Result <= 5
-       and then Ravenchart.Number (Bits_Of_Key'Result)
-         = Infusion_System.Key'Pos (Item);
-
-   function Key_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Infusion_System.Key is
-     (Infusion_System.Key'Val (Raw))
-   with
-     Pre => Raw <= 5,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Infusion_System.Key'Pos (Key_Of_Bits'Result);
+       and then Key_Of_Bits (Bits_Of_Key'Result) = Item;
 
    function Bits_Of_Volume
      (Item : Infusion_System.Volume)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32 (Ravenchart.Number (Item)))
+     return Interfaces.Unsigned_32
    with
      Post =>
        Bits_Of_Volume'Result <= 1_000_000
-       and then Ravenchart.Number (Bits_Of_Volume'Result)
-         = Ravenchart.Number (Item);
-
-   function Volume_Of_Bits
-     (Raw : Interfaces.Unsigned_32)
-     return Infusion_System.Volume is
-     (Infusion_System.Volume (Ravenchart.Number (Raw)))
-   with
-     Pre => Raw <= 1_000_000,
-     Post =>
-       Ravenchart.Number (Raw) = Ravenchart.Number (Volume_Of_Bits'Result);
+       and then Volume_Of_Bits (Bits_Of_Volume'Result) = Item
+   is
+      Whole : constant Ravenchart.Number range 0 .. 1_048_575 :=
+        Ravenchart.Number (Item);
+      Raw : constant Interfaces.Unsigned_32 :=
+        Interfaces.Unsigned_32 (Whole);
+   begin
+      pragma Assert (Ravenchart.Number (Raw) = Whole);
+      return Raw;
+   end Bits_Of_Volume;
 
    function Bits_Of_Lamp
      (Item : Infusion_System.Lamp)
@@ -95,32 +69,14 @@ is
    with
      Post =>
        Bits_Of_Lamp'Result <= 2
-       and then Ravenchart.Number (Bits_Of_Lamp'Result)
-         = Infusion_System.Lamp'Pos (Item);
-
-   function Lamp_Of_Bits
-     (Raw : Interfaces.Unsigned_8)
-     return Infusion_System.Lamp is
-     (Infusion_System.Lamp'Val (Raw))
-   with
-     Pre => Raw <= 2,
-     Post =>
-       Ravenchart.Number (Raw)
-       = Infusion_System.Lamp'Pos (Lamp_Of_Bits'Result);
+       and then Lamp_Of_Bits (Bits_Of_Lamp'Result) = Item;
 
    function Bits_Of_Boolean (Item : Boolean) return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
        Bits_Of_Boolean'Result <= 1
-       and then Ravenchart.Number (Bits_Of_Boolean'Result)
-         = Boolean'Pos (Item);
-
-   function Boolean_Of_Bits (Raw : Interfaces.Unsigned_8) return Boolean is
-     (Boolean'Val (Raw))
-   with
-     Pre => Raw <= 1,
-     Post => Ravenchart.Number (Raw) = Boolean'Pos (Boolean_Of_Bits'Result);
+       and then Boolean_Of_Bits (Bits_Of_Boolean'Result) = Item;
 
    function Word_Of_Line
      (Value_Raw : Interfaces.Unsigned_8)

@@ -18,6 +18,40 @@ is
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
+   function Line_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Infusion_System.Line is
+     (Infusion_System.Line'Val (Raw))
+   with Pre => Raw <= 2;
+
+   function Portion_Of_Bits
+     (Raw : Interfaces.Unsigned_16)
+     return Infusion_System.Portion is
+     (Infusion_System.Portion (Ravenchart.Number (Raw)))
+   with Pre => Raw <= 500;
+
+   function Key_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Infusion_System.Key is
+     (Infusion_System.Key'Val (Raw))
+   with Pre => Raw <= 5;
+
+   function Volume_Of_Bits
+     (Raw : Interfaces.Unsigned_32)
+     return Infusion_System.Volume is
+     (Infusion_System.Volume (Ravenchart.Number (Raw)))
+   with Pre => Raw <= 1_000_000;
+
+   function Lamp_Of_Bits
+     (Raw : Interfaces.Unsigned_8)
+     return Infusion_System.Lamp is
+     (Infusion_System.Lamp'Val (Raw))
+   with Pre => Raw <= 2;
+
+   function Boolean_Of_Bits (Raw : Interfaces.Unsigned_8) return Boolean is
+     (Boolean'Val (Raw))
+   with Pre => Raw <= 1;
+
    function Line_Value_Raw
      (Word : Interfaces.Unsigned_64)
      return Interfaces.Unsigned_8 is
@@ -30,8 +64,7 @@ is
    with
      Post =>
        Line_Value_Raw (Pack_Line'Result) <= 2
-       and then Ravenchart.Number (Line_Value_Raw (Pack_Line'Result))
-         = Infusion_System.Line'Pos (Item);
+       and then Line_Of_Bits (Line_Value_Raw (Pack_Line'Result)) = Item;
 
    procedure Unpack_Line
      (Word  : Interfaces.Unsigned_64;
@@ -41,11 +74,9 @@ is
      Post =>
        Valid = (Line_Value_Raw (Word) <= 2)
        and then (if Valid
-             then Line_Value_Raw (Word) <= 2
-                and then Ravenchart.Number (Line_Value_Raw (Word))
-                  = Infusion_System.Line'Pos (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Line_Of_Bits (Line_Value_Raw (Word))
+          else Item = Infusion_System.Clear);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Line_Survives (Item : Infusion_System.Line)
    with Ghost;
@@ -63,8 +94,8 @@ is
    with
      Post =>
        Portion_Value_Raw (Pack_Portion'Result) <= 500
-       and then Ravenchart.Number (Portion_Value_Raw (Pack_Portion'Result))
-         = Ravenchart.Number (Item);
+       and then Portion_Of_Bits (Portion_Value_Raw (Pack_Portion'Result))
+         = Item;
 
    procedure Unpack_Portion
      (Word  : Interfaces.Unsigned_64;
@@ -74,11 +105,9 @@ is
      Post =>
        Valid = (Portion_Value_Raw (Word) <= 500)
        and then (if Valid
-             then Portion_Value_Raw (Word) <= 500
-                and then Ravenchart.Number (Portion_Value_Raw (Word))
-                  = Ravenchart.Number (Item));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item = Portion_Of_Bits (Portion_Value_Raw (Word))
+          else Item = 0);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Portion_Survives (Item : Infusion_System.Portion)
    with Ghost;
@@ -103,11 +132,10 @@ is
    with
      Post =>
        Press_Key_Raw (Pack_Press'Result) <= 5
-       and then Ravenchart.Number (Press_Key_Raw (Pack_Press'Result))
-         = Infusion_System.Key'Pos (Item.Key)
+       and then Key_Of_Bits (Press_Key_Raw (Pack_Press'Result)) = Item.Key
        and then Press_Amount_Raw (Pack_Press'Result) <= 1_000_000
-       and then Ravenchart.Number (Press_Amount_Raw (Pack_Press'Result))
-         = Ravenchart.Number (Item.Amount);
+       and then Volume_Of_Bits (Press_Amount_Raw (Pack_Press'Result))
+         = Item.Amount;
 
    procedure Unpack_Press
      (Word  : Interfaces.Unsigned_64;
@@ -119,14 +147,11 @@ is
        = (Press_Key_Raw (Word) <= 5
           and then Press_Amount_Raw (Word) <= 1_000_000)
        and then (if Valid
-             then Press_Key_Raw (Word) <= 5
-                and then Ravenchart.Number (Press_Key_Raw (Word))
-                  = Infusion_System.Key'Pos (Item.Key)
-                and then Press_Amount_Raw (Word) <= 1_000_000
-                and then Ravenchart.Number (Press_Amount_Raw (Word))
-                  = Ravenchart.Number (Item.Amount));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item.Key = Key_Of_Bits (Press_Key_Raw (Word))
+                and then Item.Amount
+                  = Volume_Of_Bits (Press_Amount_Raw (Word))
+          else Item = Infusion_System.Default_Press);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_Press_Survives (Item : Infusion_System.Press)
    with Ghost;
@@ -156,14 +181,13 @@ is
    with
      Post =>
        View_Given_Raw (Pack_View'Result) <= 1_000_000
-       and then Ravenchart.Number (View_Given_Raw (Pack_View'Result))
-         = Ravenchart.Number (Item.Given)
+       and then Volume_Of_Bits (View_Given_Raw (Pack_View'Result))
+         = Item.Given
        and then View_Lamp_Raw (Pack_View'Result) <= 2
-       and then Ravenchart.Number (View_Lamp_Raw (Pack_View'Result))
-         = Infusion_System.Lamp'Pos (Item.Lamp)
+       and then Lamp_Of_Bits (View_Lamp_Raw (Pack_View'Result)) = Item.Lamp
        and then View_Buzzer_Raw (Pack_View'Result) <= 1
-       and then Ravenchart.Number (View_Buzzer_Raw (Pack_View'Result))
-         = Boolean'Pos (Item.Buzzer);
+       and then Boolean_Of_Bits (View_Buzzer_Raw (Pack_View'Result))
+         = Item.Buzzer;
 
    procedure Unpack_View
      (Word  : Interfaces.Unsigned_64;
@@ -176,17 +200,12 @@ is
           and then View_Lamp_Raw (Word) <= 2
           and then View_Buzzer_Raw (Word) <= 1)
        and then (if Valid
-             then View_Given_Raw (Word) <= 1_000_000
-                and then Ravenchart.Number (View_Given_Raw (Word))
-                  = Ravenchart.Number (Item.Given)
-                and then View_Lamp_Raw (Word) <= 2
-                and then Ravenchart.Number (View_Lamp_Raw (Word))
-                  = Infusion_System.Lamp'Pos (Item.Lamp)
-                and then View_Buzzer_Raw (Word) <= 1
-                and then Ravenchart.Number (View_Buzzer_Raw (Word))
-                  = Boolean'Pos (Item.Buzzer));
-   --  Valid when every raw value is in range; otherwise Item is the
-   --  default.
+             then Item.Given = Volume_Of_Bits (View_Given_Raw (Word))
+                and then Item.Lamp = Lamp_Of_Bits (View_Lamp_Raw (Word))
+                and then Item.Buzzer
+                  = Boolean_Of_Bits (View_Buzzer_Raw (Word))
+          else Item = Infusion_System.Default_View);
+   --  Valid when all bits stand for values.
 
    procedure Lemma_View_Survives (Item : Infusion_System.View)
    with Ghost;

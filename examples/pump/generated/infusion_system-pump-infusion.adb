@@ -1406,6 +1406,11 @@ is
                   and then Active_Sensor
                     = Chart.Innermost_Sensor (Self.Place));
                Self.Data.Portion := Item.Value_Portion;
+               pragma Assert
+                 (Active_Top = Chart.Giving
+                  and then Active_Motor = Chart.Innermost_Motor (Self.Place)
+                  and then Active_Sensor
+                    = Chart.Innermost_Sensor (Self.Place));
                Enter_Maintaining;
             when Defer_New_Portion_In_Loading =>
                if Deferrals.Count (Self.Deferred) = 4 then
@@ -1531,6 +1536,10 @@ is
                   and then Active_Motor = Chart.Nowhere
                   and then Active_Sensor = Chart.Nowhere);
                Self.Data.Given := 0;
+               pragma Assert
+                 (Active_Top = Chart.Nowhere
+                  and then Active_Motor = Chart.Nowhere
+                  and then Active_Sensor = Chart.Nowhere);
                Enter_Infusing;
                Active_Top :=
                  Chart.Moved (Active_Top, Chart.Infusing, Chart.Running);

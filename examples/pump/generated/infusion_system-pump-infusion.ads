@@ -44,8 +44,7 @@ is
    --  [Pump.Infusion.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (None,
-      Initial_Entry,
+     (Initial_Entry,
       Turned,
       Heard,
       Loaded,
@@ -74,7 +73,8 @@ is
       Defer_New_Volume_In_Self_Test,
       Defer_New_Portion_In_Alarm,
       Go_On,
-      Not_Yet);
+      Not_Yet,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Not_Yet;
    subtype Transition is Selection range Turned .. Not_Yet;
@@ -536,12 +536,12 @@ is
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Motor_Transition =>
-                not Enabled (T, Place, Now, Past, Data, Ins, Item))
-      elsif Chosen not in Motor_Transition
-         then False
-      else Enabled (Chosen, Place, Now, Past, Data, Ins, Item))
+     ((Chosen = None
+       or else (Chosen in Motor_Transition
+          and then Enabled (Chosen, Place, Now, Past, Data, Ins, Item)))
+      and then (for all T in Motor_Transition =>
+            (if T < Chosen
+                then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
    with Ghost;
 
    function Is_Sensor_Selection
@@ -553,12 +553,12 @@ is
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Sensor_Transition =>
-                not Enabled (T, Place, Now, Past, Data, Ins, Item))
-      elsif Chosen not in Sensor_Transition
-         then False
-      else Enabled (Chosen, Place, Now, Past, Data, Ins, Item))
+     ((Chosen = None
+       or else (Chosen in Sensor_Transition
+          and then Enabled (Chosen, Place, Now, Past, Data, Ins, Item)))
+      and then (for all T in Sensor_Transition =>
+            (if T < Chosen
+                then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
    with Ghost;
 
    function Is_Top_Selection
@@ -570,15 +570,12 @@ is
       Ins    : Inputs;
       Item   : Event)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Top_Transition =>
-                not Enabled (T, Place, Now, Past, Data, Ins, Item))
-      elsif Chosen not in Top_Transition
-         then False
-      else Enabled (Chosen, Place, Now, Past, Data, Ins, Item)
-         and then (for all T in Top_Transition =>
-               (if T < Chosen
-                   then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
+     ((Chosen = None
+       or else (Chosen in Top_Transition
+          and then Enabled (Chosen, Place, Now, Past, Data, Ins, Item)))
+      and then (for all T in Top_Transition =>
+            (if T < Chosen
+                then not Enabled (T, Place, Now, Past, Data, Ins, Item))))
    with Ghost;
    --  The first transition of the lane that is enabled, or None when none
    --  is.

@@ -15,15 +15,7 @@ is
    with
      Post =>
        Bits_Of_Key'Result <= 8
-       and then Ravenchart.Number (Bits_Of_Key'Result)
-         = Qhsm_Test.Key'Pos (Item);
-
-   function Key_Of_Bits (Raw : Interfaces.Unsigned_8) return Qhsm_Test.Key is
-     (Qhsm_Test.Key'Val (Raw))
-   with
-     Pre => Raw <= 8,
-     Post =>
-       Ravenchart.Number (Raw) = Qhsm_Test.Key'Pos (Key_Of_Bits'Result);
+       and then Key_Of_Bits (Bits_Of_Key'Result) = Item;
 
    function Word_Of_Key
      (Value_Raw : Interfaces.Unsigned_8)

@@ -276,7 +276,9 @@ is
             Self.Started := True;
             Self.Data.Foo := False;
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.S2);
+            pragma Assert (Active = Chart.S2);
             Self.Data.Defaulted := True;
+            pragma Assert (Active = Chart.S2);
             Active := Chart.Moved (Active, Chart.S2, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S211_D =>
@@ -292,6 +294,7 @@ is
             Active := Chart.Moved (Active, Chart.S11, Chart.S1);
             pragma Assert (Active = Chart.S1);
             Self.Data.Foo := False;
+            pragma Assert (Active = Chart.S1);
             Active := Chart.Moved (Active, Chart.S1, Chart.S1_Init);
             Self.Leaf := Chart_States.S1_Init;
          when S11_G =>
@@ -303,7 +306,9 @@ is
          when S21_A =>
             Leave_S21;
             Active := Chart.Moved (Active, Chart.S21, Chart.S21);
+            pragma Assert (Active = Chart.S21);
             Self.Data.Defaulted := True;
+            pragma Assert (Active = Chart.S21);
             Active := Chart.Moved (Active, Chart.S21, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S21_B =>
@@ -313,7 +318,9 @@ is
          when S21_G =>
             Leave_S21;
             Active := Chart.Moved (Active, Chart.S21, Chart.S1);
+            pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
+            pragma Assert (Active = Chart.S1);
             Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S1_Init =>
@@ -322,7 +329,9 @@ is
          when S1_A =>
             Leave_S1;
             Active := Chart.Moved (Active, Chart.S1, Chart.S1);
+            pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
+            pragma Assert (Active = Chart.S1);
             Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S1_B =>
@@ -332,7 +341,9 @@ is
          when S1_C =>
             Leave_S1;
             Active := Chart.Moved (Active, Chart.S1, Chart.S2);
+            pragma Assert (Active = Chart.S2);
             Self.Data.Defaulted := True;
+            pragma Assert (Active = Chart.S2);
             Active := Chart.Moved (Active, Chart.S2, Chart.S211);
             Self.Leaf := Chart_States.S211;
          when S1_D =>
@@ -340,6 +351,7 @@ is
             Active := Chart.Moved (Active, Chart.S1, Chart.S);
             pragma Assert (Active = Chart.S);
             Self.Data.Foo := True;
+            pragma Assert (Active = Chart.S);
             Active := Chart.Moved (Active, Chart.S, Chart.S_Init);
             Self.Leaf := Chart_States.S_Init;
          when S1_F =>
@@ -351,7 +363,9 @@ is
          when S2_C =>
             Leave_S2;
             Active := Chart.Moved (Active, Chart.S2, Chart.S1);
+            pragma Assert (Active = Chart.S1);
             Self.Data.Defaulted := True;
+            pragma Assert (Active = Chart.S1);
             Active := Chart.Moved (Active, Chart.S1, Chart.S11);
             Self.Leaf := Chart_States.S11;
          when S2_F =>

@@ -30,8 +30,7 @@ is
    --  [Qhsm.Chart.transitions] in order of precedence, innermost source
    --  first
    type Selection is
-     (None,
-      Initial_Entry,
+     (Initial_Entry,
       S211_D,
       S211_H,
       S21_Init,
@@ -53,7 +52,8 @@ is
       S2_I,
       S_Init,
       S_E,
-      S_I);
+      S_I,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. S_I;
    subtype Transition is Selection range S211_D .. S_I;
@@ -179,13 +179,11 @@ is
       Now    : Occurrence;
       Data   : Variables)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now, Data))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now, Data)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now, Data))))
+     ((Chosen = None
+       or else (Chosen in Transition
+          and then Enabled (Chosen, Leaf, Now, Data)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now, Data))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

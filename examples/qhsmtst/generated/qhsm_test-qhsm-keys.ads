@@ -17,7 +17,7 @@ is
 
    --  [Qhsm.Keys.transitions] in order of precedence, innermost source
    --  first
-   type Selection is (None, Initial_Entry, Pressed);
+   type Selection is (Initial_Entry, Pressed, None);
 
    subtype Firing is Selection range Initial_Entry .. Pressed;
    subtype Transition is Selection range Pressed .. Pressed;
@@ -65,11 +65,10 @@ is
       Leaf   : Keys_States.Leaf;
       Now    : Occurrence)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now))
+     ((Chosen = None
+       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

@@ -117,6 +117,7 @@ is
             pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := 1;
             Box.Token_Out_Sent := True;
+            pragma Assert (Active = Chart.Nowhere);
             Active :=
               Chart.Moved (Active, Chart.Nowhere, Chart.After_Start);
             Self.Leaf := Starting_States.After_Start;
@@ -126,6 +127,7 @@ is
             pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Token_In.Value;
             Box.Token_Out_Sent := True;
+            pragma Assert (Active = Chart.Nowhere);
             Active :=
               Chart.Moved (Active, Chart.Nowhere, Chart.After_Start);
             Self.Leaf := Starting_States.After_Start;

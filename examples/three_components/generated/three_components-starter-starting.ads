@@ -20,7 +20,7 @@ is
 
    --  [Starter.Starting.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (None, Initial_Entry, Start, Again);
+   type Selection is (Initial_Entry, Start, Again, None);
 
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range Start .. Again;
@@ -107,13 +107,10 @@ is
       Leaf   : Starting_States.Leaf;
       Now    : Occurrence)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now))))
+     ((Chosen = None
+       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

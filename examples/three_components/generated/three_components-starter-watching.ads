@@ -20,7 +20,7 @@ is
 
    --  [Starter.Watching.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (None, Initial_Entry, Seen, Calm);
+   type Selection is (Initial_Entry, Seen, Calm, None);
 
    subtype Firing is Selection range Initial_Entry .. Calm;
    subtype Transition is Selection range Seen .. Calm;
@@ -96,13 +96,10 @@ is
       Leaf   : Watching_States.Leaf;
       Now    : Occurrence)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now))))
+     ((Chosen = None
+       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

@@ -73,6 +73,7 @@ is
             pragma Assert (Active = Chart.Nowhere);
             Box.Token_Out := Ins.Held;
             Box.Token_Out_Sent := True;
+            pragma Assert (Active = Chart.Nowhere);
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.Empty);
             Self.Leaf := Handling_States.Empty;
       end case;

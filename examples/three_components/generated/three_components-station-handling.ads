@@ -16,7 +16,7 @@ is
 
    --  [Station.Handling.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (None, Initial_Entry, Take, Pass_On);
+   type Selection is (Initial_Entry, Take, Pass_On, None);
 
    subtype Firing is Selection range Initial_Entry .. Pass_On;
    subtype Transition is Selection range Take .. Pass_On;
@@ -71,13 +71,10 @@ is
       Leaf   : Handling_States.Leaf;
       Now    : Occurrence)
      return Boolean is
-     (if Chosen = None
-         then (for all T in Transition => not Enabled (T, Leaf, Now))
-      elsif Chosen = Initial_Entry
-         then False
-      else Enabled (Chosen, Leaf, Now)
-         and then (for all T in Transition =>
-               (if T < Chosen then not Enabled (T, Leaf, Now))))
+     ((Chosen = None
+       or else (Chosen in Transition and then Enabled (Chosen, Leaf, Now)))
+      and then (for all T in Transition =>
+            (if T < Chosen then not Enabled (T, Leaf, Now))))
    with Ghost;
    --  The first transition that is enabled, or None when none is.
 

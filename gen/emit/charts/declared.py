@@ -134,15 +134,14 @@ def _target(shape: RegionShape, firing: Firing) -> Expr:
 def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
     if shape.single:
         return [
-            _is_selection("Is_Selection", "Transition", len(shape.firings), params),
+            _is_selection("Is_Selection", "Transition", params),
             Comment("The first transition that is enabled, or None when none is."),
         ]
     items: list[Decl] = []
     lines: list[Expr] = []
     for lane in shape.busy_lanes:
         name = shape.lane_name(lane)
-        count = sum(f.lane == lane for f in shape.firings)
-        items.append(_is_selection(f"Is_{name}_Selection", f"{name}_Transition", count, params))
+        items.append(_is_selection(f"Is_{name}_Selection", f"{name}_Transition", params))
         right: Expr = Call(
             f"Is_{name}_Selection", (Arg(None, Ref(f"C.{name}")), *plain_args(params))
         )
@@ -186,27 +185,21 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
     return items
 
 
-def _is_selection(name: str, domain: str, count: int, params: tuple[Param, ...]) -> Subprogram:
+def _is_selection(name: str, domain: str, params: tuple[Param, ...]) -> Subprogram:
     def enabled(which: str) -> Expr:
         return Call("Enabled", (Arg(None, Ref(which)), *plain_args(params)))
 
-    first: list[Expr] = [enabled("Chosen")]
-    if count > 1:
-        earlier = Chain("<", (Ref("T"), Ref("Chosen")))
-        first.append(ForAll("T", domain, IfExpr(((earlier, Prefix("not", enabled("T"))),), None)))
-    strangers: tuple[tuple[Expr, Expr], ...]
-    if domain == "Transition":
-        strangers = ((equal(Ref("Chosen"), Ref(START)), FALSE),)
-    else:
-        strangers = ((Chain("not in", (Ref("Chosen"), Ref(domain))), FALSE),)
-    none = ForAll("T", domain, Prefix("not", enabled("T")))
-    rule = IfExpr(((equal(Ref("Chosen"), Ref("None")), none), *strangers), both(*first))
+    none = equal(Ref("Chosen"), Ref("None"))
+    one = both(member(Ref("Chosen"), domain), enabled("Chosen"))
+    rule = chain("or else", [none, one])
+    earlier = Chain("<", (Ref("T"), Ref("Chosen")))
+    first = ForAll("T", domain, IfExpr(((earlier, Prefix("not", enabled("T"))),), None))
     return Subprogram(
         name,
         (Param("Chosen", "in", "Selection"), *params),
         "Boolean",
         aspects=(Aspect("Ghost"),),
-        expression=rule,
+        expression=both(rule, first),
     )
 
 

@@ -22,6 +22,7 @@ from ..ada import (
     Case,
     Decl,
     Do,
+    Expr,
     If,
     IfExpr,
     Object,
@@ -55,6 +56,12 @@ MANY = 24
 must see at a time stays small."""
 
 _Row = tuple[str, tuple[Stmt, ...]]
+
+
+def _between(claim: Expr, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
+    """An effect where a claim holds: said on both sides of it, it has no other place."""
+    said = Pragma("Assert", (claim,))
+    return (said, *effect, said) if effect else ()
 
 
 def _range(rows: Sequence[_Row]) -> str:
@@ -179,17 +186,17 @@ class Moves:
             return effect or (NULL,)
         assert firing.domain is not None
         out = self._leave(firing)
-        claim = (self._claim(firing.domain),) if effect else ()
+        effect = _between(self._claim(firing.domain), effect)
         if terminates(self.shape, firing):
             entered = self._steps(firing.entries[:-1])
-            return joined((*out, *claim, *effect, *entered, *self._stop(firing)))
+            return joined((*out, *effect, *entered, *self._stop(firing)))
         if firing.kind is Kind.RESTORE:
             pseudo = self.region.pseudostate(firing.sources[0])
             assert pseudo is not None
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
             restored = Restoring(self.shape, self._steps).statements(firing.domain, deep)
             return joined((*out, *restored))
-        return joined((*out, *claim, *effect, *self._steps(firing.entries)))
+        return joined((*out, *effect, *self._steps(firing.entries)))
 
     def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
         """The region stops: nothing is active any more, and nothing more is left."""
@@ -250,18 +257,21 @@ class Moves:
         """Is it an orthogonal state around the source? Then all its lanes are left."""
         return vertex != firing.sources[0] and self.region.state(vertex).is_orthogonal
 
-    def _claim(self, domain: Place) -> Pragma:
+    def _claim(self, domain: Place) -> Expr:
         """Everything in the region that holds the transition has been left, nothing else."""
         inside = [self.shape.lane_of(domain), *self.nodes.lanes_inside(domain)]
         others = [lane for lane in self.shape.lanes if lane not in inside]
         kept = flat([self.nodes.agreed(self.held, others)]) if others else []
-        return Pragma("Assert", (both(*self.nodes.empty(domain), *kept),))
+        return both(*self.nodes.empty(domain), *kept)
 
     def _steps(self, steps: tuple[Step, ...]) -> tuple[Stmt, ...]:
         found: list[Stmt] = []
+        entered: str | None = None
         for step in steps:
             if isinstance(step, Effect):
-                found += self._effects((step,))
+                effect = self._effects((step,))
+                found += effect if entered is None else _between(self.nodes.stands(entered), effect)
             else:
                 found += self.moving.enter(step.vertex)
+                entered = step.vertex
         return tuple(found)

@@ -75,6 +75,8 @@ class Moving:
 
     def leave(self, place: Place) -> Stmt:
         """The exits of all that is active in a region."""
+        if place.owner is not None and self._is_silent(place):
+            return self.nodes.leave(place.owner, self.held)
         if place not in self._left:
             self._left.add(place)
             for child in self.region.children(place.owner, place.region):
@@ -82,6 +84,19 @@ class Moving:
                 for nested in child.regions:
                     self.leave(Place(child.name, nested.name))
         return Do(_leave_name(place))
+
+    def _is_silent(self, place: Place) -> bool:
+        """Whether nothing is done there however it is left, and no lane ends there."""
+        states = self.region.children(place.owner, place.region)
+        return (
+            not (place.owner is None or self.region.state(place.owner).is_orthogonal)
+            and not self.shape.compounds.passed(place)
+            and not any(
+                s.is_orthogonal or self._work_of_exit(s.name) or self._noted(s.name, "exit")
+                for s in states
+            )
+            and all(self._is_silent(Place(s.name, r.name)) for s in states for r in s.regions)
+        )
 
     # --- the procedures, callees first
 
@@ -208,7 +223,7 @@ class Moving:
         shape = self.shape
         rows: list[tuple[str, tuple[Stmt, ...]]] = []
         for child in self.region.children(place.owner, place.region):
-            inner = [Do(_leave_name(Place(child.name, r.name))) for r in child.regions]
+            inner = [self.leave(Place(child.name, r.name)) for r in child.regions]
             rows.append((shape.literal(child.name), joined((*inner, *self.exit(child.name)))))
         rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
         lane = shape.lane_of(place)

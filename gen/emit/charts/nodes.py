@@ -157,6 +157,18 @@ class Nodes:
         """The entry of a state."""
         return Assign(self._of(vertex).text, self.entered(vertex))
 
+    def leave(self, owner: str, held: str) -> Assign:
+        """The exits of what is active in a composite state of one lane, all at once."""
+        self._moves = True
+        lane = self.shape.lane_of(self.shape.compounds.place(owner))
+        active, within = self.active(lane), self.shape.in_state(held, owner)
+        moved = call("Chart.Moved", active, self.innermost(lane, held), node(owner))
+        return Assign(active.text, IfExpr(((within, moved),), _NO_ORDER))
+
+    def stands(self, vertex: str) -> Expr:
+        """A vertex is the innermost active one of its lane."""
+        return equal(self._of(vertex), node(vertex))
+
     def after_exit(self, state: str) -> Expr:
         """What the exit of a state has done."""
         return equal(self._of(state), self.exited(state, "'Old"))

@@ -37,7 +37,7 @@ def region_types(shape: RegionShape) -> list[Decl]:
         Comment(f"[{path}] what a step can be made for"),
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
-        EnumType("Selection", ("None", START, *names)),
+        EnumType("Selection", (START, *names, "None")),
         PlainType("Firing", f"Selection range {START} .. {names[-1]}", subtype=True),
         PlainType("Transition", f"Selection range {names[0]} .. {names[-1]}", subtype=True),
     ]
@@ -109,7 +109,8 @@ def _records(shape: RegionShape) -> list[Decl]:
             if port.name in region.sends:
                 name = ada_case(port.name)
                 of_type = type_name(shape.system, port.type)
-                sent.append(Field(name, of_type, default_value(shape.system, port.type)))
+                if not port.is_void:
+                    sent.append(Field(name, of_type, default_value(shape.system, port.type)))
                 sent.append(Field(f"{name}_Sent", "Boolean", FALSE))
         items += [Comment("What one step sends and raises."), RecordType("Outbox", tuple(sent))]
     if shape.memories:

@@ -26,13 +26,13 @@ from ..naming import ada_case, region_package
 from ..terms import (
     Scope,
     asks_event,
+    compared_states,
     expressions_in,
     flow_names,
     flow_operators,
     names_in,
     operators_in,
     raise_in_list,
-    states_in,
 )
 from .compound import PASSED, TOP, Firing, Kind, Place, Step
 from .places import Places, flat
@@ -257,14 +257,8 @@ class RegionShape(Places):
 
     def compared_in(self, expressions: Iterable[m.Expression]) -> set[str]:
         """The types of other regions' states that expressions compare."""
-        asked = {pair for e in expressions for pair in states_in(e)}
-        return {
-            f"{other.states}.{kind}"
-            for name, state in asked
-            if name != self.region.name
-            for other in (Places(self.component.region(name)),)
-            for kind in other.compared_types(state)
-        }
+        compared = compared_states(self.component, expressions)
+        return {name for name in compared if not name.startswith(f"{self.states}.")}
 
     # --- notes
 

@@ -1,0 +1,226 @@
+"""What provides each required command, and what of the system follows from that.
+
+Everything is decided here: the program has no test for what is there. A stand-in that
+nobody needs is left out, with its row and its data.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from .commands import Binding, Device, Need
+from .derive import table_period
+from .devices import (
+    Devices,
+    Provider,
+    found_in,
+    name_of,
+    offered,
+    provided_axes,
+    ungathered,
+    wcet_of,
+)
+from .model import Component, Instance, Processor, Slot, System
+from .names import Findings, Scope, meant
+from .schema_devices import BindingForm
+from .statechart import Region
+from .terms import Ns
+
+Given = dict[tuple[str, str], tuple[BindingForm, Provider | None]]
+"""The binding of (instance, interface), in lower case; no provider: it was wrong."""
+
+
+def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
+    """The bindings of a model, by what they bind."""
+    findings, found = devices.findings, Given()
+    for form in forms:
+        owner, dot, interface = form.from_.partition(".")
+        at = form.at("from")
+        if not (dot and owner and interface) or "." in interface:
+            message = f"`{form.from_}` must have the form instance.interface"
+            findings.error("RV-0306", at, message)
+            continue
+        instance = devices.instances.look_up(owner, at, findings)
+        provider = devices.provider(form.to, form.at("to"))
+        if instance is None:
+            continue
+        required: Scope[str] = Scope(f"required interface of {instance.component.name}")
+        required.open = instance.component.name in devices.damaged
+        for need in instance.component.needs:
+            required.declare(need.interface, None, need.interface)
+        name = required.look_up(interface, at, findings)
+        if name is None:
+            continue
+        key = (instance.name.lower(), name.lower())
+        if key in found:
+            message = f"{instance.name}.{name} is bound twice"
+            notes = [(found[key][0].origin, "the first is here")]
+            hint = "several devices are joined to one by `facade` or `array`"
+            findings.error("RV-1203", form.origin, message, notes=notes, hint=hint)
+        found.setdefault(key, (form, provider))
+    return found
+
+
+def bindings_of(
+    instances: Iterable[Instance], given: Given, known: Sequence[str], findings: Findings
+) -> tuple[Binding, ...]:
+    """What provides each command that an instance requires."""
+    made: list[Binding] = []
+    for instance in instances:
+        unbound: set[str] = set()
+        for need in instance.component.needs:
+            key = (instance.name.lower(), need.interface.lower())
+            if key in given:
+                form, provider = given[key]
+                if provider is not None:
+                    made.append(_bound(instance, need, form, provider, findings))
+            elif need.optional:
+                made.append(Binding(instance.name, need, None))
+            elif need.interface not in unbound:
+                unbound.add(need.interface)
+                wanted = f"{instance.name}.{need.interface}"
+                message = f"nothing provides {wanted}, which needs {need.name}"
+                notes = [(need.origin, f"{need.name} is required here")]
+                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                if near := meant(need.interface, known):
+                    hint += f"; {near}"
+                findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
+    return tuple(made)
+
+
+def _bound(
+    instance: Instance, need: Need, form: BindingForm, provider: Provider, findings: Findings
+) -> Binding:
+    """What provides one command; reported when nothing does and nothing stands in."""
+    at, notes = form.at("to"), [(need.origin, f"{need.name} is required here")]
+
+    def report(code: str, message: str, hint: str | None) -> None:
+        findings.error(code, at, message, notes=notes, hint=hint)
+
+    found = found_in(provider, need.name, report)
+    own = name_of(provider)
+    if found is None and not need.optional:
+        array = ungathered(provider, need.name)
+        if array is not None:
+            message = f"{array.name} cannot give {need.name} as one: its reply is not per axis"
+            report("RV-1213", message, "bind to one of its members, or join them by `facade`")
+        else:
+            message = f"{own} does not provide {need.name}, which {instance.name} requires"
+            near = meant(need.name, offered(provider))
+            hint = near or "provide it, or say what stands in: `else: ...`"
+            report("RV-1204", message, hint)
+    if found is not None and need.command.per_axis:
+        axes = provided_axes(found, need.name)
+        if axes != need.axes:
+            message = (
+                f"{name_of(found)} has {_axes(axes)}, and {instance.name}.{need.interface} works "
+                f"on {need.axes}"
+            )
+            report("RV-1205", message, "join devices by `array`, or change `axes`")
+    return Binding(instance.name, need, found)
+
+
+def _axes(count: int) -> str:
+    return "1 axis" if count == 1 else f"{count} axes"
+
+
+# --- What follows ------------------------------------------------------------------
+
+
+def with_bindings(system: System, bindings: tuple[Binding, ...]) -> System:
+    """The system with its bindings: stand-ins that nobody needs gone, calls in the budgets."""
+    of: defaultdict[str, list[Binding]] = defaultdict(list)
+    for binding in bindings:
+        of[binding.instance].append(binding)
+    if not of:
+        return system
+    instances = tuple(
+        replace(one, component=_pruned(one.component, of[one.name])) for one in system.instances
+    )
+    kept = {i.name: {row.name for row in i.component.runnables()} | {"ports"} for i in instances}
+    costs = {i.name: _costs(i.component, of[i.name]) for i in instances}
+    processors = (_of_kept(one, kept, costs) for one in system.processors)
+    used = [b.provider for b in bindings if isinstance(b.provider, Device)]
+    return replace(
+        system,
+        components=tuple(_in_use(one, instances) for one in system.components),
+        instances=instances,
+        processors=tuple(one for one in processors if one.slots),
+        devices=tuple(dict.fromkeys(part for device in used for part in _parts(device))),
+        bindings=bindings,
+    )
+
+
+def _parts(device: Device) -> tuple[Device, ...]:
+    """A device behind the pieces that it is made of."""
+    return (*(part for member in device.members for part in _parts(member)), device)
+
+
+def _pruned(component: Component, bindings: Iterable[Binding]) -> Component:
+    """A component as an instance has it: without the stand-ins that nobody needs."""
+    idle = {
+        b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is not None
+    }
+    idle -= {b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is None}
+    gone = {item for a in component.activities if a.name in idle for item in a.writes}
+    return replace(
+        component,
+        activities=tuple(a for a in component.activities if a.name not in idle),
+        data=tuple(data for data in component.data if data.name not in gone),
+    )
+
+
+def _in_use(component: Component, instances: Iterable[Instance]) -> Component:
+    """A component with what any of its instances has."""
+    own = [i.component for i in instances if i.component.name == component.name]
+    if not own:
+        return component
+    activities = {a.name for one in own for a in one.activities}
+    data = {item.name for one in own for item in one.data}
+    return replace(
+        component,
+        activities=tuple(a for a in component.activities if a.name in activities),
+        data=tuple(item for item in component.data if item.name in data),
+    )
+
+
+def _costs(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
+    """What the devices that each row calls add to its budget.
+
+    A region reads once in an execution, and calls once in each of its steps; what serves
+    requests does both for each.
+    """
+    found: dict[str, Ns] = {}
+    for row in component.runnables():
+        served = component.served_by(row.name)
+        times = served.depth if served is not None else 1
+        steps = row.steps_per_execution if isinstance(row, Region) else times
+        found[row.name] = Ns(
+            sum(
+                wcet_of(b.provider, b.need.name) * (times if b.need.is_read else steps)
+                for b in bindings
+                if b.need.name in (row.reads if b.need.is_read else row.sends)
+            )
+        )
+    return found
+
+
+def _of_kept(
+    processor: Processor, kept: dict[str, set[str]], costs: dict[str, dict[str, Ns]]
+) -> Processor:
+    """A processor with the rows that are left, and what they call in their budgets."""
+    left = [s for s in processor.slots if s.owner not in kept or s.name in kept[s.owner]]
+    period = processor.period
+    if left and period == table_period(processor.slots):
+        period = table_period(left) or period
+    slots = tuple(_with_calls(slot, costs.get(slot.owner, {})) for slot in left)
+    return replace(processor, period=period, slots=slots)
+
+
+def _with_calls(slot: Slot, costs: dict[str, Ns]) -> Slot:
+    cost = costs.get(slot.name, Ns(0))
+    if not cost:
+        return slot
+    return replace(slot, timing=replace(slot.timing, wcet=Ns(slot.timing.wcet + cost)))

@@ -1,0 +1,164 @@
+"""Components on several nodes: what travels between them, and what runs on each.
+
+A connection whose ends are on different nodes becomes a message of the bus; neither
+component knows. The program of a node is that of a system which has this node only:
+what comes from another is, to it, a message from outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from .calls import called
+from .identifiers import OPEN
+from .model import Bus, Connection, Instance, Message, Node, Processor, Shutdown, System
+from .names import problem_of
+from .signals import length_of, signals_of
+
+
+@dataclass(frozen=True, slots=True)
+class Carrier:
+    """Makes messages of the connections between nodes.
+
+    There is one of each output port, called like instance and port, with the period of
+    what sends it, unless the model has a message of that port; then it has more targets.
+    """
+
+    instances: Mapping[str, Instance]
+    bus: Bus | None
+
+    def carried(
+        self, connections: Sequence[Connection], messages: Sequence[Message]
+    ) -> tuple[tuple[Connection, ...], tuple[Message, ...]]:
+        """The connections that are left, and all messages.
+
+        Left are those inside a node, and between nodes those that no message can carry:
+        the rules say of them what is missing.
+        """
+        left: list[Connection] = []
+        found = {message.name.lower(): message for message in messages}
+        for connection in connections:
+            own = next((m for m in found.values() if m.source == connection.source), None)
+            if not self._is_across(connection):
+                left.append(connection)
+            elif own is not None:
+                targets = (*own.targets, connection.target)
+                found[own.name.lower()] = replace(own, targets=targets)
+            else:
+                made = self._message(connection)
+                if made is None or made.name.lower() in found:
+                    left.append(connection)
+                else:
+                    found[made.name.lower()] = made
+        return tuple(left), tuple(found.values())
+
+    def _is_across(self, connection: Connection) -> bool:
+        source, target = connection.source.instance, connection.target.instance
+        return self.instances[source].node != self.instances[target].node
+
+    def _message(self, connection: Connection) -> Message | None:
+        """A message with the value of the connection's source, laid out as small as it is."""
+        end = connection.source
+        component = self.instances[end.instance].component
+        name, type_ = f"{end.instance}_{end.port}", component.port(end.port).type
+        periods = [row.timing.period for row in component.senders(end.port)]
+        if self.bus is None or not periods or problem_of(name) is not None:
+            return None
+        signals = signals_of(type_)
+        return Message(
+            name=name,
+            origin=connection.origin,
+            bus=self.bus.name,
+            identifier=OPEN,
+            extended=False,
+            type=type_,
+            signals=signals,
+            length=length_of(signals),
+            source=end,
+            targets=(connection.target,),
+            period=min(periods),
+        )
+
+
+def placed(system: System) -> System:
+    """The system with a node for each of its processors.
+
+    Without `node` a processor is where the instance of its first row is; and one that is
+    released by a bus is on every node that receives from it, with the node's name behind
+    its own where there are several.
+    """
+    found: list[Processor] = []
+    for processor in system.processors:
+        if processor.node:
+            found.append(processor)
+        elif processor.released_by is None:
+            found.append(replace(processor, node=system.instance(processor.slots[0].owner).node))
+        else:
+            received = [m for m in system.messages if m.bus == processor.released_by]
+            receivers = {system.receiver(message) for message in received}
+            homes = [node.name for node in system.nodes if node.name in receivers]
+            found += [_on(processor, home, several=len(homes) > 1) for home in homes]
+    return replace(system, processors=tuple(found))
+
+
+def _on(processor: Processor, node: str, *, several: bool) -> Processor:
+    """The copy of a reception on a node."""
+    if not several:
+        return replace(processor, node=node)
+    slots = tuple(replace(slot, name=f"{slot.name}_{node}") for slot in processor.slots)
+    return replace(processor, name=f"{processor.name}_{node}", node=node, slots=slots)
+
+
+def part_of(system: System, node: Node) -> System:
+    """What runs on a node, as a system of its own, without tasks, objects and chains."""
+    here = {instance.name for instance in system.instances if instance.node == node.name}
+    messages = tuple(
+        replace(
+            message,
+            source=message.source if system.sender(message) == node.name else None,
+            targets=message.targets if system.receiver(message) == node.name else (),
+        )
+        for message in system.messages
+        if node.name in (system.sender(message), system.receiver(message))
+    )
+    used = {message.bus for message in messages}
+    bindings = tuple(b for b in system.bindings if b.instance in here)
+    raises = tuple(pair for pair in system.shutdown.raises if pair[0] in here)
+    part = replace(system, bindings=bindings)
+    return replace(
+        part,
+        nodes=(node,),
+        buses=tuple(bus for bus in system.buses if bus.name in used),
+        instances=tuple(i for i in system.instances if i.name in here),
+        connections=tuple(c for c in system.connections if c.source.instance in here),
+        messages=messages,
+        traffic=(),
+        processors=tuple(p for p in system.processors if p.node == node.name),
+        shutdown=Shutdown(raises, system.shutdown.grace),
+        chains=(),
+        devices=tuple(device for device in system.devices if called(part, device)),
+        tasks=(),
+        objects=(),
+    )
+
+
+def as_one(system: System) -> System:
+    """The same components on one node: what messages carry between them, connections do."""
+    if len(system.nodes) == 1:
+        return system
+    node = system.nodes[0]
+    wires = tuple(
+        Connection(message.origin, message.source, target)
+        for message in system.messages
+        if message.source is not None
+        for target in message.targets
+    )
+    return replace(
+        system,
+        nodes=(node,),
+        instances=tuple(replace(instance, node=node.name) for instance in system.instances),
+        connections=(*system.connections, *wires),
+        processors=tuple(replace(processor, node=node.name) for processor in system.processors),
+        tasks=tuple(replace(task, node=node.name) for task in system.tasks),
+    )

@@ -1,0 +1,146 @@
+"""The file format of buses and of what travels on them: a part of `schema`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field as PydanticField
+from pydantic import Tag
+
+from .schema_base import (
+    BitRate,
+    Constant,
+    DataRate,
+    Element,
+    Name,
+    OwnedReference,
+    PositiveSpan,
+    Reference,
+    key,
+    optional,
+    shaped,
+)
+
+
+class ErrorsForm(Element):
+    """What errors of a bus are reckoned with."""
+
+    period: PositiveSpan = key("Least time from one error to the next.")
+    burst: int = PydanticField(
+        default=1, ge=1, le=1000, description="Errors that may come at once besides, 1 to 1000."
+    )
+
+
+class BusForm(Element):
+    """A CAN bus."""
+
+    bit_rate: BitRate = key("Nominal bit rate, 10 kbit/s to 1 Mbit/s.")
+    driver_wcet: PositiveSpan = key(
+        "Worst-case time of the driver for one frame in or out, and of the reception for handing "
+        "one to every port that it goes to."
+    )
+    receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
+    transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
+    errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
+    data_rate: DataRate | None = optional(
+        "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
+        "do not switch unless given."
+    )
+    identifiers: Literal["deadline", "audsley"] = PydanticField(
+        default="deadline",
+        description="How messages without `id` get one. `deadline`: the shortest deadline first. "
+        "`audsley`: an order in which the bus meets all deadlines: where no message has an `id` "
+        "of its own, whenever there is one; of several that fit a place the longest deadline "
+        "goes there. Messages count as they are "
+        "declared, sent without delay: what delays the sender is found later and may depend on "
+        "the identifiers. The analysis of the whole then checks what was chosen.",
+    )
+
+
+class SignalForm(Element):
+    """Where a field of a message stands in the frame, and how it is coded there."""
+
+    start: int | None = optional(
+        "Its first bit, counted from bit 0 of byte 0: the least significant one of an Intel "
+        "signal, the most significant one of a Motorola signal. Without it an Intel signal comes "
+        "as low as there is room.",
+        ge=0,
+        le=511,
+    )
+    width: int | None = optional("Bits, 1 to 64; as few as do unless given.", ge=1, le=64)
+    order: Literal["intel", "motorola"] = PydanticField(
+        default="intel",
+        description="`intel`: the least significant byte goes first; `motorola`: the most "
+        "significant one, and `start` must be given.",
+    )
+    signed: bool = PydanticField(
+        default=False, description="The raw value is in two's complement, of 62 bits at most."
+    )
+    offset: int | None = optional(
+        "Raw value = value - offset; the least value of the type unless given, 0 where `signed`."
+    )
+    codes: list[int] | None = optional(
+        "Raw values of the literals of an enumeration, in their order; their positions from 0 "
+        "unless given.",
+        min_length=1,
+        max_length=256,
+    )
+    when: (
+        Annotated[
+            Annotated[Constant, Tag("<one>")] | Annotated[list[Constant], Tag("<list>")],
+            shaped("a value of the multiplexor, or a list of these"),
+        ]
+        | None
+    ) = optional("Values of the multiplexor with which it is in the frame; always unless given.")
+
+
+class MessageForm(Element):
+    """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
+
+    bus: Reference = key("The bus.")
+    id: int | None = optional(
+        "CAN identifier, 0 to 0x7FF, or to 0x1FFFFFFF with `extended: true`; unless given, "
+        "counted from 1 in the order that `identifiers` of the bus says.",
+        ge=0,
+    )
+    extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
+    format: Literal["classic", "fd"] = PydanticField(
+        default="classic",
+        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64: analysed, "
+        "not generated yet.",
+    )
+    from_: OwnedReference | None = optional(
+        "`instance.port` that sends; without it the sender is outside the system.", alias="from"
+    )
+    to: (
+        Annotated[
+            Annotated[OwnedReference, Tag("<one>")]
+            | Annotated[list[OwnedReference], Tag("<list>")],
+            shaped("`instance.port`, or a list of these"),
+        ]
+        | None
+    ) = optional("`instance.port` that receives, or a list; without it all receivers are outside.")
+    period: PositiveSpan | None = optional(
+        "Least time between two frames; only for messages from outside, the others have the period "
+        "of what sends them."
+    )
+    bytes: int | None = PydanticField(
+        default=None,
+        ge=0,
+        le=64,
+        description="Data bytes, 0 to 8, of CAN FD up to 64; as few as do unless given. A frame "
+        "with neither `from` nor `to` needs it: other nodes exchange it, and here it only takes "
+        "its time on the bus.",
+    )
+    signals: dict[Name, SignalForm] | None = optional(
+        "Where fields stand in the frame and how they are coded, by name (`value` where the type "
+        "has no fields); for others, and unless given, as few bits as do, one behind the other.",
+        min_length=1,
+    )
+    multiplexor: Reference | None = optional(
+        "The field that tells which of the signals with `when` are in the frame."
+    )
+    deadline: PositiveSpan | None = optional(
+        "From the release of what sends it, or from its arrival, until it is received; the period "
+        "unless given."
+    )

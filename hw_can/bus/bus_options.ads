@@ -1,0 +1,30 @@
+--  What the bus server is told on its command line: words NAME=VALUE.
+--
+--     port=29536       0 for a free one
+--     name=can0        1 to 16 characters from ! to ~
+--     bitrate=500000, data_bitrate=2000000
+--                      bit/s; a data bit rate of 0 is a classic bus
+--     time=paced       or virtual
+--     buffer=fifo      or priority
+--     seed=7:1000000   a bit is disturbed, at least so many ns apart
+--     fault=F:K:N:A:B  frame F meets fault K at node N, 0 for all. A: the
+--                      bit, the ns of delay or the byte; B: the mask
+--     event=T:K:N:I    at T ns, K happens to node N; I: identifier to babble
+
+with Ravenchart.Can.Bus_Servers;
+
+package Bus_Options is
+
+   Wrong : exception;
+   --  What is told is not like that; it was said on standard error.
+
+   Bus : Ravenchart.Can.Bus_Servers.Server;
+   --  As it is told.
+
+   procedure Read (Port : out Natural);
+   --  Read the command line.
+
+   function Is_Paced return Boolean;
+   --  Does bus time go with the clock?
+
+end Bus_Options;

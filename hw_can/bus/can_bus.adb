@@ -1,0 +1,166 @@
+--  The bus server: one simulated CAN bus behind a TCP port of this machine,
+--  as docs/bus-protocol.md says. `ravenchart bus` starts it.
+
+with Ada.Command_Line;
+with Ada.Text_IO;
+with Bus_Options;
+with Ravenchart.Can.Bus_Clients;
+with Ravenchart.Can.Bus_Nodes;
+with Ravenchart.Can.Bus_Records;
+with Ravenchart.Can.Bus_Servers;
+with Ravenchart.Can.Bus_Sockets;
+
+procedure Can_Bus is
+   use Ravenchart;
+   use Ravenchart.Can;
+   use Ravenchart.Can.Bus_Nodes;
+   use type Bus_Clients.Phase;
+   use type Bus_Sockets.Reading;
+   use type Bus_Sockets.Writing;
+
+   Patience : constant Nanoseconds := 100_000_000;
+   --  A signal is seen within this.
+
+   Most_Records : constant := 64;
+   --  Read of one client before the others have their turn.
+
+   Bus   : Bus_Servers.Server renames Bus_Options.Bus;
+   Bytes : Bus_Records.Image;
+
+   function Now return Nanoseconds
+   is (if Bus_Servers.Is_Virtual (Bus)
+       then Bus_Servers.Latest (Bus) else Bus_Sockets.Clock);
+   --  Bus time.
+
+   procedure Greet;
+   --  Take in whoever wants to connect.
+
+   procedure Listen (C : Node_Index);
+   --  Take what C has sent.
+
+   procedure Hand_Over
+     (C : Node_Index; Horizon : Nanoseconds; Next : in out Nanoseconds);
+   --  Give C what it is to have by then; Next is at most when it is to have
+   --  more, unless it takes nothing now.
+
+   -----------
+   -- Greet --
+   -----------
+
+   procedure Greet is
+      C : Node_Index;
+   begin
+      while Bus_Servers.Is_Room (Bus.Clients)
+        and then Bus_Sockets.Somebody_Knocks
+      loop
+         Bus_Servers.Connect (Bus.Clients, C);
+         Bus_Sockets.Welcome (C);
+      end loop;
+   end Greet;
+
+   ------------
+   -- Listen --
+   ------------
+
+   procedure Listen (C : Node_Index) is
+      Read : Bus_Sockets.Reading;
+   begin
+      for I in 1 .. Most_Records loop
+         Bus_Sockets.Receive (C, Bytes, Read);
+         if Read = Bus_Sockets.Gone then
+            Bus_Servers.Disconnect (Bus, C);
+            Bus_Sockets.Close (C);
+         end if;
+         exit when Read /= Bus_Sockets.Whole;
+         Bus_Servers.Take (Bus, C, Bytes, Now);
+      end loop;
+   end Listen;
+
+   ---------------
+   -- Hand_Over --
+   ---------------
+
+   procedure Hand_Over
+     (C : Node_Index; Horizon : Nanoseconds; Next : in out Nanoseconds)
+   is
+      Writing : Bus_Sockets.Writing;
+   begin
+      loop
+         Writing := Bus_Sockets.Ready (C);
+         exit when Writing /= Bus_Sockets.Done
+           or else not Bus_Clients.Has_Due (Bus.Clients (C), Horizon);
+         Bus_Clients.Hand_Over (Bus.Clients (C), Bytes);
+         Bus_Sockets.Send (C, Bytes);
+      end loop;
+      if Writing = Bus_Sockets.Lost
+        or else Bus.Clients (C).State = Bus_Clients.Given_Up
+        or else
+          (Bus.Clients (C).State = Bus_Clients.Ending
+           and then Writing = Bus_Sockets.Done
+           and then Bus.Clients (C).Queue.Count = 0)
+      then
+         Bus_Servers.Disconnect (Bus, C);
+         Bus_Sockets.Close (C);
+      elsif Writing = Bus_Sockets.Done then
+         Next :=
+           Nanoseconds'Min (Next, Bus_Clients.Next_Due (Bus.Clients (C)));
+      end if;
+   end Hand_Over;
+
+   Port    : Natural;
+   Opened  : Boolean;
+   Busy    : Boolean;
+   Horizon : Nanoseconds;
+   Next    : Nanoseconds;
+begin
+   Bus_Options.Read (Port);
+   Bus_Sockets.Open (Port, Opened);
+   if not Opened then
+      Ada.Text_IO.Put_Line
+        (Ada.Text_IO.Standard_Error,
+         "error: port" & Port'Image & " of this machine is not free");
+      Ada.Command_Line.Set_Exit_Status (2);
+      return;
+   end if;
+   if Bus_Options.Is_Paced then
+      Bus.Profile.Began := Bus_Sockets.Date;
+   end if;
+   Ada.Text_IO.Put_Line
+     ("bus " & Bus.Profile.Name (1 .. Bus.Profile.Length) & " at 127.0.0.1:"
+      & Port'Image (2 .. Port'Image'Last));
+   Ada.Text_IO.Flush;
+
+   while not Bus_Sockets.Stop_Requested loop
+      Greet;
+      for C in Node_Index loop
+         if Bus.Clients (C).State /= Bus_Clients.Unconnected then
+            Listen (C);
+         end if;
+      end loop;
+      Horizon :=
+        (if Bus_Options.Is_Paced then Now else Nanoseconds'Last);
+      Bus_Servers.Run (Bus, Horizon, Busy);
+      Next := Bus_Servers.Next_Start (Bus);
+      for C in Node_Index loop
+         if Bus.Clients (C).State /= Bus_Clients.Unconnected then
+            Hand_Over (C, Horizon, Next);
+         end if;
+      end loop;
+      if not Busy then
+         Horizon := (if Bus_Options.Is_Paced then Now else 0);
+         Bus_Sockets.Await
+           (if Next <= Horizon then 0
+            else Nanoseconds'Min (Next - Horizon, Patience));
+      end if;
+   end loop;
+
+   Bus_Servers.Close_All (Bus.Clients);
+   for C in Node_Index loop
+      if Bus.Clients (C).State /= Bus_Clients.Unconnected then
+         Hand_Over (C, Nanoseconds'Last, Next);
+      end if;
+   end loop;
+exception
+   when Bus_Options.Wrong =>
+      Ada.Command_Line.Set_Exit_Status (2);
+end Can_Bus;

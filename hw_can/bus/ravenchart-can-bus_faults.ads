@@ -1,0 +1,87 @@
+--  What can go wrong with one frame of the simulated bus, on demand.
+--
+--  Guarantees   without a fault, a frame arrives as it was sent, once and
+--               at once
+--  Tasking      none: faults are values
+--  Timing       constant
+
+with Interfaces;
+with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Fd_Frames;
+with Ravenchart.Can.Wire;
+
+package Ravenchart.Can.Bus_Faults
+  with SPARK_Mode, Pure
+is
+   use type Bus_Frames.Bus_Frame;
+   use type Interfaces.Unsigned_8;
+
+   type Fault_Kind is
+     (None,
+      Disturbed_Bit,
+      Lost_Acknowledgement,
+      Dropped,
+      Delayed,
+      Duplicated,
+      Corrupted);
+   --  Disturbed_Bit: a bit is read other than it was sent.
+   --  Lost_Acknowledgement: the transmitter reads its slot recessive. The
+   --  others are faults of a receiver, which the bus does not notice: the
+   --  frame is lost, handed over late, or twice, or with changed data.
+
+   Everyone : constant := 0;
+
+   subtype Victim is Natural range 0 .. 255;
+   --  Everyone, or a node.
+
+   type Fault is record
+      Kind     : Fault_Kind := None;
+      Node     : Victim := Everyone;
+      Position : Wire.Bit_Index := 1;
+      Late     : Nanoseconds := 0;
+      Index    : Fd_Frames.Fd_Index := 0;
+      Mask     : Interfaces.Unsigned_8 := 0;
+   end record;
+   --  Node: who is hit. Position: the bit, which is that before the
+   --  intermission when the frame has fewer. Late: by how much it is handed
+   --  over. Index, Mask: the byte and the bits of it that change.
+
+   No_Fault : constant Fault := (others => <>);
+
+   function Is_Witness (F : Fault; Node : Positive) return Boolean
+   is (F.Kind = Disturbed_Bit and then F.Node = Node)
+   with Global => null;
+   --  Is Node the only one that sees the disturbed bit?
+
+   function Hits (F : Fault; Kind : Fault_Kind; Node : Positive)
+     return Boolean
+   is (F.Kind = Kind
+       and then (F.Node = Everyone or else F.Node = Node))
+   with Global => null;
+   --  Does F do this to Node?
+
+   subtype Copies is Natural range 0 .. 2;
+
+   function Copies_For (F : Fault; Node : Positive) return Copies
+   is (if Hits (F, Dropped, Node) then 0
+       elsif Hits (F, Duplicated, Node) then 2
+       else 1)
+   with Global => null;
+   --  How often Node gets the frame that it has heard.
+
+   function Lateness (F : Fault; Node : Positive) return Nanoseconds
+   is (if Hits (F, Delayed, Node) then F.Late else 0)
+   with Global => null;
+   --  How much later than its end.
+
+   function As_Heard
+     (F : Fault; Node : Positive; Frame : Bus_Frames.Bus_Frame)
+      return Bus_Frames.Bus_Frame
+   with
+     Global => null,
+     Post   =>
+       (if not Hits (F, Corrupted, Node)
+        then As_Heard'Result = Frame);
+   --  What Node takes Frame for.
+
+end Ravenchart.Can.Bus_Faults;

@@ -1,0 +1,121 @@
+--  What a node of the simulated bus hands to its controller, and how long it
+--  takes on the wire.
+--
+--  Guarantees   a duration follows from the bits of the frame's image alone
+--  Tasking      none: frames are values
+--  Timing       linear in the length of a frame
+
+with Ravenchart.Can.Arbitration;
+with Ravenchart.Can.Fd_Frames;
+with Ravenchart.Can.Wire;
+
+package Ravenchart.Can.Bus_Frames
+  with SPARK_Mode, Pure
+is
+   use type Arbitration.Contender;
+   use type Fd_Frames.Bit_Rate_Use;
+   use type Wire.Phases;
+
+   type Frame_Family is (Classic, Flexible, Asked_Error);
+   --  CAN 2.0, CAN FD, or no frame at all: an error frame that somebody
+   --  asks the bus for. Class and details of that one travel as a frame.
+
+   type Bus_Frame (Family : Frame_Family := Classic) is record
+      case Family is
+         when Classic | Asked_Error =>
+            Plain : Frame;
+         when Flexible              =>
+            Fd : Fd_Frames.Fd_Frame;
+      end case;
+   end record;
+
+   function Contender_Of (F : Bus_Frame) return Arbitration.Contender
+   is (if F.Family = Flexible
+       then (Id => F.Fd.Id, Format => F.Fd.Format, Kind => Data)
+       else (Id     => F.Plain.Id,
+             Format => F.Plain.Format,
+             Kind   => F.Plain.Kind))
+   with Global => null;
+   --  What takes part in arbitration.
+
+   function Is_First (A, B : Bus_Frame) return Boolean
+   is (A.Family = Asked_Error
+       or else
+         (B.Family /= Asked_Error
+          and then
+            (Contender_Of (A) = Contender_Of (B)
+             or else
+               Arbitration.Precedes (Contender_Of (A), Contender_Of (B)))))
+   with Global => null;
+   --  May A be on the bus when B was offered too? The flag of an error frame
+   --  overrules every frame.
+
+   function Image_Of (F : Bus_Frame) return Wire.Image
+   is (if F.Family = Flexible
+       then Wire.To_Wire (F.Fd)
+       else Wire.To_Wire (F.Plain))
+   with
+     Global => null,
+     Post   => Wire.Is_Ordered (Image_Of'Result);
+   --  The bits on the bus; of an error frame that is asked for, those of the
+   --  frame that names it.
+
+   function Rate_Of (F : Bus_Frame) return Fd_Frames.Bit_Rate_Use
+   is (if F.Family = Flexible then F.Fd.Rate else Fd_Frames.Constant_Rate)
+   with Global => null;
+   --  Does its data phase go at the data bit rate?
+
+   subtype Bit_Time is Positive_Nanoseconds range 1 .. 10**9;
+   --  One bit, in ns: 1 bit/s at the least.
+
+   type Bit_Times is record
+      Nominal : Bit_Time := 2_000;
+      Data    : Bit_Time := 500;
+   end record;
+   --  500 kbit/s, and 2 Mbit/s in the data phase, unless it is said.
+
+   Longest_Time : constant Positive_Nanoseconds :=
+     Wire.Longest * Bit_Time'Last;
+   --  No phase of a frame takes longer.
+
+   function Least
+     (A, B : Wire.Bit_Count) return Wire.Bit_Count
+   is (if A < B then A else B)
+   with Global => null;
+   --  The lesser of two.
+
+   function Phases_Until
+     (I    : Wire.Image;
+      Rate : Fd_Frames.Bit_Rate_Use;
+      Last : Wire.Bit_Count) return Wire.Phases
+   is (if Rate = Fd_Frames.Constant_Rate
+         or else Last <= I.Ends (Wire.Format_Bits)
+       then (Nominal => Last, Data => 0)
+       else
+         (Nominal =>
+            I.Ends (Wire.Format_Bits)
+            + (Last - Least (Last, I.Ends (Wire.Check_Field))),
+          Data    =>
+            Least (Last, I.Ends (Wire.Check_Field))
+            - I.Ends (Wire.Format_Bits)))
+   with
+     Global => null,
+     Pre    => Wire.Is_Ordered (I),
+     Post   =>
+       Phases_Until'Result.Nominal + Phases_Until'Result.Data = Last
+       and then
+         (if Last = Wire.Length (I)
+          then Phases_Until'Result = Wire.Phases_Of (I, Rate));
+   --  The bits up to Last, by the rate at which they go.
+
+   function Time_Of (P : Wire.Phases; T : Bit_Times) return Nanoseconds
+   with
+     Global => null,
+     Post   =>
+       Time_Of'Result =
+         Nanoseconds (P.Nominal) * T.Nominal
+         + Nanoseconds (P.Data) * T.Data
+       and then Time_Of'Result <= 2 * Longest_Time;
+   --  How long so many bits take.
+
+end Ravenchart.Can.Bus_Frames;

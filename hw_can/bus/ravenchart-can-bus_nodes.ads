@@ -1,0 +1,87 @@
+--  One controller on the simulated bus, without its buffers: its error
+--  counters, and when it may send.
+--
+--  Guarantees   a node that is bus-off takes no part; one that asked for it
+--               comes back as Fault_Confinement says
+--  Tasking      none: nodes are values
+--  Timing       Rest: at most 1408 steps
+
+with Ravenchart.Can.Fault_Confinement;
+
+package Ravenchart.Can.Bus_Nodes
+  with SPARK_Mode, Pure
+is
+   use type Fault_Confinement.Fault_Event;
+
+   type Node_Index is range 1 .. 16;
+   --  Nodes on one bus.
+
+   type Presence is (Absent, Present);
+   --  An absent node has no controller on the bus.
+
+   type Recovery is (Waits, Recovers);
+   --  Has a node that is bus-off been told to come back?
+
+   type Bus_Node is record
+      Here        : Presence := Absent;
+      Segment     : Node_Index := 1;
+      Confinement : Fault_Confinement.Node;
+      Way_Back    : Recovery := Waits;
+      Ready_At    : Nanoseconds := 0;
+   end record;
+   --  It sends nothing before Ready_At: an error-passive node waits for
+   --  eight bits behind what it sent (suspend transmission).
+
+   type Node_List is array (Node_Index) of Bus_Node;
+
+   function Takes_Part (N : Bus_Node) return Boolean
+   is (N.Here = Present
+       and then Fault_Confinement.State (N.Confinement) /= Bus_Off)
+   with Global => null;
+   --  Does it send, listen and acknowledge?
+
+   function Comes_Back (N : Bus_Node) return Boolean
+   is (N.Here = Present
+       and then N.Way_Back = Recovers
+       and then Fault_Confinement.State (N.Confinement) = Bus_Off)
+   with Global => null;
+   --  Does it count recessive bits?
+
+   function Is_Same_But_Counts (A, B : Bus_Node) return Boolean
+   is (A.Here = B.Here
+       and then A.Segment = B.Segment
+       and then A.Ready_At = B.Ready_At)
+   with Global => null;
+   --  Do they differ in what was counted alone?
+
+   procedure Count
+     (N : in out Bus_Node; Event : Fault_Confinement.Fault_Event)
+   with
+     Global => null,
+     Pre    => Takes_Part (N),
+     Post   =>
+       Is_Same_But_Counts (N, N'Old)
+       and then
+         (if Event not in Fault_Confinement.Transmitter_Error
+                        | Fault_Confinement.Unanswered
+                        | Fault_Confinement.Transmitter_Flag_Error
+                        | Fault_Confinement.Transmitter_Held_Dominant
+          then Takes_Part (N));
+   --  One event of fault confinement. A receiver never becomes bus-off. Who
+   --  does, waits to be told to come back.
+
+   procedure Rest (N : in out Bus_Node; Bits : Nanoseconds)
+   with
+     Global => null,
+     Post   => Is_Same_But_Counts (N, N'Old)
+       and then (if not Comes_Back (N'Old) then N = N'Old);
+   --  So many recessive bits in a row, on the way back.
+
+   procedure Interrupt (N : in out Bus_Node)
+   with
+     Global => null,
+     Post   => Is_Same_But_Counts (N, N'Old)
+       and then (if not Comes_Back (N'Old) then N = N'Old);
+   --  A dominant bit, on the way back.
+
+end Ravenchart.Can.Bus_Nodes;

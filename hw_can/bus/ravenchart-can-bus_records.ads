@@ -1,0 +1,123 @@
+--  The records of the bus protocol (docs/bus-protocol.md): 88 bytes each, in
+--  both directions.
+--
+--  Guarantees   reading is total: any bytes give a record that keeps every
+--               rule of the page, or none; each field that a kind does not
+--               have is 0
+--  Tasking      none: records are values
+--  Timing       constant
+
+with Interfaces;
+with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Nodes;
+with Ravenchart.Can.Fault_Confinement;
+
+package Ravenchart.Can.Bus_Records
+  with SPARK_Mode, Pure
+is
+   use type Interfaces.Unsigned_8;
+   use type Interfaces.Unsigned_32;
+
+   subtype Byte is Interfaces.Unsigned_8;
+
+   type Octets is array (Positive range <>) of Byte;
+
+   Record_Bytes : constant := 88;
+
+   subtype Position is Positive range 1 .. Record_Bytes;
+   --  The page counts from 0.
+
+   subtype Image is Octets (Position);
+   --  One record as it goes over the wire.
+
+   type Request_Kind is
+     (Hello, Frame_Request, Recovery_Request, Broken, Wrong_Version);
+   --  What a client can say; Broken when it is none of them.
+
+   Version : constant := 1;
+
+   subtype Bit_Rate is Interfaces.Unsigned_32;
+   --  In bit/s; 0 takes the bus as it is.
+
+   type Request is record
+      Kind      : Request_Kind := Broken;
+      Takes_Fd  : Boolean := False;
+      Nominal   : Bit_Rate := 0;
+      Data      : Bit_Rate := 0;
+      Number    : Interfaces.Unsigned_32 := 0;
+      Frame     : Bus_Frames.Bus_Frame;
+   end record;
+   --  Takes_Fd and the rates of a hello; Number and Frame of a request.
+
+   function Read (Bytes : Image) return Request
+   with
+     Global => null,
+     Post   =>
+       (if Read'Result.Kind = Frame_Request
+        then Read'Result.Number > 0);
+   --  What a client has said.
+
+   type Status is
+     (Version_Is_Wrong,
+      Malformed,
+      No_Room,
+      Is_Bus_Off,
+      Not_Supported,
+      Wrong_Bit_Rate,
+      Closing);
+   --  Codes 1 to 7.
+
+   subtype Name_Length is Positive range 1 .. 16;
+
+   function Is_Name (Text : String) return Boolean
+   is (Text'Length in Name_Length
+       and then (for all C of Text => C in '!' .. '~'))
+   with Global => null;
+   --  May the bus be called so?
+
+   function Welcome
+     (Name    : String;
+      With_Fd : Boolean;
+      Nominal : Bit_Rate;
+      Data    : Bit_Rate;
+      Began   : Nanoseconds;
+      Now     : Nanoseconds;
+      Node    : Bus_Nodes.Node_Index) return Image
+   with
+     Global => null,
+     Pre    =>
+       Is_Name (Name)
+       and then Nominal <= 1_000_000
+       and then Data <= 20_000_000;
+   --  The answer to hello. Began: when bus time 0 was, in ns since 1970, or
+   --  0 in virtual time.
+
+   function Frame_Record
+     (Frame : Bus_Frames.Bus_Frame; Now : Nanoseconds) return Image
+   with Global => null;
+   --  A frame or an error frame that came over the bus.
+
+   function State_Record
+     (Node : Fault_Confinement.Node; Now : Nanoseconds) return Image
+   with Global => null;
+   --  The bus state of a node.
+
+   function Confirmation
+     (Number : Interfaces.Unsigned_32; Now : Nanoseconds) return Image
+   with Global => null, Pre => Number > 0;
+   --  This request was transmitted.
+
+   function Refusal
+     (Number : Interfaces.Unsigned_32; Why : Status) return Image
+   with Global => null;
+   --  This request was not; with number 0, the connection ends.
+
+   function Error_Report
+     (Identifier : Can.Identifier;
+      Details    : Interfaces.Unsigned_64;
+      Now        : Nanoseconds) return Image
+   with Global => null;
+   --  An error frame that was seen: class and details as in Linux's
+   --  can/error.h.
+
+end Ravenchart.Can.Bus_Records;

@@ -1,0 +1,313 @@
+with Interfaces;
+with Ravenchart.Can.Bus_Faults;
+with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Buses;
+with Ravenchart.Can.Fault_Confinement;
+with Ravenchart.Can.Transmit_Buffers;
+
+package body Ravenchart.Can.Bus_Servers
+  with SPARK_Mode
+is
+   use type Bus_Frames.Frame_Family;
+   use type Buses.Ending;
+   use type Interfaces.Unsigned_32;
+
+   function Is_Due (A : Agenda; Now : Nanoseconds) return Boolean
+   is (A.Next <= A.Count and then A.Events (A.Next).Start <= Now)
+   with Global => null;
+   --  Does something happen to the line by then?
+
+   function First (A : Agenda; Begun : Nanoseconds) return Nanoseconds
+   is (if Is_Due (A, Begun) then A.Events (A.Next).Start else Begun)
+   with Global => null;
+   --  When something happens to the line, or at Begun if nothing does before.
+
+   procedure Apply_Next (N : in out Networks.Network; A : in out Agenda)
+   with
+     Global => null,
+     Pre    => Networks.Is_Sound (N) and then A.Next <= A.Count,
+     Post   => Networks.Is_Sound (N);
+   --  The next event happens to the line.
+
+   function Holds
+     (B : Transmit_Buffers.Buffer; Tag : Interfaces.Unsigned_32)
+      return Boolean
+   is (for some I in 1 .. B.Count => B.Slots (I).Tag = Tag)
+   with Global => null;
+   --  Is a request of this number still to be sent?
+
+   function Is_Witness
+     (N : Networks.Network; C : Node_Index; Result : Buses.Outcome)
+      return Boolean
+   is (Result.Ended = Buses.Broken
+       and then N.Bus.Nodes (C).Segment = N.Bus.Nodes (Result.Winner).Segment)
+   with Global => null;
+   --  Did node C see an error frame?
+
+   procedure Recover (N : in out Networks.Network; C : Node_Index)
+   with
+     Global => null,
+     Pre    => Networks.Is_Sound (N),
+     Post   => Networks.Is_Sound (N);
+   --  Node C shall come back from bus-off.
+
+   procedure Ask
+     (To  : in out Bus_Clients.Client;
+      N   : in out Networks.Network;
+      C   : Node_Index;
+      R   : Bus_Records.Request;
+      Now : Nanoseconds)
+   with
+     Global => null,
+     Pre    => Networks.Is_Sound (N),
+     Post   => Networks.Is_Sound (N);
+   --  Client C asks for a frame to be sent.
+
+   procedure Publish
+     (To      : in out Bus_Clients.Client;
+      N       : in out Networks.Network;
+      C       : Node_Index;
+      Result  : Buses.Outcome;
+      Receipt : Networks.Receipt;
+      Fault   : Bus_Faults.Fault)
+   with
+     Global => null,
+     Pre    => Networks.Is_Sound (N),
+     Post   => Networks.Is_Sound (N);
+   --  What client C is told of what happened on the bus. When it is bus-off,
+   --  what it had asked for is refused.
+
+   procedure Carry
+     (Clients : in out Client_List;
+      N       : in out Networks.Network;
+      Plan    : in out Fault_Plans.Plan;
+      M       : Networks.Moment)
+   with
+     Global => null,
+     Pre    =>
+       Networks.Is_Sound (N)
+       and then
+         M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
+     Post   => Networks.Is_Sound (N);
+   --  What begins on the bus at M, and who is told of it.
+
+   ----------------
+   -- Apply_Next --
+   ----------------
+
+   procedure Apply_Next (N : in out Networks.Network; A : in out Agenda) is
+   begin
+      Line_Events.Apply (N, A.Events (A.Next));
+      A.Next := A.Next + 1;
+   end Apply_Next;
+
+   -------------
+   -- Recover --
+   -------------
+
+   procedure Recover (N : in out Networks.Network; C : Node_Index) is
+   begin
+      N.Bus.Nodes (C).Way_Back := Recovers;
+   end Recover;
+
+   ---------
+   -- Ask --
+   ---------
+
+   procedure Ask
+     (To  : in out Bus_Clients.Client;
+      N   : in out Networks.Network;
+      C   : Node_Index;
+      R   : Bus_Records.Request;
+      Now : Nanoseconds)
+   is
+      Status : Send_Status;
+   begin
+      if Holds (N.Buffers (C), R.Number) then
+         Bus_Clients.End_With (To, Bus_Records.Malformed);
+      elsif R.Frame.Family = Bus_Frames.Flexible and then not To.Takes_Fd then
+         Bus_Clients.Refuse (To, R.Number, Bus_Records.Not_Supported);
+      elsif not Takes_Part (N.Bus.Nodes (C)) then
+         Bus_Clients.Refuse (To, R.Number, Bus_Records.Is_Bus_Off);
+      else
+         Networks.Submit
+           (N, C, (Frame => R.Frame, Tag => R.Number, Since => Now), Status);
+         if Status = Rejected_Full then
+            Bus_Clients.Refuse (To, R.Number, Bus_Records.No_Room);
+         end if;
+      end if;
+   end Ask;
+
+   -------------
+   -- Publish --
+   -------------
+
+   procedure Publish
+     (To      : in out Bus_Clients.Client;
+      N       : in out Networks.Network;
+      C       : Node_Index;
+      Result  : Buses.Outcome;
+      Receipt : Networks.Receipt;
+      Fault   : Bus_Faults.Fault)
+   is
+      Node : constant Fault_Confinement.Node := N.Bus.Nodes (C).Confinement;
+   begin
+      Bus_Clients.Tell_Frame (To, C, Result, Receipt.Tag, Fault);
+      if not Bus_Clients.Knows (To, Node) then
+         To.Last := Bus_Clients.Time_Heard (To, C, Result, Fault);
+         if Is_Witness (N, C, Result) then
+            Bus_Clients.Tell_Error (To, Result.Error.Kind);
+         end if;
+         Bus_Clients.Tell_State (To, Node);
+         if Fault_Confinement.State (Node) = Bus_Off then
+            Bus_Clients.Refuse_All (To, N.Buffers (C));
+            Networks.Withdraw (N, C);
+         end if;
+      end if;
+   end Publish;
+
+   -----------
+   -- Carry --
+   -----------
+
+   procedure Carry
+     (Clients : in out Client_List;
+      N       : in out Networks.Network;
+      Plan    : in out Fault_Plans.Plan;
+      M       : Networks.Moment)
+   is
+      Fault    : Bus_Faults.Fault;
+      Result   : Buses.Outcome;
+      Receipts : Networks.Receipt_List;
+   begin
+      Fault_Plans.Draw (Plan, M.Start, Fault);
+      Networks.Step (N, M, Fault, Result, Receipts);
+      if Result.Ended = Buses.Broken then
+         Fault_Plans.Note (Plan, Result.Struck);
+      end if;
+      for C in Node_Index loop
+         pragma Loop_Invariant (Networks.Is_Sound (N));
+         if Clients (C).State = Bus_Clients.Joined then
+            Publish (Clients (C), N, C, Result, Receipts (C), Fault);
+         end if;
+      end loop;
+   end Carry;
+
+   -------------
+   -- Connect --
+   -------------
+
+   procedure Connect (Clients : in out Client_List; C : out Node_Index) is
+   begin
+      C := 1;
+      while Clients (C).State /= Bus_Clients.Unconnected loop
+         pragma Loop_Invariant
+           (for all D in 1 .. C =>
+              Clients (D).State /= Bus_Clients.Unconnected);
+         C := C + 1;
+      end loop;
+      Bus_Clients.Welcome (Clients (C));
+   end Connect;
+
+   ----------------
+   -- Disconnect --
+   ----------------
+
+   procedure Disconnect (S : in out Server; C : Node_Index) is
+   begin
+      Line_Events.Leave (S.Net, C);
+      Bus_Clients.Forget (S.Clients (C));
+   end Disconnect;
+
+   ----------
+   -- Take --
+   ----------
+
+   procedure Take
+     (S     : in out Server;
+      C     : Node_Index;
+      Bytes : Bus_Records.Image;
+      Now   : Nanoseconds)
+   is
+      R     : constant Bus_Records.Request := Bus_Records.Read (Bytes);
+      Joins : Boolean;
+   begin
+      case S.Clients (C).State is
+         when Bus_Clients.Greeting =>
+            Bus_Clients.Greet (S.Clients (C), C, S.Profile, R, Now, Joins);
+            if Joins then
+               Line_Events.Join (S.Net, C);
+            end if;
+         when Bus_Clients.Joined   =>
+            case R.Kind is
+               when Bus_Records.Frame_Request    =>
+                  Ask (S.Clients (C), S.Net, C, R, Now);
+               when Bus_Records.Recovery_Request =>
+                  Recover (S.Net, C);
+               when others                       =>
+                  Bus_Clients.End_With
+                    (S.Clients (C), Bus_Records.Malformed);
+            end case;
+         when others               =>
+            null;
+      end case;
+   end Take;
+
+   ---------
+   -- Run --
+   ---------
+
+   procedure Run (S : in out Server; Horizon : Nanoseconds; Busy : out Boolean)
+   is
+      Moment : Networks.Moment;
+   begin
+      Busy := True;
+      for Count in 1 .. Steps loop
+         pragma Loop_Invariant (Is_Sound (S));
+         Moment := Networks.Next (S.Net);
+         if Is_Due (S.Agenda, Horizon)
+           and then
+             (if Moment.Known
+              then Is_Due (S.Agenda, Moment.Start)
+              else not Is_Virtual (S))
+         then
+            Apply_Next (S.Net, S.Agenda);
+         elsif Moment.Known
+           and then Moment.Start <= Horizon
+           and then Moment.Start <= Buses.Last_Start
+         then
+            Carry (S.Clients, S.Net, S.Plan, Moment);
+         else
+            Busy := False;
+            return;
+         end if;
+      end loop;
+   end Run;
+
+   ---------------
+   -- Close_All --
+   ---------------
+
+   procedure Close_All (Clients : in out Client_List) is
+   begin
+      for To of Clients loop
+         if To.State in Bus_Clients.Greeting | Bus_Clients.Joined then
+            Bus_Clients.End_With (To, Bus_Records.Closing);
+         end if;
+      end loop;
+   end Close_All;
+
+   ----------------
+   -- Next_Start --
+   ----------------
+
+   function Next_Start (S : Server) return Nanoseconds is
+      Moment : constant Networks.Moment := Networks.Next (S.Net);
+   begin
+      return
+        First
+          (S.Agenda,
+           (if Moment.Known then Moment.Start else Nanoseconds'Last));
+   end Next_Start;
+
+end Ravenchart.Can.Bus_Servers;

@@ -1,0 +1,132 @@
+--  The rulings on one frame: who sends it, what happens to it first, and
+--  what that does to everyone's error counters.
+--
+--  Guarantees   the winner is first in arbitration; without trouble all
+--               senders send the same frame, and all receivers but one that
+--               is deaf hear it
+--  Tasking      none: rulings are values
+--  Timing       linear in the length of a frame and in the nodes
+
+with Ravenchart.Can.Fault_Confinement;
+
+private package Ravenchart.Can.Buses.Rulings
+  with SPARK_Mode, Pure
+is
+
+   type Role is (Outside, Listener, Sender);
+   --  What a node is in one frame, once arbitration is over.
+
+   type Role_List is array (Node_Index) of Role;
+
+   type Trouble_Kind is (Untroubled, Seen, Collided, Unacknowledged);
+   --  Seen: a bit was disturbed, for everyone or for one witness. Collided:
+   --  two frames were alike in arbitration, and differ behind it.
+
+   type Trouble is record
+      Kind     : Trouble_Kind := Untroubled;
+      Position : Wire.Bit_Count := 0;
+      Deaf     : Natural range 0 .. 16 := 0;
+   end record;
+   --  Deaf: an error-passive receiver that alone saw a disturbed bit, so
+   --  that its flag disturbs nobody.
+
+   function Is_Passive (N : Bus_Node) return Boolean
+   is (Fault_Confinement.State (N.Confinement) /= Error_Active)
+   with Global => null;
+   --  Is its error flag a passive one?
+
+   function Fits
+     (Roles : Role_List; B : Bus; S : Segment) return Boolean
+   is (for all N in Node_Index =>
+         (Roles (N) /= Outside) = Listens (B, N, S))
+   with
+     Ghost,
+     Global => null;
+   --  Has everyone who listens a role, and nobody else?
+
+   function Anyone (Roles : Role_List; R : Role) return Boolean
+   is (for some N in Node_Index => Roles (N) = R)
+   with Global => null;
+   --  Has somebody this role?
+
+   procedure Settle
+     (B      : Bus;
+      S      : Segment;
+      Now     : Nanoseconds;
+      Offers : Offer_List;
+      Roles  : out Role_List;
+      Winner : out Node_Index;
+      Begun  : out Boolean)
+   with
+     Global => null,
+     Post   =>
+       Fits (Roles, B, S)
+       and then
+         (for all N in Node_Index =>
+            (if Roles (N) = Sender then Contends (B, N, S, Now, Offers)))
+       and then
+         (if Begun
+          then Roles (Winner) = Sender
+            and then
+              (for all N in Node_Index =>
+                 (if Contends (B, N, S, Now, Offers)
+                  then
+                    Bus_Frames.Is_First
+                      (Offers (Winner).Frame, Offers (N).Frame))));
+   --  Arbitration. Frames that are alike in it are all still sent.
+
+   procedure Find
+     (B       : Bus;
+      Offers  : Offer_List;
+      Roles   : Role_List;
+      Winner  : Node_Index;
+      Fault   : Bus_Faults.Fault;
+      Image   : Wire.Image;
+      Found   : out Trouble)
+   with
+     Global => null,
+     Pre    => Roles (Winner) = Sender,
+     Post   =>
+       (if Found.Kind = Untroubled
+        then
+          (for all N in Node_Index =>
+             (if Roles (N) = Sender
+              then Offers (N).Frame = Offers (Winner).Frame)))
+       and then
+         (if Found.Deaf > 0
+          then Bus_Faults.Is_Witness (Fault, Found.Deaf));
+   --  What happens first to the frame that is on the bus.
+
+   procedure Judge
+     (Nodes : in out Node_List;
+      Roles : Role_List;
+      Fault : Bus_Faults.Fault;
+      Found : Trouble;
+      Quiet : Boolean;
+      Sent  : out Node_Set;
+      Heard : out Node_Set)
+   with
+     Global => null,
+     Pre    =>
+       (for all N in Node_Index =>
+          (if Roles (N) /= Outside then Takes_Part (Nodes (N)))),
+     Post   =>
+       (for all N in Node_Index =>
+          Is_Same_But_Counts (Nodes (N), Nodes'Old (N))
+          and then
+            (if Roles (N) = Outside then Nodes (N) = Nodes'Old (N)))
+       and then
+         (for all N in Node_Index =>
+            Sent (N) =
+              (Roles (N) = Sender and then Found.Kind = Untroubled))
+       and then
+         (for all N in Node_Index =>
+            (if Heard (N) then Roles (N) = Listener)
+            and then
+              (if Found.Kind = Untroubled
+                 and then Roles (N) = Listener
+                 and then Natural (N) /= Found.Deaf
+               then Heard (N)));
+   --  Everyone's error counters. Quiet: the flag of the sender is recessive.
+
+end Ravenchart.Can.Buses.Rulings;

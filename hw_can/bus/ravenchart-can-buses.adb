@@ -1,0 +1,449 @@
+with Ravenchart.Can.Buses.Rulings;
+with Ravenchart.Can.Fault_Confinement;
+
+package body Ravenchart.Can.Buses
+  with SPARK_Mode
+is
+   use Rulings;
+   use type Bus_Frames.Frame_Family;
+   use type Error_Frames.Error_Flag;
+   use type Error_Frames.Error_Frame;
+
+   After_Dominant : constant := 11;
+   --  Recessive bits from the delimiter of the acknowledgement, or of an
+   --  error, to the end of the intermission.
+
+   Passive_Flag : constant := 6;
+   --  Recessive bits more.
+
+   Intermission : constant := 3;
+
+   Suspended : constant := 8;
+   --  Suspend transmission.
+
+   Held_Period : constant := 8;
+   --  Dominant bits after which a node counts again.
+
+   procedure Conclude
+     (B     : in out Bus;
+      S     : Segment;
+      Roles : Role_List;
+      Quiet : Nanoseconds;
+      Noisy : Boolean)
+   with
+     Global => null,
+     Pre    => B.Free_At (S) <= Nanoseconds'Last - Bus_Frames.Longest_Time,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then B.Free_At = B.Free_At'Old
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment /= S and then Roles (N) = Outside
+             then B.Nodes (N) = B.Nodes'Old (N)));
+   --  What is left to do when the segment is free: passive senders wait, and
+   --  bus-off nodes have heard so many recessive bits, behind dominant ones
+   --  where it was Noisy.
+
+   procedure Carry
+     (B      : in out Bus;
+      S      : Segment;
+      Now     : Start_Time;
+      Offers : Offer_List;
+      Fault  : Bus_Faults.Fault;
+      Roles  : Role_List;
+      Winner : Node_Index;
+      Result : in out Outcome)
+   with
+     Global => null,
+     Pre    =>
+       B.Free_At (S) = Now
+       and then Result.Start = Now
+       and then Fits (Roles, B, S)
+       and then Roles (Winner) = Sender,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then Result.Start = Now
+       and then Result.Finish in Now .. B.Free_At (S)
+       and then Result.Struck <= B.Free_At (S)
+       and then
+         (for all T in Segment =>
+            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment /= S
+             then B.Nodes (N) = B.Nodes'Old (N)))
+       and then Result.Winner = Winner
+       and then Result.Frame = Offers (Winner).Frame
+       and then Result.Ended /= Silence
+       and then
+         (for all N in Node_Index =>
+            (if Result.Sent (N)
+             then Roles (N) = Sender
+               and then Offers (N).Frame = Result.Frame)
+            and then
+              (if Result.Heard (N)
+               then Roles (N) /= Outside and then not Result.Sent (N)))
+       and then
+         (if Result.Ended = Whole
+          then Result.Sent (Winner)
+            and then
+              (for all N in Node_Index =>
+                 (if Roles (N) /= Outside
+                    and then not Result.Sent (N)
+                    and then
+                      not Bus_Faults.Is_Witness (Fault, Positive (N))
+                  then Result.Heard (N))));
+   --  The frame of the winner on a sound line.
+
+   procedure Hold (B : in out Bus; S : Segment; Now : Start_Time)
+   with
+     Global => null,
+     Pre    => B.Free_At (S) = Now,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then Now <= B.Free_At (S)
+       and then
+         (for all T in Segment =>
+            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment /= S
+             then B.Nodes (N) = B.Nodes'Old (N)));
+   --  A dominant bus: whoever begins to send loses arbitration, so that all
+   --  are receivers, and count.
+
+   procedure Fail
+     (B      : in out Bus;
+      S      : Segment;
+      Now     : Start_Time;
+      Offers : Offer_List;
+      Result : in out Outcome)
+   with
+     Global => null,
+     Pre    =>
+       B.Free_At (S) = Now
+       and then Result =
+         (Outcome'(Start => Now, Finish => Now, Struck => Now,
+                   others => <>)),
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then Result.Start = Now
+       and then Result.Finish in Now .. B.Free_At (S)
+       and then Result.Struck <= B.Free_At (S)
+       and then
+         (for all T in Segment =>
+            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment /= S
+             then B.Nodes (N) = B.Nodes'Old (N)))
+       and then
+         (for all N in Node_Index =>
+            not Result.Sent (N) and then not Result.Heard (N))
+       and then Result.Ended /= Whole
+       and then
+         (if Result.Ended /= Silence
+          then Contends (B'Old, Result.Winner, S, Now, Offers)
+            and then Offers (Result.Winner).Frame = Result.Frame);
+   --  A recessive bus: whoever begins to send reads its first bit back as
+   --  another, and the bits of its flag as well.
+
+   ----------
+   -- Pass --
+   ----------
+
+   procedure Pass (B : in out Bus; S : Segment; Now : Nanoseconds) is
+      Bits : constant Nanoseconds := (Now - B.Free_At (S)) / B.Times.Nominal;
+   begin
+      B.Free_At (S) := Now;
+      for N in Node_Index loop
+         if B.Nodes (N).Segment = S and then B.Line /= Held_Dominant then
+            Rest (B.Nodes (N), Bits);
+         end if;
+         pragma Loop_Invariant
+           (for all M in Node_Index =>
+              Is_Same_But_Counts (B.Nodes (M), B.Nodes'Loop_Entry (M))
+              and then
+                (if M > N
+                   or else B.Nodes'Loop_Entry (M).Segment /= S
+                   or else not Comes_Back (B.Nodes'Loop_Entry (M))
+                 then B.Nodes (M) = B.Nodes'Loop_Entry (M)));
+      end loop;
+   end Pass;
+
+   --------------
+   -- Conclude --
+   --------------
+
+   procedure Conclude
+     (B     : in out Bus;
+      S     : Segment;
+      Roles : Role_List;
+      Quiet : Nanoseconds;
+      Noisy : Boolean) is
+   begin
+      for N in Node_Index loop
+         if Roles (N) = Sender then
+            if Is_Passive (B.Nodes (N)) then
+               B.Nodes (N).Ready_At :=
+                 B.Free_At (S) + Suspended * B.Times.Nominal;
+            end if;
+         elsif B.Nodes (N).Segment = S and then Roles (N) = Outside then
+            if Noisy then
+               Interrupt (B.Nodes (N));
+            end if;
+            Rest (B.Nodes (N), Quiet);
+         end if;
+         pragma Loop_Invariant
+           (for all M in Node_Index =>
+              (if M > N
+                 or else
+                   (B.Nodes'Loop_Entry (M).Segment /= S
+                    and then Roles (M) = Outside)
+               then B.Nodes (M) = B.Nodes'Loop_Entry (M)));
+      end loop;
+   end Conclude;
+
+   -----------
+   -- Carry --
+   -----------
+
+   procedure Carry
+     (B      : in out Bus;
+      S      : Segment;
+      Now     : Start_Time;
+      Offers : Offer_List;
+      Fault  : Bus_Faults.Fault;
+      Roles  : Role_List;
+      Winner : Node_Index;
+      Result : in out Outcome)
+   is
+      Before : constant Node_List := B.Nodes with Ghost;
+      Frame  : constant Bus_Frames.Bus_Frame := Offers (Winner).Frame;
+      Image  : constant Wire.Image := Bus_Frames.Image_Of (Frame);
+      Found  : Trouble;
+      Quiet  : Boolean;
+      Active : Boolean := False;
+      Bits   : Wire.Phases;
+   begin
+      pragma Assert
+        (for all N in Node_Index =>
+           (if Before (N).Segment /= S
+            then not Listens (B, N, S) and then Roles (N) = Outside));
+      Result.Winner := Winner;
+      Result.Frame  := Frame;
+      if Frame.Family = Bus_Frames.Asked_Error then
+         Result.Ended  := Whole;
+         Result.Sent   := (others => False);
+         for N in Node_Index loop
+            Result.Heard (N) := Roles (N) /= Outside and then N /= Winner;
+            pragma Loop_Invariant
+              (for all M in 1 .. N =>
+                 Result.Heard (M)
+                 = (Roles (M) /= Outside and then M /= Winner));
+         end loop;
+         Result.Sent (Winner) := True;
+         Result.Struck := Now;
+         Result.Finish :=
+           Now + Nanoseconds (Error_Frames.Length (Result.Error))
+                * B.Times.Nominal;
+         B.Free_At (S) := Result.Finish + Intermission * B.Times.Nominal;
+         pragma Assert
+           (Result.Struck in Now .. Result.Finish
+            and then Result.Finish <= B.Free_At (S));
+         Conclude (B, S, Roles, After_Dominant, Noisy => True);
+         return;
+      end if;
+
+      Find (B, Offers, Roles, Winner, Fault, Image, Found);
+      Quiet := Is_Passive (B.Nodes (Winner));
+      for N in Node_Index loop
+         Active := Active
+           or else
+             (Roles (N) /= Outside and then not Is_Passive (B.Nodes (N)));
+      end loop;
+      if Found.Kind = Untroubled then
+         Result.Ended  := Whole;
+         Result.Struck := Now;
+         Bits := Bus_Frames.Phases_Until
+           (Image, Bus_Frames.Rate_Of (Frame),
+            Image.Ends (Wire.End_Of_Frame));
+         Result.Finish := Now + Bus_Frames.Time_Of (Bits, B.Times);
+         B.Free_At (S) :=
+           Result.Finish + Intermission * B.Times.Nominal;
+         pragma Assert
+           (Result.Struck in Now .. Result.Finish
+            and then Result.Finish <= B.Free_At (S));
+      else
+         Result.Ended    := Broken;
+         Result.Position := Found.Position;
+         Bits := Bus_Frames.Phases_Until
+           (Image, Bus_Frames.Rate_Of (Frame), Found.Position);
+         Result.Struck := Now + Bus_Frames.Time_Of (Bits, B.Times);
+         Result.Error :=
+           (Kind =>
+              (if Found.Kind = Unacknowledged
+               then Error_Frames.Acknowledgement_Error
+               else Error_Frames.Bit_Error),
+            Role => Error_Frames.Transmitter,
+            Flag =>
+              (if (if Found.Kind = Unacknowledged then Quiet
+                   else not Active)
+               then Error_Frames.Passive_Flag
+               else Error_Frames.Active_Flag),
+            Echo =>
+              (case Found.Kind is
+                 when Untroubled     => 0,
+                 when Seen           =>
+                   (if Fault.Node = Bus_Faults.Everyone then 0 else 6),
+                 when Collided       => 6,
+                 when Unacknowledged =>
+                   (if Quiet or else not Anyone (Roles, Listener)
+                    then 0 else 1)));
+         Result.Finish := Result.Struck
+           + Nanoseconds (Error_Frames.Length (Result.Error))
+             * B.Times.Nominal;
+         B.Free_At (S) :=
+           Result.Finish + Intermission * B.Times.Nominal;
+         pragma Assert
+           (Result.Struck in Now .. Result.Finish
+            and then Result.Finish <= B.Free_At (S));
+      end if;
+      Judge
+        (B.Nodes, Roles, Fault, Found, Quiet, Result.Sent, Result.Heard);
+      pragma Assert
+        (for all N in Node_Index =>
+           (if Before (N).Segment /= S then B.Nodes (N) = Before (N)));
+      pragma Assert
+        (for all N in Node_Index =>
+           (if Result.Ended = Whole
+              and then Roles (N) /= Outside
+              and then not Result.Sent (N)
+              and then not Bus_Faults.Is_Witness (Fault, Positive (N))
+            then Result.Heard (N)));
+      Conclude
+        (B, S, Roles,
+         (if Found.Kind /= Untroubled
+            and then Result.Error.Flag = Error_Frames.Passive_Flag
+          then Passive_Flag + After_Dominant
+          else After_Dominant),
+         Noisy => True);
+   end Carry;
+
+   ----------
+   -- Hold --
+   ----------
+
+   procedure Hold (B : in out Bus; S : Segment; Now : Start_Time) is
+   begin
+      B.Free_At (S) := Now + Held_Period * B.Times.Nominal;
+      for N in Node_Index loop
+         if Listens (B, N, S) then
+            Count (B.Nodes (N), Fault_Confinement.Receiver_Held_Dominant);
+         elsif B.Nodes (N).Segment = S then
+            Interrupt (B.Nodes (N));
+         end if;
+         pragma Loop_Invariant
+           (for all M in Node_Index =>
+              (if M > N or else B.Nodes'Loop_Entry (M).Segment /= S
+               then B.Nodes (M) = B.Nodes'Loop_Entry (M)));
+      end loop;
+   end Hold;
+
+   ----------
+   -- Fail --
+   ----------
+
+   procedure Fail
+     (B      : in out Bus;
+      S      : Segment;
+      Now     : Start_Time;
+      Offers : Offer_List;
+      Result : in out Outcome)
+   is
+      Roles : Role_List := (others => Outside);
+   begin
+      for N in Node_Index loop
+         if Contends (B, N, S, Now, Offers) then
+            Roles (N)     := Sender;
+            Result.Ended  := Broken;
+            Result.Winner := N;
+            Result.Frame  := Offers (N).Frame;
+            Count (B.Nodes (N), Fault_Confinement.Transmitter_Error);
+            if Takes_Part (B.Nodes (N))
+              and then not Is_Passive (B.Nodes (N))
+            then
+               Count
+                 (B.Nodes (N), Fault_Confinement.Transmitter_Flag_Error);
+            end if;
+         end if;
+         pragma Loop_Invariant
+           (for all M in Node_Index =>
+              (if M > N or else B.Nodes'Loop_Entry (M).Segment /= S
+               then B.Nodes (M) = B.Nodes'Loop_Entry (M)
+                 and then Roles (M) = Outside));
+         pragma Loop_Invariant
+           (for all M in Node_Index =>
+              Is_Same_But_Counts (B.Nodes (M), B.Nodes'Loop_Entry (M)));
+         pragma Loop_Invariant
+           (if Result.Ended /= Silence
+            then Contends (B'Loop_Entry, Result.Winner, S, Now, Offers)
+              and then Offers (Result.Winner).Frame = Result.Frame);
+         pragma Loop_Invariant (Result.Ended /= Whole);
+         pragma Loop_Invariant
+           (Result.Start = Now and then Result.Finish = Now
+            and then Result.Struck = Now
+            and then Result.Error = Result.Error'Loop_Entry
+            and then Result.Sent = Result.Sent'Loop_Entry
+            and then Result.Heard = Result.Heard'Loop_Entry);
+      end loop;
+      if Result.Ended = Broken then
+         Result.Position := 1;
+         Result.Struck   := Now + B.Times.Nominal;
+         Result.Finish := Result.Struck
+           + Nanoseconds (Error_Frames.Length (Result.Error))
+             * B.Times.Nominal;
+         B.Free_At (S) :=
+           Result.Finish + Intermission * B.Times.Nominal;
+         Conclude
+           (B, S, Roles,
+            1 + Passive_Flag + After_Dominant, Noisy => False);
+      end if;
+   end Fail;
+
+   -------------
+   -- Contest --
+   -------------
+
+   procedure Contest
+     (B      : in out Bus;
+      S      : Segment;
+      Now     : Start_Time;
+      Offers : Offer_List;
+      Fault  : Bus_Faults.Fault;
+      Result : out Outcome)
+   is
+      Roles  : Role_List;
+      Winner : Node_Index;
+      Begun  : Boolean;
+   begin
+      Result :=
+        (Start => Now, Finish => Now, Struck => Now, others => <>);
+      case B.Line is
+         when Sound          =>
+            Settle (B, S, Now, Offers, Roles, Winner, Begun);
+            if Begun then
+               Carry (B, S, Now, Offers, Fault, Roles, Winner, Result);
+            end if;
+         when Held_Dominant  =>
+            Hold (B, S, Now);
+         when Held_Recessive =>
+            Fail (B, S, Now, Offers, Result);
+      end case;
+   end Contest;
+
+end Ravenchart.Can.Buses;

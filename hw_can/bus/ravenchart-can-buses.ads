@@ -1,0 +1,174 @@
+--  A bus in virtual time: who is on it, what becomes of the frames that are
+--  offered at one instant, and what it does to everyone's error counters.
+--
+--  Guarantees   time never goes back; what is heard, and what is sent, is
+--               the frame of the winner, and no other offer precedes it; a
+--               frame that is sent was offered; nobody hears its own frame
+--  Tasking      none: one owner for each Bus
+--  Timing       linear in the length of a frame and in the nodes
+--
+--  ISO 11898-1 (2015): arbitration, acknowledgement, error signalling and
+--  fault confinement; bits are synchronous at all nodes. A cut divides the
+--  bus into segments, each with its own time. Simpler than the standard: an
+--  error flag is not sent again when it is disturbed itself, and there are
+--  no overload frames.
+
+with Ravenchart.Can.Bus_Faults;
+with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Nodes;
+with Ravenchart.Can.Error_Frames;
+with Ravenchart.Can.Wire;
+
+package Ravenchart.Can.Buses
+  with SPARK_Mode, Pure
+is
+   use Bus_Nodes;
+   use type Bus_Frames.Bit_Times;
+   use type Bus_Frames.Bus_Frame;
+
+   type Line_State is (Sound, Held_Dominant, Held_Recessive);
+   --  Held: shorted, so that nobody's other level gets through.
+
+   subtype Segment is Node_Index;
+   --  A part of the bus that is connected; all are in segment 1 at first.
+
+   Last_Start : constant Nanoseconds :=
+     Nanoseconds'Last - 4 * Bus_Frames.Longest_Time;
+   --  No frame begins later.
+
+   subtype Start_Time is Nanoseconds range 0 .. Last_Start;
+
+   type Free_Times is array (Segment) of Nanoseconds;
+
+   type Bus is record
+      Times   : Bus_Frames.Bit_Times;
+      Line    : Line_State := Sound;
+      Free_At : Free_Times := (others => 0);
+      Nodes   : Node_List;
+   end record;
+   --  A segment is busy, intermission included, until Free_At.
+
+   type Offer is record
+      Frame   : Bus_Frames.Bus_Frame;
+      Present : Boolean := False;
+   end record;
+   --  The head of a controller's transmit buffer, if there is one.
+
+   type Offer_List is array (Node_Index) of Offer;
+
+   type Node_Set is array (Node_Index) of Boolean;
+
+   function Listens
+     (B : Bus; N : Node_Index; S : Segment) return Boolean
+   is (Takes_Part (B.Nodes (N)) and then B.Nodes (N).Segment = S)
+   with Global => null;
+   --  Is N on this segment, and not bus-off?
+
+   function Contends
+     (B      : Bus;
+      N      : Node_Index;
+      S      : Segment;
+      Now     : Nanoseconds;
+      Offers : Offer_List) return Boolean
+   is (Listens (B, N, S)
+       and then Offers (N).Present
+       and then B.Nodes (N).Ready_At <= Now)
+   with Global => null;
+   --  Does N start to send there at that time?
+
+   type Ending is (Silence, Whole, Broken);
+   --  Nobody sent; the frame came to its end, or to an error frame.
+
+   type Outcome is record
+      Ended    : Ending := Silence;
+      Start    : Nanoseconds := 0;
+      Finish   : Nanoseconds := 0;
+      Winner   : Node_Index := 1;
+      Frame    : Bus_Frames.Bus_Frame;
+      Sent     : Node_Set := (others => False);
+      Heard    : Node_Set := (others => False);
+      Position : Wire.Bit_Count := 0;
+      Struck   : Nanoseconds := 0;
+      Error    : Error_Frames.Error_Frame;
+   end record;
+   --  Finish is the end of the frame, before the intermission. Sent: whose
+   --  offer is done. Heard: who has received Frame. Position, Struck and
+   --  Error, when Broken: behind which bit the error frame begins, and when.
+
+   procedure Pass (B : in out Bus; S : Segment; Now : Nanoseconds)
+   with
+     Global => null,
+     Pre    => B.Free_At (S) <= Now,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then
+         (for all T in Segment =>
+            B.Free_At (T) = (if T = S then Now else B.Free_At'Old (T)))
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment = S
+             then Is_Same_But_Counts (B.Nodes (N), B.Nodes'Old (N))
+             else B.Nodes (N) = B.Nodes'Old (N)))
+       and then
+         (for all N in Node_Index =>
+            (if not Comes_Back (B.Nodes'Old (N))
+             then B.Nodes (N) = B.Nodes'Old (N)));
+   --  The segment was idle up to now: nodes that are bus-off and shall come
+   --  back have counted its recessive bits.
+
+   procedure Contest
+     (B      : in out Bus;
+      S      : Segment;
+      Now     : Start_Time;
+      Offers : Offer_List;
+      Fault  : Bus_Faults.Fault;
+      Result : out Outcome)
+   with
+     Global => null,
+     Pre    => B.Free_At (S) = Now,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then Result.Start = Now
+       and then Result.Finish in Now .. B.Free_At (S)
+       and then Result.Struck <= B.Free_At (S)
+       and then
+         (for all T in Segment =>
+            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment /= S
+             then B.Nodes (N) = B.Nodes'Old (N)))
+       and then
+         (for all N in Node_Index =>
+            (if Result.Sent (N)
+             then Contends (B'Old, N, S, Now, Offers)
+               and then Offers (N).Frame = Result.Frame
+               and then not Result.Heard (N)))
+       and then
+         (for all N in Node_Index =>
+            (if Result.Heard (N) then Listens (B'Old, N, S)))
+       and then
+         (if Result.Ended /= Silence
+          then Contends (B'Old, Result.Winner, S, Now, Offers)
+            and then Offers (Result.Winner).Frame = Result.Frame)
+       and then
+         (if Result.Ended = Whole
+          then Result.Sent (Result.Winner)
+            and then
+              (for all N in Node_Index =>
+                 (if Listens (B'Old, N, S)
+                    and then not Result.Sent (N)
+                    and then
+                      not Bus_Faults.Is_Witness (Fault, Positive (N))
+                  then Result.Heard (N))))
+       and then
+         (if B.Line = Sound and then Result.Ended /= Silence
+          then
+            (for all N in Node_Index =>
+               (if Contends (B'Old, N, S, Now, Offers)
+                then Bus_Frames.Is_First (Result.Frame, Offers (N).Frame))));
+   --  Everyone on segment S who has something to send starts at that time.
+
+end Ravenchart.Can.Buses;

@@ -1,0 +1,90 @@
+--  Which frame of a run meets which fault: as a list says, or by chance from
+--  a seed, so that the same run comes again.
+--
+--  Guarantees   each fault of the list comes once, with the frame that it
+--               names; two faults of chance are never closer than the
+--               separation
+--  Tasking      none: one owner for each Plan
+--  Timing       linear in the list
+
+with Interfaces;
+with Ravenchart.Can.Bus_Faults;
+with Ravenchart.Can.Wire;
+
+package Ravenchart.Can.Fault_Plans
+  with SPARK_Mode, Pure
+is
+   use type Bus_Faults.Fault;
+   use type Bus_Faults.Fault_Kind;
+   use type Interfaces.Unsigned_32;
+
+   type Planned is record
+      Frame : Event_Count := 0;
+      Fault : Bus_Faults.Fault;
+   end record;
+   --  Frames that began, errors included, count from 1.
+
+   subtype Plan_Count is Natural range 0 .. 64;
+
+   subtype Plan_Index is Plan_Count range 1 .. 64;
+
+   type Planned_List is array (Plan_Index) of Planned;
+
+   type Plan is record
+      Listed     : Planned_List;
+      Count      : Plan_Count := 0;
+      Frames     : Event_Count := 0;
+      Seed       : Interfaces.Unsigned_32 := 0;
+      Separation : Nanoseconds := 0;
+      Not_Before : Nanoseconds := 0;
+   end record;
+   --  With a Separation above 0, a frame that begins at Not_Before or later
+   --  has a bit disturbed, at a place that the Seed decides.
+
+   function Next (Seed : Interfaces.Unsigned_32)
+     return Interfaces.Unsigned_32
+   is (Seed * 1_664_525 + 1_013_904_223)
+   with Global => null;
+   --  The sequence of Knuth and Lewis, for its upper bits.
+
+   function Place (Seed : Interfaces.Unsigned_32) return Wire.Bit_Index
+   is (1 + Natural (Interfaces.Shift_Right (Seed, 16) mod 160))
+   with Global => null;
+   --  The bit that chance disturbs: anywhere in a classic frame.
+
+   function Is_Listed (P : Plan; Frame : Event_Count) return Boolean
+   is (for some I in 1 .. P.Count => P.Listed (I).Frame = Frame)
+   with Global => null;
+   --  Does the list name this frame?
+
+   procedure Draw
+     (P : in out Plan; Now : Nanoseconds; Fault : out Bus_Faults.Fault)
+   with
+     Global => null,
+     Post   =>
+       P.Count = P.Count'Old
+       and then P.Frames = Next (P.Frames'Old)
+       and then P.Separation = P.Separation'Old
+       and then P.Not_Before = P.Not_Before'Old
+       and then
+         (if Is_Listed (P, P.Frames)
+          then
+            (for some I in 1 .. P.Count =>
+               P.Listed (I).Frame = P.Frames
+               and then P.Listed (I).Fault = Fault)
+          elsif Fault.Kind /= Bus_Faults.None
+          then P.Separation > 0
+            and then Now >= P.Not_Before
+            and then Fault.Kind = Bus_Faults.Disturbed_Bit);
+   --  The fault of the frame that begins Now.
+
+   procedure Note (P : in out Plan; Struck : Nanoseconds)
+   with
+     Global => null,
+     Post   =>
+       (if Struck <= Nanoseconds'Last - P.Separation
+        then P.Not_Before = Struck + P.Separation
+        else P.Not_Before = Nanoseconds'Last);
+   --  An error came then: chance is quiet for a while.
+
+end Ravenchart.Can.Fault_Plans;

@@ -1,0 +1,171 @@
+--  Controllers with their transmit buffers on one simulated bus: what is
+--  asked for, and what comes of it.
+--
+--  Guarantees   a frame stays in its buffer until it was sent: who loses
+--               arbitration, or meets an error, keeps it; each node offers
+--               the head of its buffer; time never goes back
+--  Tasking      none: one owner for each Network
+--  Timing       linear in the nodes and in what a buffer holds
+
+with Interfaces;
+with Ravenchart.Can.Bus_Faults;
+with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Nodes;
+with Ravenchart.Can.Buses;
+with Ravenchart.Can.Fault_Confinement;
+with Ravenchart.Can.Transmit_Buffers;
+
+package Ravenchart.Can.Networks
+  with SPARK_Mode, Pure
+is
+   pragma Assertion_Policy (Post => Ignore);
+   --  All buffers would be copied, and compared, for each frame.
+
+   use Bus_Nodes;
+   use type Bus_Frames.Bus_Frame;
+   use type Buses.Bus;
+   use type Buses.Line_State;
+   use type Transmit_Buffers.Buffer;
+   use type Buses.Offer_List;
+   use type Buses.Offer;
+   use type Interfaces.Unsigned_32;
+
+   type Buffer_List is array (Node_Index) of Transmit_Buffers.Buffer;
+
+   subtype Place_Of_Cut is Natural range 1 .. 17;
+
+   Nowhere : constant Place_Of_Cut := 17;
+
+   type Network is record
+      Bus     : Buses.Bus;
+      Buffers : Buffer_List;
+      Babble  : Buses.Offer_List;
+      Cut_At  : Place_Of_Cut := Nowhere;
+   end record;
+   --  From Cut_At upwards, nodes are apart from those below. A node that
+   --  babbles offers that frame in place of its own, for ever.
+
+   function Is_Sound (N : Network) return Boolean
+   is (for all I in Node_Index =>
+         Transmit_Buffers.Is_Ordered (N.Buffers (I)))
+   with Global => null;
+   --  Is every buffer in order?
+
+   function Waiting
+     (N : Network; I : Node_Index) return Transmit_Buffers.Slot_Count
+   is (N.Buffers (I).Count)
+   with Global => null;
+   --  How many frames node I has still to send.
+
+   function Offers (N : Network) return Buses.Offer_List
+   with
+     Global => null,
+     Post   =>
+       (for all I in Node_Index =>
+          (if N.Babble (I).Present
+           then Offers'Result (I).Present
+             and then Offers'Result (I).Frame = N.Babble (I).Frame
+           else
+             Offers'Result (I).Present = (Waiting (N, I) > 0)
+             and then
+               (if Waiting (N, I) > 0
+                then
+                  Offers'Result (I).Frame = N.Buffers (I).Slots (1).Frame)));
+   --  What each node would send.
+
+   procedure Submit
+     (N      : in out Network;
+      I      : Node_Index;
+      Item   : Transmit_Buffers.Request;
+      Status : out Send_Status)
+   with
+     Global => null,
+     Pre    => Is_Sound (N),
+     Post   =>
+       Is_Sound (N)
+       and then
+         (Status = Queued)
+         = (N.Buffers'Old (I).Count < Transmit_Buffers.Room)
+       and then
+         (if Status = Queued
+          then Waiting (N, I) = N.Buffers'Old (I).Count + 1
+          else N.Buffers (I) = N.Buffers'Old (I))
+       and then
+         (for all J in Node_Index =>
+            (if J /= I then N.Buffers (J) = N.Buffers'Old (J)));
+   --  Queue a frame, or reject it when the buffer is full.
+
+   procedure Withdraw (N : in out Network; I : Node_Index)
+   with
+     Global => null,
+     Pre    => Is_Sound (N),
+     Post   =>
+       Is_Sound (N)
+       and then Waiting (N, I) = 0
+       and then N.Bus = N.Bus'Old;
+   --  Forget all that node I has still to send.
+
+   type Moment is record
+      Known   : Boolean := False;
+      Segment : Buses.Segment := 1;
+      Start   : Nanoseconds := 0;
+   end record;
+   --  When something begins, if anything does.
+
+   function Next (N : Network) return Moment
+   with
+     Global => null,
+     Post   =>
+       (if Next'Result.Known
+        then Next'Result.Start >= N.Bus.Free_At (Next'Result.Segment));
+   --  The next thing that happens by itself: a frame begins, a node comes
+   --  back from bus-off, or one counts on a bus that is held dominant.
+
+   type Receipt is record
+      Tag   : Interfaces.Unsigned_32 := 0;
+      Since : Nanoseconds := 0;
+   end record;
+   --  Of a request that is done: what its owner called it.
+
+   type Receipt_List is array (Node_Index) of Receipt;
+
+   procedure Step
+     (N        : in out Network;
+      M        : Moment;
+      Fault    : Bus_Faults.Fault;
+      Result   : out Buses.Outcome;
+      Receipts : out Receipt_List)
+   with
+     Global => null,
+     Pre    =>
+       Is_Sound (N)
+       and then
+         M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start,
+     Post   =>
+       Is_Sound (N)
+       and then N.Babble = N.Babble'Old
+       and then Result.Start = M.Start
+       and then
+         (for all S in Buses.Segment =>
+            N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S))
+       and then
+         (for all I in Node_Index =>
+            (if Result.Sent (I) and then not N.Babble (I).Present
+             then Waiting (N, I) = N.Buffers'Old (I).Count - 1
+               and then Result.Frame = N.Buffers'Old (I).Slots (1).Frame
+               and then
+                 Receipts (I).Tag = N.Buffers'Old (I).Slots (1).Tag
+             else N.Buffers (I) = N.Buffers'Old (I)));
+   --  What begins at M. A request leaves its buffer when it was sent, and
+   --  nothing else does.
+
+   function Is_Held (N : Network; I : Node_Index) return Boolean
+   is (N.Bus.Line = Buses.Held_Dominant
+       and then Takes_Part (N.Bus.Nodes (I))
+       and then
+         Fault_Confinement.Receive_Errors (N.Bus.Nodes (I).Confinement)
+         < Error_Count'Last)
+   with Global => null;
+   --  Does a dominant bus still move a counter of node I?
+
+end Ravenchart.Can.Networks;

@@ -1,0 +1,41 @@
+--  A node of a bus, as a process: it does what package Echoes says, under
+--  the number on its command line, and prints how it stands whenever that
+--  has changed. It ends when nobody reads that any more.
+
+with Ada.Command_Line;
+with Ada.Real_Time;
+with Ada.Text_IO;
+with Echoes;
+with Nodes;
+with Ravenchart.Can;
+
+procedure Can_Echo is
+   use type Ada.Real_Time.Time;
+   use type Ravenchart.Can.Controller_State;
+   use type Ravenchart.Can.Counters;
+
+   Now   : Ravenchart.Can.Controller_State := Ravenchart.Can.Stopped;
+   Count : Ravenchart.Can.Counters;
+   State : Ravenchart.Can.Controller_State;
+   Last  : Ravenchart.Can.Counters;
+begin
+   Echoes.Number := Natural'Value (Ada.Command_Line.Argument (1));
+   loop
+      Nodes.Node.Read_State (State);
+      Nodes.Node.Read_Counters (Count);
+      if State /= Now or else Count /= Last then
+         Now  := State;
+         Last := Count;
+         Ada.Text_IO.Put_Line
+           (State'Image
+            & " sent=" & Count.Sent'Image
+            & " received=" & Count.Received'Image
+            & " lost_out=" & Count.Lost_Out'Image
+            & " lost_in=" & Count.Lost_In'Image
+            & " rejected=" & Count.Rejected_Lines'Image
+            & " tec=" & Count.Transmit_Errors'Image
+            & " rec=" & Count.Receive_Errors'Image);
+      end if;
+      delay until Ada.Real_Time.Clock + Ada.Real_Time.Milliseconds (1);
+   end loop;
+end Can_Echo;

@@ -1,0 +1,467 @@
+--  The bus in virtual time: order, lengths, acknowledgement, errors, faults
+--  on demand, and what they do to the nodes.
+
+with Facts;
+with Interfaces;
+with Ravenchart.Can;
+with Ravenchart.Can.Bus_Faults;
+with Ravenchart.Can.Bus_Frames;
+with Ravenchart.Can.Bus_Nodes;
+with Ravenchart.Can.Buses;
+with Ravenchart.Can.Fault_Confinement;
+with Ravenchart.Can.Fault_Plans;
+with Ravenchart.Can.Fd_Frames;
+with Ravenchart.Can.Line_Events;
+with Ravenchart.Can.Networks;
+with Ravenchart.Can.Transmit_Buffers;
+with Ravenchart.Can.Wire;
+with Simulated;
+
+procedure Test_Bus is
+   use Ravenchart;
+   use Ravenchart.Can;
+   use Ravenchart.Can.Bus_Nodes;
+   use Ravenchart.Can.Line_Events;
+   use Simulated;
+   use type Bus_Faults.Fault_Kind;
+   use type Bus_Frames.Bus_Frame;
+   use type Buses.Ending;
+   use type Interfaces.Unsigned_32;
+   use type Interfaces.Unsigned_64;
+
+   Bit : constant Nanoseconds := 2_000;
+
+   function Plain
+     (Id : Identifier; Data : Interfaces.Unsigned_64 := 0)
+      return Bus_Frames.Bus_Frame
+   is (Family => Bus_Frames.Classic,
+       Plain  => Data_Frame (Id, Ravenchart.Can.Standard, 8, Data));
+
+   function Transmit_Errors (I : Node_Index) return Error_Count
+   is (Fault_Confinement.Transmit_Errors (Net.Bus.Nodes (I).Confinement));
+
+   function Receive_Errors (I : Node_Index) return Error_Count
+   is (Fault_Confinement.Receive_Errors (Net.Bus.Nodes (I).Confinement));
+
+   function State (I : Node_Index) return Controller_State
+   is (Fault_Confinement.State (Net.Bus.Nodes (I).Confinement));
+
+   procedure Check_Order;
+
+   procedure Check_Lengths;
+
+   procedure Check_Acknowledgement;
+
+   procedure Check_Errors;
+
+   procedure Check_Conflict;
+
+   procedure Check_Line;
+
+   procedure Check_Cut;
+
+   procedure Check_Babble;
+
+   procedure Check_Plans;
+
+   procedure Check_Receivers;
+
+   -----------------
+   -- Check_Order --
+   -----------------
+
+   procedure Check_Order is
+      Sound : Boolean := True;
+      Ids   : constant array (Node_Index range 1 .. 3) of Identifier :=
+        (3, 1, 2);
+   begin
+      Start (4);
+      for I in Ids'Range loop
+         Send (I, Plain (Ids (I)));
+      end loop;
+      for Id in Identifier range 1 .. 3 loop
+         Step;
+         Sound := Sound
+           and then Result.Ended = Buses.Whole
+           and then Result.Frame = Plain (Id)
+           and then Result.Heard (4)
+           and then not Result.Heard (Result.Winner);
+         for I in Ids'Range loop
+            Sound := Sound
+              and then
+                Networks.Waiting (Net, I) = (if Ids (I) <= Id then 0 else 1);
+         end loop;
+      end loop;
+      Step;
+      Facts.Check
+        ("the lower identifier goes first, and losers keep their frame",
+         Sound and then Result.Ended = Buses.Silence);
+
+      Start (2);
+      for Id in reverse Identifier range 1 .. 5 loop
+         Send (1, Plain (Id), Interfaces.Unsigned_32 (Id));
+      end loop;
+      Sound := True;
+      for Id in reverse Identifier range 1 .. 5 loop
+         Step;
+         Sound := Sound
+           and then Receipts (1).Tag = Interfaces.Unsigned_32 (Id);
+      end loop;
+      Facts.Check ("a FIFO buffer keeps the order", Sound);
+
+      Start (2);
+      Net.Buffers (1).Order := Transmit_Buffers.By_Priority;
+      for Tag in Interfaces.Unsigned_32 range 1 .. 4 loop
+         Send (1, Plain (Identifier (4 - Tag / 2)), Tag);
+      end loop;
+      Sound := True;
+      for Tag of Networks.Receipt_List'
+        ((1 => (4, 0), 2 => (2, 0), 3 => (3, 0), 4 => (1, 0),
+          others => <>)) (1 .. 4)
+      loop
+         Step;
+         Sound := Sound and then Receipts (1).Tag = Tag.Tag;
+      end loop;
+      Facts.Check
+        ("a buffer by priority offers the most urgent, the elder first",
+         Sound);
+   end Check_Order;
+
+   -------------------
+   -- Check_Lengths --
+   -------------------
+
+   procedure Check_Lengths is
+      Long  : constant Bus_Frames.Bus_Frame :=
+        (Family => Bus_Frames.Flexible,
+         Fd     => Fd_Frames.Fd_Data_Frame
+           (16#555#, Ravenchart.Can.Standard, 64, (others => 16#55#)));
+      Image : constant Wire.Image := Bus_Frames.Image_Of (Long);
+      Bits  : constant Wire.Phases :=
+        Wire.Phases_Of (Image, Fd_Frames.Switched_Rate);
+   begin
+      Start (2);
+      Send (1, Plain (16#555#, 16#5555_5555_5555_5555#));
+      Step;
+      Facts.Check
+        ("a frame of 8 bytes without stuff bits in the data lasts as long "
+         & "as its image",
+         Net.Bus.Free_At (1) =
+           Bit * Nanoseconds
+                   (Wire.Length (Bus_Frames.Image_Of (Result.Frame)))
+         and then Result.Finish = Net.Bus.Free_At (1) - 3 * Bit);
+      Start (2);
+      Send (1, Long);
+      Step;
+      Facts.Check
+        ("a frame that switches its rate lasts as its two phases do",
+         Net.Bus.Free_At (1) =
+           Bit * Nanoseconds (Bits.Nominal) + 500 * Nanoseconds (Bits.Data)
+         and then Result.Frame = Long);
+   end Check_Lengths;
+
+   ---------------------------
+   -- Check_Acknowledgement --
+   ---------------------------
+
+   procedure Check_Acknowledgement is
+      Before : Nanoseconds;
+   begin
+      Start (1);
+      Send (1, Plain (5));
+      Step;
+      Facts.Check
+        ("alone, nobody acknowledges: 8 errors, and the frame stays",
+         Result.Ended = Buses.Broken
+         and then Transmit_Errors (1) = 8
+         and then Networks.Waiting (Net, 1) = 1);
+      for I in 1 .. 500 loop
+         Step;
+      end loop;
+      Facts.Check
+        ("a node that is alone becomes passive and not bus-off",
+         State (1) = Error_Passive and then Transmit_Errors (1) = 128);
+      Before := Net.Bus.Free_At (1);
+      Step;
+      Facts.Check
+        ("a passive transmitter waits for eight bits more",
+         Result.Start = Before + 8 * Bit);
+      Join (Net, 2);
+      Step;
+      Facts.Check
+        ("as soon as another is there, it is sent",
+         Result.Sent (1)
+         and then Result.Heard (2)
+         and then Transmit_Errors (1) = 127
+         and then State (1) = Error_Active);
+      Send (1, Plain (6));
+      Step ((Kind => Bus_Faults.Lost_Acknowledgement, others => <>));
+      Facts.Check
+        ("where the acknowledgement is lost, nobody takes the frame",
+         not Result.Heard (2)
+         and then Receive_Errors (2) = 1
+         and then Transmit_Errors (1) = 135);
+      Step ((Kind => Bus_Faults.Lost_Acknowledgement, others => <>));
+      Facts.Check
+        ("but they do when the transmitter is passive: it comes twice",
+         Result.Heard (2) and then not Result.Sent (1));
+   end Check_Acknowledgement;
+
+   ------------------
+   -- Check_Errors --
+   ------------------
+
+   procedure Check_Errors is
+      Disturbed : constant Bus_Faults.Fault :=
+        (Kind => Bus_Faults.Disturbed_Bit, Position => 20, others => <>);
+   begin
+      Start (3);
+      Send (1, Plain (5, 77));
+      Step (Disturbed);
+      Facts.Check
+        ("a disturbed bit: 20 bits, flag and delimiter, intermission",
+         Result.Ended = Buses.Broken
+         and then Result.Struck = 20 * Bit
+         and then Net.Bus.Free_At (1) = (20 + 14 + 3) * Bit);
+      Facts.Check
+        ("the transmitter counts 8, the receivers 1 each",
+         Transmit_Errors (1) = 8
+         and then Receive_Errors (2) = 1
+         and then Receive_Errors (3) = 1);
+      Step;
+      Facts.Check
+        ("the frame is sent again, and all count down",
+         Result.Heard (2) and then Result.Heard (3)
+         and then Result.Frame = Plain (5, 77)
+         and then Transmit_Errors (1) = 7
+         and then Receive_Errors (2) = 0);
+      Start (3);
+      Send (1, Plain (5));
+      Step
+        ((Kind     => Bus_Faults.Disturbed_Bit,
+          Node     => 3,
+          Position => 20,
+          others   => <>));
+      Facts.Check
+        ("who alone saw it counts 8 more, and the flags follow each other",
+         Receive_Errors (3) = 9
+         and then Receive_Errors (2) = 1
+         and then Net.Bus.Free_At (1) = (20 + 20 + 3) * Bit);
+   end Check_Errors;
+
+   --------------------
+   -- Check_Conflict --
+   --------------------
+
+   procedure Check_Conflict is
+   begin
+      Start (3);
+      Send (1, Plain (5, 1));
+      Send (2, Plain (5, 1));
+      Step;
+      Facts.Check
+        ("two frames that are alike are one frame on the bus",
+         Result.Sent (1) and then Result.Sent (2)
+         and then Result.Heard (3)
+         and then not Result.Heard (1));
+      Send (1, Plain (5, 1));
+      Send (2, Plain (5, 2));
+      Step;
+      Facts.Check
+        ("with one identifier and other data they break each other",
+         Result.Ended = Buses.Broken
+         and then Transmit_Errors (1) = 8
+         and then Transmit_Errors (2) = 8);
+      for I in 1 .. 40 loop
+         Step;
+      end loop;
+      Facts.Check
+        ("until both are bus-off",
+         State (1) = Bus_Off and then State (2) = Bus_Off);
+   end Check_Conflict;
+
+   ----------------
+   -- Check_Line --
+   ----------------
+
+   procedure Check_Line is
+   begin
+      Start (3);
+      Send (1, Plain (5));
+      Happen (Hold_Dominant);
+      for I in 1 .. 100 loop
+         Step;
+      end loop;
+      Facts.Check
+        ("a dominant bus makes all passive, and nobody bus-off",
+         State (1) = Error_Passive
+         and then State (3) = Error_Passive
+         and then not Networks.Next (Net).Known);
+      Happen (Let_Go);
+      Step;
+      Facts.Check
+        ("when it is let go, the frame is sent",
+         Result.Sent (1) and then State (3) = Error_Active);
+
+      Start (3);
+      Send (1, Plain (5));
+      Happen (Hold_Recessive);
+      for I in 1 .. 100 loop
+         Step;
+      end loop;
+      Facts.Check
+        ("a recessive bus makes who sends bus-off, and nobody else",
+         State (1) = Bus_Off
+         and then State (2) = Error_Active
+         and then Receive_Errors (2) = 0);
+      Happen (Let_Go);
+      Step;
+      Facts.Check
+        ("who is bus-off does nothing by itself",
+         Result.Ended = Buses.Silence and then State (1) = Bus_Off);
+      Net.Bus.Nodes (1).Way_Back := Recovers;
+      declare
+         Before : constant Nanoseconds := Net.Bus.Free_At (1);
+      begin
+         Step;
+         Facts.Check
+           ("told to come back, it sends what it has after 1408 bits",
+            Result.Start = Before + 1408 * Bit and then Result.Sent (1));
+      end;
+   end Check_Line;
+
+   ---------------
+   -- Check_Cut --
+   ---------------
+
+   procedure Check_Cut is
+      Whole : Natural := 0;
+   begin
+      Start (4);
+      Happen (Cut, 4);
+      Send (1, Plain (5));
+      Send (4, Plain (6));
+      for I in 1 .. 60 loop
+         Step;
+         if Result.Ended = Buses.Whole then
+            Whole := Whole + 1;
+            Facts.Check
+              ("on a bus that is cut, those on one side hear each other",
+               Result.Heard (2) and then not Result.Heard (4));
+         end if;
+      end loop;
+      Facts.Check
+        ("and who is alone is not heard",
+         Whole = 1
+         and then Networks.Waiting (Net, 4) = 1
+         and then State (4) = Error_Passive);
+      Happen (Mend);
+      Step;
+      Facts.Check
+        ("mended, it is", Result.Sent (4) and then Result.Heard (1));
+   end Check_Cut;
+
+   ------------------
+   -- Check_Babble --
+   ------------------
+
+   procedure Check_Babble is
+      Alone : Boolean := True;
+   begin
+      Start (3);
+      Happen (Babble, 3);
+      Send (1, Plain (5));
+      for I in 1 .. 50 loop
+         Step;
+         Alone := Alone and then Result.Winner = 3;
+      end loop;
+      Happen (Hush, 3);
+      Step;
+      Facts.Check
+        ("who babbles keeps the others from the bus, until it is quiet",
+         Alone and then Result.Sent (1));
+   end Check_Babble;
+
+   -----------------
+   -- Check_Plans --
+   -----------------
+
+   procedure Check_Plans is
+      Plan   : Fault_Plans.Plan;
+      Again  : Fault_Plans.Plan;
+      Fault  : Bus_Faults.Fault;
+      Same   : Bus_Faults.Fault;
+      Quiet  : Nanoseconds := 0;
+      Errors : Natural := 0;
+      Sound  : Boolean := True;
+   begin
+      Plan.Seed := 42;
+      Plan.Separation := 1_000_000;
+      Plan.Count := 1;
+      Plan.Listed (1) :=
+        (Frame => 3,
+         Fault => (Kind => Bus_Faults.Dropped, others => <>));
+      Again := Plan;
+      Start (2);
+      for I in 1 .. 200 loop
+         if Networks.Waiting (Net, 1) = 0 then
+            Send (1, Plain (5));
+         end if;
+         Fault_Plans.Draw (Plan, Net.Bus.Free_At (1), Fault);
+         Fault_Plans.Draw (Again, Net.Bus.Free_At (1), Same);
+         Sound := Sound
+           and then Bus_Faults."=" (Fault, Same)
+           and then (Fault.Kind = Bus_Faults.Dropped) = (I = 3);
+         Step (Fault);
+         if Result.Ended = Buses.Broken then
+            Sound  := Sound and then Result.Struck >= Quiet;
+            Quiet  := Result.Struck + 1_000_000;
+            Errors := Errors + 1;
+            Fault_Plans.Note (Plan, Result.Struck);
+            Fault_Plans.Note (Again, Result.Struck);
+         end if;
+      end loop;
+      Facts.Check
+        ("a plan gives the same faults again, and keeps its distance",
+         Sound and then Errors in 20 .. 60);
+   end Check_Plans;
+
+   ---------------------
+   -- Check_Receivers --
+   ---------------------
+
+   procedure Check_Receivers is
+      use Bus_Faults;
+      Changed : constant Fault :=
+        (Kind => Corrupted, Node => 2, Index => 1, Mask => 16#0F#,
+         others => <>);
+   begin
+      Facts.Check
+        ("a receiver may lose a frame, or have it twice, or late",
+         Copies_For ((Kind => Dropped, others => <>), 2) = 0
+         and then
+           Copies_For ((Kind => Duplicated, Node => 2, others => <>), 2) = 2
+         and then
+           Copies_For ((Kind => Duplicated, Node => 2, others => <>), 3) = 1
+         and then
+           Lateness ((Kind => Delayed, Late => 7, others => <>), 3) = 7);
+      Facts.Check
+        ("or with changed data, and then it alone",
+         As_Heard (Changed, 2, Plain (5, 16#1234#)) = Plain (5, 16#1D34#)
+         and then
+           As_Heard (Changed, 3, Plain (5, 16#1234#)) = Plain (5, 16#1234#));
+   end Check_Receivers;
+
+begin
+   Check_Order;
+   Check_Lengths;
+   Check_Acknowledgement;
+   Check_Errors;
+   Check_Conflict;
+   Check_Line;
+   Check_Cut;
+   Check_Babble;
+   Check_Plans;
+   Check_Receivers;
+   Facts.Finish;
+end Test_Bus;

@@ -1,0 +1,155 @@
+"""Random frames through the generated codecs of a model, as a program of their own.
+
+For each message the program draws frames, half of them at random and half one bit away
+from the last one that was accepted, and stops with an exception where a codec is wrong: a
+value outside its type, a frame that packs into other bits than it was unpacked from, a
+refused frame that leaves something behind. What bits count is taken from the layout,
+not from the codec. It answers with a line for each message: name, frames, those
+accepted, and a sum over all that was unpacked and packed.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from gen.emit.ada import Ref
+from gen.emit.codecs import codec_name, words_of
+from gen.emit.coding import literal_name
+from gen.emit.naming import ada_case, default_value, type_name
+from gen.model import Message, System
+from gen.signals import Signal
+from ravenchart.toolchain import ROOT
+
+CHECKED = ("-gnata", "-O0")
+"""Every contract and check is on."""
+UNCHECKED = ("-gnatp", "-O2")
+"""None is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """What became of the frames of one message."""
+
+    message: str
+    frames: int
+    accepted: int
+    total: int
+
+
+def fuzzed(
+    system: System, generated: Path, folder: Path, frames: int, switches: Sequence[str]
+) -> tuple[Tally, ...]:
+    """Frames through each codec; CalledProcessError where one is wrong."""
+    folder.mkdir()
+    source = folder / "fuzzer.adb"
+    source.write_text(main_text(system, frames), encoding="ascii")
+    places = (generated, ROOT / "spark_runtime" / "src", ROOT / "hw_can" / "hal")
+    command = ["gnatmake", "-q", "-gnat2012", *switches, str(source)]
+    command += [f"-aI{place}" for place in places]
+    subprocess.run(command, cwd=folder, check=True)
+    found = subprocess.run([folder / "fuzzer"], capture_output=True, text=True, check=True)
+    lines = [line.split() for line in found.stdout.splitlines()]
+    return tuple(Tally(name, *map(int, counts)) for name, *counts in lines)
+
+
+def main_text(system: System, frames: int) -> str:
+    """The program."""
+    name = ada_case(system.name)
+    return f"""
+with Ada.Text_IO; with Interfaces; with {name}.Codecs;
+procedure Fuzzer is
+   use {name}; use type Interfaces.Unsigned_64;
+   subtype Bits is Interfaces.Unsigned_64;
+   Wrong : exception;
+   Seed : Bits := 16#9E37_79B9_7F4A_7C15#;
+   Sum  : Bits := 0;
+   function Random return Bits is  --  Marsaglia's xorshift, of period 2**64 - 1
+   begin
+      Seed := Seed xor Interfaces.Shift_Left (Seed, 13);
+      Seed := Seed xor Interfaces.Shift_Right (Seed, 7);
+      Seed := Seed xor Interfaces.Shift_Left (Seed, 17);
+      return Seed;
+   end Random;
+   function Drawn (Near : Bits; Length : Natural) return Bits is
+      Found : constant Bits := Random;
+      Place : constant Natural := Natural (Found / 2 mod Bits'Max (1, Bits (8 * Length)));
+      Whole : constant Bits :=
+        (if Length = 8 then Bits'Last else Interfaces.Shift_Left (1, 8 * Length) - 1);
+   begin
+      return
+        (if Found mod 2 = 0 then Random else Near xor Interfaces.Shift_Left (1, Place)) and Whole;
+   end Drawn;
+   procedure Expect (Fact : Boolean) is
+   begin
+      if not Fact then
+         raise Wrong;
+      end if;
+   end Expect;
+   procedure Tell (Message : String; Accepted : Natural) is
+   begin
+      Ada.Text_IO.Put_Line (Message & " {frames}" & Accepted'Image & Sum'Image);
+   end Tell;
+{"".join(_procedure(system, message, frames) for message in system.messages)}
+begin
+   {" ".join(f"Fuzz_{ada_case(message.name)};" for message in system.messages)}
+end Fuzzer;
+"""
+
+
+def _procedure(system: System, message: Message, frames: int) -> str:
+    assert words_of(message) == 1
+    codec, of_type = codec_name(message), type_name(system, message.type)
+    in_range = " and then ".join(f"{_item(signal)}'Valid" for signal in message.signals)
+    default = default_value(system, message.type)
+    assert isinstance(default, Ref)
+    return f"""
+   procedure Fuzz_{ada_case(message.name)} is
+      use type {of_type};
+      Item : {of_type}; Valid : Boolean;
+      Frame, Again, Near, Mask : Bits := 0;
+      Accepted : Natural := 0;
+   begin
+      for I in 1 .. {frames} loop
+         Frame := Drawn (Near, {message.length});
+         Codecs.Unpack_{codec} (Frame, Item, Valid);
+         if Valid then
+            Expect ({in_range});
+            {_mask(system, message)}
+            Again := Codecs.Pack_{codec} (Item);
+            Expect (Again = (Frame and Mask));
+            Near := Frame;
+            Accepted := Accepted + 1;
+            Sum := (Sum xor Again) * 16#100_0000_01B3#;
+         else
+            Expect (Item = {default.text});
+            Sum := (Sum xor Frame) * 16#100_0000_01B3#;
+         end if;
+      end loop;
+      Tell ("{message.name}", Accepted);
+   end Fuzz_{ada_case(message.name)};
+"""
+
+
+def _item(signal: Signal) -> str:
+    return "Item" if signal.field is None else f"Item.{ada_case(signal.field)}"
+
+
+def _mask(system: System, message: Message) -> str:
+    """What sets Mask to the bits of the signals that are in the frame."""
+    common = _bits(signal for signal in message.signals if not signal.pages)
+    text = f"Mask := {common};"
+    selector = next((s for s in message.signals if s.selects), None)
+    for signal in message.signals:
+        if selector is not None and signal.pages:
+            values = [literal_name(system, selector, selector.value(p)) for p in signal.pages]
+            text += f" if {_item(selector)} in {' | '.join(values)} then"
+            text += f" Mask := Mask or {_bits([signal])}; end if;"
+    return text
+
+
+def _bits(signals: Iterable[Signal]) -> str:
+    """The bits of signals in a frame, as a mask."""
+    return f"16#{sum(1 << bit for signal in signals for bit in signal.bits()):X}#"

@@ -1,0 +1,240 @@
+"""The bus server: several processes on one simulated bus, with faults on demand."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from xml.etree import ElementTree
+
+import can
+import pytest
+
+from hw_can.bench.bus_client import RavenchartBus
+from hw_can.bench.bus_records import MARK, RECORD_BYTES, Kind, Record, Status, encode
+from ravenchart.__main__ import main
+from tests.support.can_bus import Start, started, starter
+from tests.support.raw_client import RawClient
+
+ROOT = Path(__file__).parents[2]
+WAIT = 10.0
+
+
+@pytest.fixture
+def start() -> Iterator[Start]:
+    with starter() as one:
+        yield one
+
+
+def taken(bus: can.BusABC, count: int) -> list[can.Message]:
+    found: list[can.Message] = []
+    while len(found) < count and (message := bus.recv(WAIT)) is not None:
+        found.append(message)
+    return found
+
+
+def test_the_loopback_suite_passes_on_it(
+    start: Start, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    junit, page = tmp_path / "loopback.xml", tmp_path / "loopback.html"
+    status = main(
+        ["loopback", "--interface", "ravenchart", "--channel", start(), "--fd",
+         "--junit", str(junit), "--html", str(page)]
+    )  # fmt: skip
+    printed = capsys.readouterr().out
+    assert status == 0, printed
+    assert "PASS: 20 passed, 0 failed, 0 skipped" in printed
+    assert max(map(len, printed.splitlines())) <= 80
+    suite = ElementTree.parse(junit).getroot().find("testsuite")
+    assert suite is not None
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("20", "0", "0")
+    html = page.read_text()
+    assert "<strong>PASS</strong>" in html and "Latency" in html
+    assert not any(word in html for word in ("http:", "https:", "src=", "<link"))
+
+
+def test_bus_time_is_that_of_the_bits(start: Start) -> None:
+    """500 frames of 111 bits and stuff bits, at 500 kbit/s, back to back."""
+    channel = start("time=virtual")
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+        for number in range(500):
+            a.send(can.Message(arbitration_id=number, data=bytes(8), is_extended_id=False))
+        times = [message.timestamp for message in taken(b, 500)]
+    spent = [round(1e9 * (late - early)) for early, late in pairwise(times)]
+    assert all(111 * 2_000 <= one <= 135 * 2_000 and one % 2_000 == 0 for one in spent)
+
+
+def test_alone_a_node_becomes_passive_and_is_heard_once_it_is_not(start: Start) -> None:
+    channel = start()
+    with RavenchartBus(channel) as a:
+        with pytest.raises(can.CanTimeoutError):
+            a.send(can.Message(arbitration_id=1), timeout=0.2)
+        assert a.state is can.BusState.PASSIVE
+        assert a.error_counters == (128, 0)
+        with RavenchartBus(channel) as b:
+            message = b.recv(WAIT)
+            assert message is not None and message.arbitration_id == 1
+
+
+def test_a_bus_held_recessive_drives_the_sender_off_and_it_comes_back(start: Start) -> None:
+    channel = start("time=virtual", "event=0:hold_recessive", "event=2500000:let_go")
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+        with pytest.raises(can.CanOperationError, match="bus off"):
+            a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        with pytest.raises(can.CanOperationError, match="bus off"):
+            a.send(can.Message(arbitration_id=2), timeout=WAIT)
+        assert a.state is can.BusState.ERROR
+        assert b.state is can.BusState.ACTIVE
+        a.state = can.BusState.ACTIVE
+        end = time.monotonic() + WAIT
+        while a.state is not can.BusState.ACTIVE and time.monotonic() < end:
+            time.sleep(0.01)
+        a.send(can.Message(arbitration_id=3), timeout=WAIT)
+        message = b.recv(WAIT)
+        assert message is not None and message.arbitration_id == 3
+
+
+def test_a_bus_that_is_cut_and_mended(start: Start) -> None:
+    channel = start("time=virtual", "event=0:cut:2", "event=1000000000:mend")
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+        a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        assert a.error_counters == (127, 0)
+        message = b.recv(WAIT)
+        assert message is not None and 1.0 <= message.timestamp < 1.001
+
+
+def test_faults_of_a_list_come_with_the_frames_they_name(start: Start) -> None:
+    channel = start(
+        "time=virtual",
+        "fault=1:dropped:2",
+        "fault=2:duplicated:2",
+        "fault=3:corrupted:2:0:255",
+        "fault=4:delayed:2:5000000",
+        "fault=5:disturbed_bit:0:30",
+        "fault=7:lost_acknowledgement",
+    )
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+        for number in range(6):
+            a.send(can.Message(arbitration_id=number, data=b"\1"), timeout=WAIT)
+        got = taken(b, 8)
+    plain = [m for m in got if not m.is_error_frame]
+    assert [(m.arbitration_id, m.data[0]) for m in plain] == [
+        (1, 1), (1, 1), (2, 254), (3, 1), (4, 1), (5, 1),
+    ]  # fmt: skip
+    assert plain[3].timestamp - plain[2].timestamp >= 5e-3
+    assert [m.arbitration_id for m in got if m.is_error_frame] == [8, 0x20]
+
+
+def test_chance_is_the_same_again(start: Start) -> None:
+    runs = []
+    for _ in range(2):
+        channel = start("time=virtual", "seed=7:2000000")
+        with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+            for number in range(100):
+                a.send(can.Message(arbitration_id=number, data=bytes(8)), timeout=WAIT)
+            runs.append([(m.timestamp, m.arbitration_id, m.is_error_frame) for m in taken(b, 100)])
+    assert runs[0] == runs[1]
+    assert any(is_error for _, _, is_error in runs[0])
+
+
+SENDER = """
+import can, sys
+from hw_can.bench.bus_client import RavenchartBus
+with RavenchartBus(sys.argv[1], fd=True) as bus:
+    for number in range(100):
+        frame = can.Message(arbitration_id=int(sys.argv[2]), data=bytes([number]))
+        bus.send(frame, timeout=60)
+"""
+
+
+def test_three_processes_share_one_bus(start: Start) -> None:
+    channel = start()
+    with RavenchartBus(channel) as listener:
+        senders = [
+            subprocess.Popen([sys.executable, "-c", SENDER, channel, str(number)], cwd=ROOT)
+            for number in range(3)
+        ]
+        got = [message for _ in range(300) if (message := listener.recv(60)) is not None]
+        assert [sender.wait(60) for sender in senders] == [0, 0, 0]
+    for number in range(3):
+        assert [m.data[0] for m in got if m.arbitration_id == number] == list(range(100))
+    assert [m.timestamp for m in got] == sorted(m.timestamp for m in got)
+
+
+def test_a_malformed_record_ends_the_connection_and_disturbs_nobody(start: Start) -> None:
+    channel = start()
+    good = encode(Record(Kind.FRAME, identifier=1, number=1))
+    for wrong in (bytes(RECORD_BYTES), b"GET / HTTP/1.1\r\n".ljust(RECORD_BYTES), good[:-1] + b"x"):
+        with RawClient(channel) as raw:
+            raw.greet()
+            raw.send(wrong)
+            assert raw.last() == Record(Kind.STATUS, code=Status.MALFORMED_RECORD)
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+        a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        assert b.recv(WAIT) is not None
+
+
+def test_who_may_not_join_is_told_why(start: Start) -> None:
+    channel = start("data_bitrate=0")
+    with RawClient(channel) as raw:
+        name = b"x".ljust(64, b"\0")
+        raw.send(encode(Record(Kind.HELLO, length=1, code=2, identifier=MARK, data=name)))
+        assert raw.last() == Record(Kind.STATUS, code=Status.WRONG_VERSION)
+    with pytest.raises(can.CanInitializationError, match="the bus carries no FD frames"):
+        RavenchartBus(channel, fd=True)
+    with pytest.raises(can.CanInitializationError, match="wrong bit rate"):
+        RavenchartBus(channel, bitrate=250_000)
+    nodes = [RavenchartBus(channel) for _ in range(15)]
+    with pytest.raises(can.CanInitializationError, match="no room"):
+        RavenchartBus(channel)
+    for node in nodes:
+        node.shutdown()
+
+
+def test_the_end_of_the_server_is_told() -> None:
+    with started() as channel:
+        bus = RavenchartBus(channel)
+    with pytest.raises(can.CanOperationError, match="the bus server ends: closing"):
+        bus.recv(WAIT)
+    bus.shutdown()
+
+
+def test_a_client_that_never_reads_is_given_up(start: Start) -> None:
+    channel = start("time=virtual")
+    with RawClient(channel, room=4096) as lazy, RavenchartBus(channel) as bus:
+        lazy.greet()
+        with pytest.raises(can.CanTimeoutError):  # nobody is left to acknowledge
+            for _ in range(30):
+                for _ in range(999):
+                    bus.send(can.Message(arbitration_id=1))
+                bus.send(can.Message(arbitration_id=2), timeout=2)
+        assert 1_000 < lazy.read_to_end() < 25_000
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--bitrate", "300000"],
+        ["--port", "70000"],
+        ["--name", "a b"],
+        ["--fault", "1:nothing"],
+        ["--event", "x:mend"],
+        ["--disturb", "1"],
+    ],
+)
+def test_what_the_bus_cannot_be_told_is_refused(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["bus", *arguments])
+    assert ended.value.code == 2
+    assert f"argument {arguments[0]}: " in capsys.readouterr().err
+
+
+def test_a_port_that_is_taken_is_said(start: Start, capfd: pytest.CaptureFixture[str]) -> None:
+    port = start().rpartition(":")[2]
+    assert main(["bus", "--port", port]) == 2
+    assert f"port {port} of this machine is not free" in capfd.readouterr().err

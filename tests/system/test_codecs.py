@@ -1,0 +1,214 @@
+"""The generated codecs and cantools with the generated database agree, bit by bit."""
+
+from __future__ import annotations
+
+import random
+from decimal import Decimal
+from pathlib import Path
+
+import cantools
+import pytest
+from cantools.database import Database
+from cantools.database.can import Message as DbcMessage
+
+from gen.generate import generate
+from gen.model import Message, System
+from gen.signals import Signal
+from gen.terms import IntegerType
+from gen.units import count_of
+from ravenchart import steps
+from ravenchart.toolchain import ROOT
+from tests.support.codec_runner import Runner, Values, boundaries, literal
+
+CASES = ROOT / "tests" / "feature"
+
+
+class Peer:
+    """The program and the database of one model."""
+
+    def __init__(self, case: Path, folder: Path) -> None:
+        checked = steps.check(case / "model.yaml")
+        self.system: System = checked.system
+        files = generate(checked.system, steps.claims(checked))
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        self.runner = Runner.built(checked.system, folder, folder)
+        database = cantools.database.load_file(
+            folder / f"{self.system.buses[0].name}.dbc", strict=True
+        )
+        assert isinstance(database, Database)
+        self.database = database
+
+
+@pytest.fixture(scope="module", params=["signals", "pages"])
+def peer(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Peer:
+    return Peer(CASES / request.param, tmp_path_factory.mktemp("codecs"))
+
+
+def sent(message: Message, values: Values) -> dict[str, int]:
+    """What of a value is in its frame: raw values by signal."""
+    raws = {s.name: s.raw(literal(s, v)) for s, v in zip(message.signals, values, strict=True)}
+    page = next((raws[s.name] for s in message.signals if s.selects), None)
+    return {s.name: raws[s.name] for s in message.signals if not s.pages or page in s.pages}
+
+
+def samples(message: Message) -> list[Values]:
+    """Each boundary value of each signal, the others at random."""
+    chance = random.Random(message.name)
+    choices = [boundaries(signal) for signal in message.signals]
+    found: set[Values] = set()
+    for index, values in enumerate(choices):
+        for value in values:
+            for _ in range(8):
+                mixed = [chance.choice(other) for other in choices]
+                mixed[index] = value
+                found.add(tuple(mixed))
+    return sorted(found)
+
+
+def has_signals(message: Message, values: Values) -> bool:
+    """Does a database know the page? It knows none without a signal."""
+    if not any(s.pages for s in message.signals):
+        return True
+    paged = {s.name for s in message.signals if s.pages}
+    return bool(paged & set(sent(message, values)))
+
+
+def physical(signal: Signal, raw: int) -> Decimal:
+    """What a raw value counts, exactly."""
+    scale = count_of(signal.type.unit)[0] if isinstance(signal.type, IntegerType) else Decimal(1)
+    return (raw + signal.offset) * scale
+
+
+def test_every_boundary_value_is_packed_as_cantools_packs_it(peer: Peer) -> None:
+    for message in peer.system.messages:
+        values = [v for v in samples(message) if has_signals(message, v)]
+        assert len(values) > 4
+        other = peer.database.get_message_by_name(message.name)
+        for value, frame in zip(values, peer.runner.packed(message, values), strict=True):
+            raws = sent(message, value)
+            assert frame == other.encode(dict(raws), scaling=False), (message.name, value)
+            assert other.decode(frame, scaling=False, decode_choices=False) == raws
+            shown = other.decode(frame, decode_choices=False)
+            assert isinstance(shown, dict)
+            for signal in message.signals:
+                if signal.name in raws:
+                    given = shown[signal.name]
+                    assert isinstance(given, int | float)
+                    assert given == pytest.approx(float(physical(signal, raws[signal.name])))
+
+
+def test_what_is_packed_is_unpacked(peer: Peer) -> None:
+    for message in peer.system.messages:
+        values = samples(message)
+        frames = peer.runner.packed(message, values)
+        for value, back in zip(values, peer.runner.unpacked(message, frames), strict=True):
+            assert back is not None
+            assert sent(message, back) == sent(message, value), (message.name, value)
+
+
+def test_random_frames_are_accepted_exactly_when_every_raw_value_is_in_range(peer: Peer) -> None:
+    for message in peer.system.messages:
+        frames = drawn(peer, message)
+        other = peer.database.get_message_by_name(message.name)
+        accepted = 0
+        for frame, found in zip(frames, peer.runner.unpacked(message, frames), strict=True):
+            wanted = expected(message, frame)
+            if page_is_known(other, message, frame):
+                assert by_database(other, frame) == wanted, (message.name, frame.hex())
+            assert (found is not None) == (wanted is not None), (message.name, frame.hex())
+            if found is not None:
+                accepted += 1
+                assert sent(message, found) == wanted
+        assert 0 < accepted < len(frames), message.name
+
+
+def drawn(peer: Peer, message: Message) -> list[bytes]:
+    """Random frames, frames one bit away from a packed value, and raw values just out of range."""
+    chance = random.Random(message.name)
+    packed = peer.runner.packed(message, samples(message))
+    frames = [chance.randbytes(message.length) for _ in range(1_000)]
+    for _ in range(1_000):
+        near = int.from_bytes(chance.choice(packed)) ^ 1 << chance.randrange(8 * message.length)
+        frames.append(near.to_bytes(message.length))
+    for signal in message.signals:
+        low, high = signal.raw_range
+        frames += [with_raw(signal, raw, f) for raw in (low - 1, high + 1) for f in packed[::8]]
+    return frames
+
+
+def with_raw(signal: Signal, raw: int, frame: bytes) -> bytes:
+    """The frame with another raw value."""
+    changed = bytearray(frame)
+    for index, bit in enumerate(signal.bits()):
+        changed[bit // 8] &= ~(1 << bit % 8)
+        changed[bit // 8] |= (raw >> index & 1) << bit % 8
+    return bytes(changed)
+
+
+def page_is_known(other: DbcMessage, message: Message, frame: bytes) -> bool:
+    """Has the database signals on the frame's page? Else cantools refuses to decode it."""
+    selector = next((s for s in message.signals if s.selects), None)
+    if selector is None:
+        return True
+    paged = [s.multiplexer_ids or () for s in other.signals]
+    return raw_of(selector, frame) in {page for pages in paged for page in pages}
+
+
+def by_database(other: DbcMessage, frame: bytes) -> dict[str, int] | None:
+    """The raw values that cantools reads; None where one is outside what the database says."""
+    raws = other.decode(frame, scaling=False, decode_choices=False)
+    assert isinstance(raws, dict)
+    for name, raw in raws.items():
+        assert isinstance(raw, int)
+        signal = other.get_signal_by_name(name)
+        assert signal.minimum is not None and signal.maximum is not None
+        low = round((signal.minimum - signal.offset) / signal.scale)
+        high = round((signal.maximum - signal.offset) / signal.scale)
+        if raw not in (signal.choices or range(low, high + 1)):
+            return None
+    return {name: int(str(raw)) for name, raw in raws.items()}
+
+
+def raw_of(signal: Signal, frame: bytes) -> int:
+    """The raw value of a signal, bit by bit."""
+    taken = [frame[bit // 8] >> bit % 8 & 1 for bit in signal.bits()]
+    raw = sum(bit << index for index, bit in enumerate(taken))
+    return raw - (taken[-1] << signal.width if signal.signed else 0)
+
+
+def expected(message: Message, frame: bytes) -> dict[str, int] | None:
+    """The raw values in a frame, bit by bit; None where one of them is no value's."""
+    raws: dict[str, int] = {}
+    for signal in message.signals:
+        raws[signal.name] = raw_of(signal, frame)
+    page = next((raws[s.name] for s in message.signals if s.selects), None)
+    there = {s.name: s for s in message.signals if not s.pages or page in s.pages}
+    for name, signal in there.items():
+        try:
+            valid = signal.value(raws[name])
+        except (ValueError, IndexError):
+            return None
+        if raws[name] < 0 and not signal.signed:
+            return None
+        if isinstance(signal.type, IntegerType) and not (
+            signal.type.first <= int(valid) <= signal.type.last
+        ):
+            return None
+    return {name: raws[name] for name in there}
+
+
+@pytest.mark.parametrize("peer", ["signals"], indirect=True)
+def test_the_database_says_who_sends_what_how_often_with_which_codes(peer: Peer) -> None:
+    motion = peer.database.get_message_by_name("motion_out")
+    assert (motion.senders, motion.cycle_time) == (["board"], 20)
+    gear = peer.database.get_message_by_name("motion_in").get_signal_by_name("gear")
+    assert gear.choices == {0: "Neutral", 17: "Forward", 3: "Backward"}
+
+
+@pytest.mark.parametrize("peer", ["pages"], indirect=True)
+def test_the_database_says_units_ranges_and_pages(peer: Peer) -> None:
+    inside = peer.database.get_message_by_name("status_in").get_signal_by_name("inside")
+    assert (inside.unit, inside.scale, inside.offset) == ("degC", 0.1, 0)
+    assert (inside.multiplexer_signal, inside.multiplexer_ids) == ("page", [0])
+    assert (inside.minimum, inside.maximum, inside.receivers) == (-40, 125, ["board"])

@@ -1,0 +1,128 @@
+"""The surgical robot in all its deployments: one application, whatever the equipment."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from gen.generate import generate
+from ravenchart import steps
+from ravenchart.toolchain import ROOT
+
+HERE = ROOT / "examples" / "surgical_robot"
+LINE = "Robot: {facade: [Boards, Wrist]}"
+
+SENSED = {
+    "position, velocity and force": ("[Boards, Speeds, Wrist]", set()),
+    "position and force": ("[Boards, Wrist]", {"Differ"}),
+    "position and velocity": ("[Boards, Speeds]", {"Presume"}),
+    "position": ("[Boards]", {"Differ", "Presume"}),
+    "velocity and force": ("[Amplifiers, Speeds, Wrist]", {"Follow"}),
+    "velocity": ("[Amplifiers, Speeds]", {"Follow", "Presume"}),
+    "force": ("[Amplifiers, Wrist]", {"Follow", "Differ"}),
+    "position by the tracker": ("[Amplifiers, Camera]", {"Differ", "Presume"}),
+}
+"""What the facade of the robot is then, and which stand-ins are needed."""
+
+STAND_INS = {"Follow", "Differ", "Presume"}
+
+Variant = Callable[[str, str, str], steps.Checked]
+
+
+@pytest.fixture
+def variant(tmp_path: Path) -> Variant:
+    """The example with one line of one file changed."""
+
+    def make(file: str, old: str, new: str) -> steps.Checked:
+        folder = tmp_path / "robot"
+        shutil.copytree(HERE, folder)
+        text = (folder / file).read_text()
+        assert text.count(old) == 1
+        (folder / file).write_text(text.replace(old, new))
+        return steps.check(folder / "model.yaml")
+
+    return make
+
+
+def _sources(checked: steps.Checked, *names: str) -> dict[str, str]:
+    generated = checked.folder / "generated"
+    return {name: (generated / f"surgical_robot-{name}").read_text() for name in names}
+
+
+def _bodies(folder: Path) -> dict[str, bytes]:
+    """What the user wrote."""
+    found = (folder / "user").rglob("*.ad*")
+    return {str(path.relative_to(folder)): path.read_bytes() for path in found}
+
+
+@pytest.mark.parametrize("sensed", SENSED)
+def test_every_way_to_sense_is_built_with_its_stand_ins_only(sensed: str, variant: Variant) -> None:
+    members, needed = SENSED[sensed]
+    checked = variant("software_control.yaml", LINE, f"Robot: {{facade: {members}}}")
+    assert not checked.warnings
+    written = steps.write_program(checked)
+    assert written.missing == ()
+    steps.programs_of(checked)[0].build()
+    everything = "\n".join(
+        path.read_text() for path in (checked.folder / "generated").glob("*.ad[sb]")
+    )
+    assert {name for name in STAND_INS if name in everything} == needed
+
+
+def test_the_application_is_the_same_whatever_is_sensed(tmp_path: Path) -> None:
+    seen = []
+    names = ("servo.ads", "servo-activities.ads", "supervisor.ads", "supervisor-task_of_arm.adb")
+    for number, (members, _) in enumerate(SENSED.values()):
+        folder = tmp_path / str(number)
+        shutil.copytree(HERE, folder)
+        file = folder / "software_control.yaml"
+        file.write_text(file.read_text().replace(LINE, f"Robot: {{facade: {members}}}"))
+        checked = steps.check(folder / "model.yaml")
+        steps.write_program(checked)
+        seen.append(_sources(checked, *names))
+        users = {
+            path.relative_to(folder): path.read_bytes() for path in folder.rglob("user/**/*.ad*")
+        }
+        assert users == {
+            path.relative_to(HERE): path.read_bytes() for path in HERE.rglob("user/**/*.ad*")
+        }
+    assert all(one == seen[0] for one in seen)
+
+
+@pytest.mark.parametrize("level", ["supervisory_control.yaml", "interface_only.yaml"])
+def test_the_level_of_control_is_chosen_by_a_line(level: str, variant: Variant) -> None:
+    checked = variant("model.yaml", "software_control.yaml", level)
+    steps.write_program(checked)
+    steps.programs_of(checked)[0].build()
+    units = {path.name for path in (checked.folder / "generated").glob("*.ads")}
+    assert "surgical_robot-drives.ads" in units
+    assert "surgical_robot-servo_1.ads" not in units
+
+
+def test_the_supervisor_is_the_same_over_its_own_servo_loop_and_over_drives(
+    tmp_path: Path,
+) -> None:
+    names = ("supervisor.ads", "supervisor-task_of_arm.ads", "supervisor-task_of_arm.adb")
+    seen: list[dict[str, str]] = []
+    glue: list[str] = []
+    for level in ("software_control.yaml", "supervisory_control.yaml"):
+        folder = tmp_path / level
+        shutil.copytree(HERE, folder)
+        model = folder / "model.yaml"
+        model.write_text(model.read_text().replace("software_control.yaml", level))
+        checked = steps.check(model)
+        steps.write_program(checked)
+        seen.append(_sources(checked, *names))
+        glue += _sources(checked, "supervisor_1.adb").values()
+    assert seen[0] == seen[1]
+    assert "Servo_1.Put_Motion" in glue[0] and "Drives.Hold;" in glue[1]
+
+
+def test_generated_files_are_those_in_the_repository() -> None:
+    checked = steps.check(HERE / "model.yaml")
+    made = generate(checked.system, steps.claims(checked))
+    there = {p.name: p.read_text() for p in (HERE / "generated").iterdir()}
+    assert made == {name: text for name, text in there.items() if name != steps.MANIFEST}

@@ -1,0 +1,148 @@
+"""Components on several nodes: messages of connections, receptions, and each node's program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from gen.derive import on_one_node, programs
+from gen.diagnostics import render
+from gen.load import Loaded, load, read_file
+from gen.model import System
+from ravenchart.toolchain import ROOT
+
+MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
+BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"
+RECEPTION = (
+    "  reception: {released_by: link, period: 1 ms, stack: 32 KiB, activities: [link.receive]}\n"
+)
+TOGETHER = ("component: Linear_Servo, node: drive", "component: Linear_Servo, node: panel")
+
+
+def loaded(*replacements: tuple[str, str]) -> Loaded:
+    """The example with text replaced in its main file; each must be there once."""
+
+    def read(path: Path, most: int) -> bytes:
+        text = read_file(path, most).decode()
+        if path.name == MODEL.name:
+            for old, new in replacements:
+                assert text.count(old) == 1, old
+                text = text.replace(old, new)
+        return text.encode()
+
+    return load(MODEL, read)
+
+
+def system_of(*replacements: tuple[str, str]) -> System:
+    found = loaded(*replacements)
+    assert found.system is not None, _said(found)
+    return found.system
+
+
+def _said(found: Loaded) -> str:
+    return "\n".join(render(one, found.sources) for one in found.diagnostics)
+
+
+def refusal(*replacements: tuple[str, str]) -> str:
+    found = loaded(*replacements)
+    assert found.system is None
+    return _said(found)
+
+
+def test_a_connection_between_nodes_is_a_message_with_the_period_of_its_sender() -> None:
+    system = system_of()
+    assert not system.connections
+    assert [
+        (m.name, str(m.source), [str(t) for t in m.targets], m.period) for m in system.messages
+    ] == [
+        ("supervisor_order", "supervisor.order", ["servo.order"], 20_000_000),
+        ("servo_report", "servo.report", ["supervisor.report"], 20_000_000),
+    ]
+    assert {m.identifier for m in system.messages} == {1, 2}
+
+
+def test_one_line_puts_both_on_one_node_without_a_message_or_a_reception() -> None:
+    system = system_of(TOGETHER)
+    assert not system.messages
+    assert len(system.connections) == 2
+    assert [p.name for p in system.processors] == ["supervision", "control"]
+    assert {p.node for p in system.processors} == {"panel"}
+    assert [p.nodes[0].name for p in programs(system)] == ["panel"]
+
+
+def test_a_reception_without_node_is_on_each_node_that_receives() -> None:
+    receptions = [p for p in system_of().processors if p.released_by]
+    assert [(p.name, p.node, p.slots[0].element) for p in receptions] == [
+        ("reception_panel", "panel", "link.receive_panel"),
+        ("reception_drive", "drive", "link.receive_drive"),
+    ]
+    one_way = ("  - {from: servo.report, to: supervisor.report}\n", "")
+    line = "  heard: {bus: link, id: 0x7, to: supervisor.report, period: 20 ms}\n"
+    from_outside = ("processors:", f"messages:\n{line}processors:")
+    without_chain = ("servo.tell, supervisor.plan]", "servo.tell]")
+    assert len(system_of(one_way, from_outside, without_chain).processors) == 4
+
+
+def test_a_message_of_the_model_carries_the_connections_of_its_port() -> None:
+    line = "  told: {bus: link, id: 0x42, from: supervisor.order, deadline: 5 ms}\n"
+    given = ("processors:", f"messages:\n{line}processors:")
+    told = system_of(given).messages[0]
+    assert (told.name, told.identifier, told.limit) == ("told", 0x42, 5_000_000)
+    assert [str(target) for target in told.targets] == ["servo.order"]
+
+
+def test_each_node_has_its_program_and_sees_the_other_as_outside() -> None:
+    panel, drive = programs(system_of())
+    for part, own, other in ((panel, "supervisor", "servo"), (drive, "servo", "supervisor")):
+        assert [i.name for i in part.instances] == [own]
+        sent = [m for m in part.messages if m.source is not None]
+        received = [m for m in part.messages if m.targets]
+        assert [m.name.partition("_")[0] for m in sent] == [own]
+        assert [m.name.partition("_")[0] for m in received] == [other]
+        assert not part.connections
+        assert part.has_object("link.transmit")
+        assert {task.node for task in part.tasks} == {part.nodes[0].name}
+
+
+def test_objects_of_the_same_name_on_two_nodes_are_told_apart() -> None:
+    names = [item.element for item in system_of().objects]
+    assert len(set(names)) == len(names)
+    assert {"panel.health", "drive.health", "panel.link.transmit", "drive.link.transmit"} <= set(
+        names
+    )
+
+
+def test_a_simulation_has_both_on_one_node() -> None:
+    one = on_one_node(system_of())
+    assert len(one.nodes) == 1
+    assert [(str(c.source), str(c.target)) for c in one.connections] == [
+        ("supervisor.order", "servo.order"),
+        ("servo.report", "supervisor.report"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("replacements", "message"),
+    [
+        (
+            [(f"buses:\n{BUS}", ""), (RECEPTION, "")],
+            "declare a bus: between nodes, values travel as its messages",
+        ),
+        (
+            [("servo.control, servo.tell]\n\n", "servo.control, servo.tell, supervisor.plan]\n\n")],
+            "supervisor.plan is on panel, and control on drive",
+        ),
+        (
+            [("  control:\n", "  control:\n    on_deadline_miss: [supervisor.Servo_Lost]\n")],
+            "of which it raises Servo_Lost, on panel",
+        ),
+        ([("  control:\n", "  control:\n    core: 2\n")], "control is on core 2, and drive has 1"),
+        (
+            [("{released_by: link,", "{node: panel, released_by: link,")],
+            "no processor receives the messages of link on drive",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused(replacements: list[tuple[str, str]], message: str) -> None:
+    assert message in refusal(*replacements)

@@ -1,0 +1,179 @@
+"""A CAN database as part of a model, and what comes out of that again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cantools
+import pytest
+import yaml
+from cantools.database import Database
+
+from gen.emit.dbc import emit_dbc
+from gen.load import load
+from gen.model import System
+from ravenchart.__main__ import OK, WRONG, main
+from ravenchart.import_dbc import imported
+from ravenchart.steps import Refused
+from ravenchart.toolchain import ROOT
+
+
+def system_of(path: Path) -> System:
+    found = load(path)
+    assert found.system is not None, [str(d) for d in found.diagnostics]
+    return found.system
+
+
+def whole(text: str, node: str) -> str:
+    """An imported model with what a database cannot know."""
+    model = yaml.safe_load(text)
+    (name,) = model["components"]
+    component = model["components"][name]
+    outs = [port for port, form in component["ports"].items() if "out" in form]
+    rows = [f"{node}.ports"] if len(outs) < len(component["ports"]) else []
+    if rows:
+        component["port_region"] = {"period": "20 ms", "wcet": "10 us"}
+    if outs:
+        component["activities"] = {
+            "work": {"period": "20 ms", "wcet": "10 us", "body": "user", "sends": outs}
+        }
+        rows.append(f"{node}.work")
+    model |= {
+        "system": "Again",
+        "nodes": {node: {"context_switch": "1 us", "critical_section": "1 us"}},
+        "instances": {node: {"component": name, "node": node}},
+        "buses": {
+            "bus": {
+                "bit_rate": "500 kbit/s",
+                "driver_wcet": "10 us",
+                "receive_depth": 8,
+                "transmit_depth": 8,
+            }
+        },
+        "processors": {
+            "work": {"node": node, "stack": "16 KiB", "activities": rows},
+            "reception": {
+                "node": node,
+                "released_by": "bus",
+                "period": "1 ms",
+                "stack": "16 KiB",
+                "activities": ["bus.receive"],
+            },
+        },
+    }
+    return yaml.safe_dump(model, sort_keys=False).replace("'0x", "0x")
+
+
+def layout(text: str) -> dict[str, object]:
+    """Everything that a database says of its messages."""
+    database = cantools.database.load_string(text, "dbc", strict=True)
+    assert isinstance(database, Database)
+    return {
+        m.name: (
+            m.frame_id,
+            m.is_extended_frame,
+            m.is_fd,
+            m.length,
+            m.cycle_time,
+            {
+                s.name: (
+                    *(s.start, s.length, s.byte_order, s.is_signed, s.scale, s.offset),
+                    *(s.minimum, s.maximum, s.unit, s.choices and dict(s.choices)),
+                    *(s.is_multiplexer, s.multiplexer_ids, s.multiplexer_signal),
+                )
+                for s in m.signals
+            },
+        )
+        for m in database.messages
+    }
+
+
+def test_what_is_imported_is_exported_again_as_it_was(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    system = system_of(ROOT / "tests" / "feature" / "signals" / "model.yaml")
+    first = emit_dbc(system, system.buses[0])
+    (tmp_path / "line.dbc").write_text(first)
+    assert main(["import-dbc", str(tmp_path / "line.dbc"), "--node", "board"]) == OK
+    model = tmp_path / "model.yaml"
+    model.write_text(whole(capsys.readouterr().out, "board"))
+    again = system_of(model)
+    assert layout(emit_dbc(again, again.buses[0])) == layout(first)
+
+
+HEAD = """VERSION ""
+NS_ :
+BS_:
+BU_: ecu other
+"""
+GOOD = """BO_ 256 fine: 1 other
+ SG_ level : 0|8@1+ (0.5,-40) [-40|87.5] "degC" ecu
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_ "GenMsgCycleTime" BO_ 256 10;
+"""
+
+
+def database(folder: Path, *messages: str) -> Path:
+    path = folder / "odd.dbc"
+    path.write_text(HEAD + "\n".join(messages) + "\n" + GOOD)
+    return path
+
+
+def test_a_value_counts_the_scale_of_its_signal(tmp_path: Path) -> None:
+    found = yaml.safe_load(imported(database(tmp_path), "ecu").text)
+    assert found["types"]["fine_level"] == {"range": [-80, 175], "unit": "0.5 degC"}
+    signals = found["messages"]["fine"]["signals"]
+    assert signals == {"level": {"start": 0, "width": 8, "offset": -80}}
+    assert found["messages"]["fine"]["period"] == "10 ms"
+
+
+@pytest.mark.parametrize(
+    ("message", "told"),
+    [
+        ('BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (0.1,0.05) [0|25] "" other', "no whole number"),
+        ('BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (-1,0) [0|0] "" other', "has the scale -1"),
+        ('BO_ 1 odd: 8 ecu\n SG_ x : 0|64@1- (1,0) [0|0] "" other', "more than 62 bits"),
+        ('BO_ 1 odd: 8 ecu\n SG_ end : 0|8@1+ (1,0) [0|9] "" other', "a reserved word of Ada"),
+        ('BO_ 1 odd: 8 ecu\n SG_ x__y : 0|8@1+ (1,0) [0|9] "" other', "cannot have"),
+        ("BO_ 1 odd: 8 ecu", "it has no signals"),
+        ('BO_ 1 odd: 8 other\n SG_ x : 0|8@1+ (1,0) [0|9] "" ecu', "no cycle time"),
+    ],
+)
+def test_what_a_model_cannot_say_is_told_and_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], message: str, told: str
+) -> None:
+    path = database(tmp_path, message)
+    assert main(["import-dbc", str(path), "--node", "ecu"]) == WRONG
+    out = capsys.readouterr()
+    assert f"{path}: error: odd is left out: " in out.err
+    assert told in out.err
+    assert list(yaml.safe_load(out.out)["messages"]) == ["fine"]
+
+
+def test_names_of_single_values_are_told(tmp_path: Path) -> None:
+    text = 'BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (1,0) [0|250] "" other\nVAL_ 1 x 255 "Absent" ;'
+    (problem,) = imported(database(tmp_path, text), "ecu").problems
+    assert "names for some values, and numbers for others" in problem
+
+
+def test_several_multiplexors_are_told(tmp_path: Path) -> None:
+    text = (
+        'BO_ 1 odd: 8 ecu\n SG_ a M : 0|8@1+ (1,0) [0|9] "" other\n'
+        ' SG_ b m1M : 8|8@1+ (1,0) [0|9] "" other\n SG_ c m1 : 16|8@1+ (1,0) [0|9] "" other\n'
+        "SG_MUL_VAL_ 1 b a 1-1;\nSG_MUL_VAL_ 1 c b 1-1;"
+    )
+    (problem,) = imported(database(tmp_path, text), "ecu").problems
+    assert "several multiplexors, a, b" in problem
+
+
+def test_a_node_that_is_not_there_is_told_with_those_that_are(tmp_path: Path) -> None:
+    with pytest.raises(Refused, match="no node is called ecus: did you mean `ecu`"):
+        imported(database(tmp_path), "ecus")
+
+
+def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "no.dbc"
+    path.write_text("BO_ 12 x")
+    with pytest.raises(Refused, match=r"no\.dbc: error: "):
+        imported(path, "ecu")

@@ -1,0 +1,81 @@
+"""Traces of several nodes as one, and how long values took along the chains in it."""
+
+from __future__ import annotations
+
+import pytest
+
+from analysis.journeys import Journey, journeys
+from analysis.observed import Observation, read_map, read_trace, together
+from analysis.timing import Analysis, analyse
+from gen.derive import programs
+from gen.trace import trace_json
+from tests.unit.test_distribution import system_of
+
+MS = 1_000_000
+
+
+@pytest.fixture(scope="module")
+def analysis() -> Analysis:
+    return analyse(system_of())
+
+
+def seen(analysis: Analysis, panel: list[str], drive: list[str], late: int = 0) -> Observation:
+    """Both traces; lines as ``time kind element``, and the drive's time begins so much later."""
+    parts = {}
+    for part, lines in zip(programs(analysis.system), (panel, drive), strict=True):
+        known = read_map(trace_json(part))
+        node = part.nodes[0].name
+        text = [f"E {5_000 * MS + (late if node == 'drive' else 0)}"]
+        for line in lines:
+            words = line.split()
+            if words[0] == "A":
+                text.append(f"A {known.named(words[1], 'row').number} {words[2]}")
+                continue
+            time, kind, name = words
+            row = {"activity": "row", "sent": "message", "arrived": "message"}[kind]
+            text.append(f"T {int(float(time) * MS)} {kind} {known.named(name, row).number} 0")
+        parts[node] = read_trace([*text, "L trace 0", "END"], known)
+    return together(parts)
+
+
+PANEL = [
+    "0 activity supervisor.plan",
+    "0.1 sent supervisor_order",
+    "20 activity supervisor.plan",
+    "20.1 sent supervisor_order",
+]
+DRIVE = [
+    "-7 activity servo.ports",
+    "14 arrived supervisor_order",
+    "18 activity servo.ports",
+    "18.3 activity servo.control",
+    "A servo.control 200000",
+]
+
+
+def test_times_of_all_nodes_count_from_the_first_start(analysis: Analysis) -> None:
+    found = seen(analysis, PANEL, DRIVE, late=7 * MS)
+    assert [r.time for r in found.of("arrived", "supervisor_order")] == [21 * MS]
+    assert [r.time for r in found.of("sent", "supervisor_order")] == [MS // 10, 201 * MS // 10]
+    times = [record.time for record in found.records]
+    assert times == sorted(times)
+    assert found.complete
+    assert found.counts == {"panel.trace": 0, "drive.trace": 0}
+    assert found.executions == {"servo.control": 200_000}
+
+
+def test_a_reaction_is_to_what_the_run_before_has_just_missed(analysis: Analysis) -> None:
+    planned = next(j for j in journeys(analysis, seen(analysis, PANEL, DRIVE, late=7 * MS)))
+    bound = dict((c.name, found.reaction) for c, found in analysis.limited)["planned"]
+    # from the plan at 0, whose input was missed, to the control at 25.3 and its 0.2
+    assert planned == Journey("planned", 1, 25_500_000, bound or 0, 60 * MS)
+    assert not planned.exceeded
+
+
+def test_a_reaction_above_its_bound_is_told(analysis: Analysis) -> None:
+    found = journeys(analysis, seen(analysis, PANEL, DRIVE, late=60 * MS))
+    assert [j.chain for j in found if j.exceeded] == ["planned"]
+
+
+def test_what_never_arrives_is_no_reaction(analysis: Analysis) -> None:
+    assert not journeys(analysis, seen(analysis, PANEL, DRIVE[:1], late=7 * MS))
