@@ -14,7 +14,6 @@ mount -t 9p -o "ro,cache=loose,$options" machine /machine
 for place in proc sys dev; do mount -o bind "/$place" "/machine/$place"; done
 mount -t 9p -o "$options" results "/machine$RESULTS"
 mkdir -p /dev/shm
-mount -t tmpfs shm /dev/shm
 
 chroot /machine /bin/sh -c "
    ip link add vcan0 mtu 72 type vcan

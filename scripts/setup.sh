@@ -88,7 +88,10 @@ if [ "${1:-}" = guest ] && [ -z "$(ls build/guest/boot/vmlinuz-* 2>/dev/null)" ]
    say "unpacking $kernel below build/guest"
    rm -rf build/guest
    mkdir -p build/guest
-   if ! (cd build/guest && apt-get -qq download "$kernel" 2>&1 && dpkg-deb -x ./*.deb .); then
+   if ! (cd build/guest &&
+         apt-get -qq -o APT::Sandbox::User=root download "$kernel" && dpkg-deb -x ./*.deb .)
+   then
+      rm -rf build/guest
       say "there is no kernel (above); are the package sources reachable?" >&2
       exit 2
    fi
