@@ -4,12 +4,13 @@ RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-long check prove generate bench bench-proof mutate docs lock clean
+.PHONY: help setup demo test test-long hw-test check prove generate bench bench-proof mutate docs lock clean
 
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
 	@echo 'make test      every test'
 	@echo 'make test-long  the same with 2,000 random charts, millions of frames and lines: hours'
+	@echo 'make hw-test   SocketCAN and its driver on interfaces of a guest of QEMU: minutes'
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'
@@ -29,6 +30,10 @@ test: setup
 
 test-long: setup
 	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -m pytest -q
+
+hw-test: setup
+	@scripts/setup.sh guest || true
+	@$(PYTHON) -m ravenchart.hw_test
 
 check: setup
 	@$(PYTHON) -m ruff check .

@@ -18,7 +18,19 @@ from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
 from hw_can.bench.peer import BenchError
 
-from . import allocate, bus, draw, import_dbc, loopback, observed, plain, proving, simulate, steps
+from . import (
+    allocate,
+    bus,
+    draw,
+    house,
+    import_dbc,
+    loopback,
+    observed,
+    plain,
+    proving,
+    simulate,
+    steps,
+)
 from .run import Controller, RunRequest, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
@@ -65,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     build = command("build", _build, "generate, and compile the controller")
     prove = command("prove", _prove, "generate, and prove the controller with gnatprove")
     for sub in (build, prove):
-        sub.add_argument("--driver", choices=("slcan", "loopback", "bus"), help="the CAN driver")
+        sub.add_argument("--driver", choices=house.DRIVERS, help="the CAN driver")
     build.add_argument(
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",

@@ -33,6 +33,7 @@ DRIVER_FOLDERS = {
     "loopback": ("loopback",),
     "slcan": ("drivers/slcan", "drivers/tcp"),
     "bus": ("protocol", "drivers/bus", "drivers/tcp"),
+    "socketcan": ("drivers/socketcan",),
 }
 """What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
 DRIVERS = tuple(DRIVER_FOLDERS)

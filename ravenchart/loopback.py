@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from rich.console import Console
@@ -104,8 +105,23 @@ def tested(options: argparse.Namespace) -> bool:
     return result.passed
 
 
+def main() -> int:
+    """The command alone, without what the others need: 0 passed, 1 failed, 2 not run."""
+    parser = argparse.ArgumentParser(prog="loopback")
+    add_arguments(parser)
+    try:
+        return 0 if tested(parser.parse_args()) else 1
+    except (BenchError, OSError) as problem:
+        print(f"loopback: error: {problem}", file=sys.stderr)
+        return 2
+
+
 def _bitrate(text: str) -> int:
     """A nominal bit rate, 1 .. 1,000,000 bit/s."""
     if not (text.isascii() and text.isdigit() and 0 < int(text) <= 1_000_000):
         raise argparse.ArgumentTypeError(f"{text!r} is not 1 .. 1000000 bit/s")
     return int(text)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -23,11 +23,11 @@ def facts(result: LoopbackResult) -> tuple[tuple[str, str], ...]:
     )
 
 
-def junit(result: LoopbackResult) -> str:
+def junit(result: LoopbackResult, suite_name: str = "loopback") -> str:
     """JUnit XML, one test case for each case; a skipped one is never a passed one."""
     suite = ElementTree.Element(
         "testsuite",
-        name=f"loopback {result.setup.interface}",
+        name=f"{suite_name} {result.setup.interface}",
         tests=str(len(result.cases)),
         failures=str(result.count(Verdict.FAILED)),
         errors="0",
@@ -41,7 +41,7 @@ def junit(result: LoopbackResult) -> str:
         element = ElementTree.SubElement(
             suite,
             "testcase",
-            classname=f"loopback.{result.setup.interface}",
+            classname=f"{suite_name}.{result.setup.interface}",
             name=case.name,
             time=f"{case.seconds:.3f}",
         )

@@ -1,7 +1,9 @@
 #!/bin/sh
 # Install what is missing: Debian's GNAT, gprbuild and Graphviz, and a virtual
 # environment in .venv from requirements.lock. Does nothing when all is there.
-# With the word "arm" also the compiler for 32-bit Arm, which only figures need.
+# With the word "arm" also the compiler for 32-bit Arm, which only figures need;
+# with the word "guest" QEMU and, unpacked below build/guest and not installed,
+# Debian's kernel, which only `make hw-test` needs.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -15,6 +17,11 @@ python3 -c 'import ensurepip, venv' 2>/dev/null || packages="$packages python3-v
 if [ "${1:-}" = arm ]; then
    command -v arm-linux-gnueabihf-gcc-12 >/dev/null 2>&1 ||
       packages="$packages gnat-12-arm-linux-gnueabihf"
+fi
+if [ "${1:-}" = guest ]; then
+   command -v qemu-system-x86_64 >/dev/null 2>&1 || packages="$packages qemu-system-x86"
+   command -v busybox >/dev/null 2>&1 || packages="$packages busybox-static"
+   command -v ip >/dev/null 2>&1 || packages="$packages iproute2"
 fi
 if [ -n "$packages" ]; then
    as_root=
@@ -69,4 +76,24 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
    printf '#!/bin/sh\nexec "%s/.venv/bin/python" -m ravenchart "$@"\n' "$(pwd)" > .venv/bin/ravenchart
    chmod +x .venv/bin/ravenchart
    printf '%s' "$wanted" > "$stamp"
+fi
+
+if [ "${1:-}" = guest ] && [ -z "$(ls build/guest/boot/vmlinuz-* 2>/dev/null)" ]; then
+   kernel=$(apt-cache depends linux-image-amd64 2>/dev/null |
+      sed -n 's/^ *Depends: \(linux-image-[0-9].*\)$/\1/p' | head -n 1)
+   if [ -z "$kernel" ]; then
+      say "no package source has linux-image-amd64" >&2
+      exit 2
+   fi
+   say "unpacking $kernel below build/guest"
+   rm -rf build/guest
+   mkdir -p build/guest
+   if ! (cd build/guest &&
+         apt-get -qq -o APT::Sandbox::User=root download "$kernel" && dpkg-deb -x ./*.deb .)
+   then
+      rm -rf build/guest
+      say "there is no kernel (above); are the package sources reachable?" >&2
+      exit 2
+   fi
+   rm build/guest/*.deb
 fi

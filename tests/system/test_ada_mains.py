@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -25,6 +26,10 @@ MAINS = (
 )
 
 
+OF_DRIVERS = (("socketcan", "test_socket_frames"),)
+"""Programs that need the sources of a driver."""
+
+
 @pytest.fixture(scope="module", params=["checks", "release"])
 def mode(request: pytest.FixtureRequest) -> str:
     """Both builds of the tests."""
@@ -37,7 +42,20 @@ def mode(request: pytest.FixtureRequest) -> str:
 
 @pytest.mark.parametrize("main", MAINS)
 def test_every_fact_holds(mode: str, main: str) -> None:
-    program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / main
+    _holds(ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / main)
+
+
+@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize(("driver", "main"), OF_DRIVERS)
+def test_every_fact_of_a_driver_holds(mode: str, driver: str, main: str) -> None:
+    options = ["-p", "-q", "-j0", "-P", "tests.gpr", main]
+    where = ROOT / "tests" / "ada"
+    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": driver})
+    _holds(ROOT / "obj" / f"tests-{mode}-{driver}" / "bin" / main)
+
+
+def _holds(program: Path) -> None:
+    """It prints facts, all of them ok."""
     done = subprocess.run([program], capture_output=True, text=True, timeout=40, check=False)
     facts = [line for line in done.stdout.splitlines() if line.startswith(("ok ", "not ok "))]
     assert facts, done.stdout + done.stderr

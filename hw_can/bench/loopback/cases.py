@@ -109,7 +109,7 @@ def _needs(ends: Ends, *features: str) -> None:
                 raise Skipped(_LIMITS[name, feature])
 
 
-def _exact(sent: Sequence[can.Message], got: Sequence[can.Message]) -> str:
+def exact(sent: Sequence[can.Message], got: Sequence[can.Message]) -> str:
     """The frames that were sent, in their order; Failed names the first that is not."""
     for number, (a, b) in enumerate(zip(sent, got, strict=False), 1):
         if not a.equals(b, timestamp_delta=None, check_channel=False, check_direction=False):
@@ -136,7 +136,7 @@ def _identifiers(ends: Ends) -> str:
     standard = [frame(n) for n in (0, 1, 0x555, 0x7FE, 0x7FF)]
     extended = [frame(n, extended=True) for n in (0, 0x7FF, 0x800, 0x15555555, 0x1FFFFFFF)]
     sent = standard + extended
-    return _exact(sent, _one_by_one(ends, sent))
+    return exact(sent, _one_by_one(ends, sent))
 
 
 def _one_by_one(ends: Ends, frames: Sequence[can.Message]) -> list[can.Message]:
@@ -146,33 +146,33 @@ def _one_by_one(ends: Ends, frames: Sequence[can.Message]) -> list[can.Message]:
 
 def _every_byte(ends: Ends) -> str:
     sent = [frame(0x123, bytes(range(n, n + 8))) for n in range(0, 256, 8)]
-    return _exact(sent, ends.across(sent))
+    return exact(sent, ends.across(sent))
 
 
 def _remotes(ends: Ends, *, extended: bool) -> str:
     _needs(ends, "remote")
     sent = _remote(extended=extended)
-    return _exact(sent, _one_by_one(ends, sent))
+    return exact(sent, _one_by_one(ends, sent))
 
 
 def _fd(ends: Ends, *features: str) -> str:
     _needs(ends, "fd", *features)
     sent = fd_frames(brs="brs" in features, esi="esi" in features)
-    return _exact(sent, _one_by_one(ends, sent))
+    return exact(sent, _one_by_one(ends, sent))
 
 
 def _error_frame(ends: Ends) -> str:
     if not set(ends.setup.names) <= _CARRY_ERRORS:
         raise Skipped("only a simulated bus makes an error frame on demand")
     sent = [can.Message(arbitration_id=0x88, is_error_frame=True, data=bytes(range(8)))]
-    return _exact(sent, ends.across(sent))
+    return exact(sent, ends.across(sent))
 
 
 def _other_way(ends: Ends) -> str:
     if ends.setup.echo:
         raise Skipped("one bus object has no other way")
     sent = every_kind(ends)
-    return _exact(sent, [got for one in sent for got in ends.back([one])])
+    return exact(sent, [got for one in sent for got in ends.back([one])])
 
 
 def _burst_frames(base: int) -> list[can.Message]:
@@ -185,7 +185,7 @@ def _none_lost(sent: Sequence[can.Message], got: Sequence[can.Message]) -> None:
     def key(message: can.Message) -> tuple[int, bytes]:
         return message.arbitration_id, bytes(message.data)
 
-    _exact(sorted(sent, key=key), sorted(got, key=key))
+    exact(sorted(sent, key=key), sorted(got, key=key))
 
 
 def _burst(ends: Ends) -> str:
@@ -243,7 +243,7 @@ def _sent_and_seen(ends: Ends, one: can.Message) -> list[can.Message]:
 
 def _exact_or_why(sent: Sequence[can.Message], got: Sequence[can.Message]) -> str | None:
     try:
-        _exact(sent, got)
+        exact(sent, got)
     except Failed as wrong:
         return str(wrong)
     return None
@@ -253,8 +253,8 @@ def _echo(ends: Ends) -> str:
     _needs(ends, "echo")
     sent = every_kind(ends)
     if ends.setup.echo:
-        return _exact(sent, ends.across(sent)) + ", each of its own"
-    _exact(sent, ends.across(sent))
+        return exact(sent, ends.across(sent)) + ", each of its own"
+    exact(sent, ends.across(sent))
     if (stray := ends.near.recv(SETTLING)) is not None and not stray.is_error_frame:
         raise Failed(f"own frame {_shown(stray)} came back though not asked for")
     try:
@@ -262,7 +262,7 @@ def _echo(ends: Ends) -> str:
     except BenchError as fault:
         raise Skipped(f"no second bus object: {fault}") from None
     with own:
-        return _exact(sent, exchange(ends, own, own, sent)) + ", only when asked for"
+        return exact(sent, exchange(ends, own, own, sent)) + ", only when asked for"
 
 
 def _state(ends: Ends) -> str:
@@ -297,7 +297,7 @@ def _latency(ends: Ends) -> str:
         ends.near.send(sent)
         got = ends.far.recv(ends.patience)
         taken = time.perf_counter_ns() - began
-        _exact([sent], [] if got is None else [got])
+        exact([sent], [] if got is None else [got])
         ends.latencies.append(taken)
     in_order = sorted(ends.latencies)
     median, high = in_order[PINGS // 2], in_order[PINGS * 99 // 100]
@@ -323,8 +323,8 @@ def _no_errors(ends: Ends) -> str:
 
 
 CASES = (
-    Case("standard data frames", lambda e: _exact(f := _data(extended=False), _one_by_one(e, f))),
-    Case("extended data frames", lambda e: _exact(f := _data(extended=True), _one_by_one(e, f))),
+    Case("standard data frames", lambda e: exact(f := _data(extended=False), _one_by_one(e, f))),
+    Case("extended data frames", lambda e: exact(f := _data(extended=True), _one_by_one(e, f))),
     Case("identifiers at their limits", _identifiers),
     Case("every byte value", _every_byte),
     Case("standard remote frames", lambda ends: _remotes(ends, extended=False)),

@@ -1,0 +1,52 @@
+--  The few calls of the SocketCAN driver: one raw socket on one interface.
+--
+--  Guarantees   an interface that is down or gone shows as an outcome, never
+--               as an exception
+--  Tasking      the two tasks of the driver; each call is independent
+--  Timing       Receive waits for the bus; Send does not wait
+
+with Ravenchart.Can.Socket_Frames;
+
+package Ravenchart.Can.Raw_Sockets
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (Network with Synchronous,
+                    External => (Async_Readers, Async_Writers,
+                                 Effective_Reads, Effective_Writes)),
+    Initializes    => Network
+is
+   type Socket is range -1 .. 2**31 - 1;
+   --  A descriptor of the operating system.
+
+   No_Socket : constant Socket := -1;
+   --  What a failed call hands over.
+
+   type Outcome is (Done, Busy, Down, Gone);
+   --  Busy: no room to send at present. Down: the interface is not up.
+   --  Gone: the socket is of no use any more.
+
+   procedure Open (Opened : out Socket)
+   with Global => (In_Out => Network);
+   --  A socket on the interface that RAVENCHART_CAN_INTERFACE names, can0
+   --  where it does not, with all error reports; announced on standard
+   --  output. No_Socket, with one message on standard error, where the
+   --  system has no CAN or no such interface.
+
+   procedure Receive
+     (From   : Socket;
+      Item   : out Socket_Frames.Item;
+      Result : out Outcome)
+   with Global => (In_Out => Network), Post => Result /= Busy;
+   --  Wait for a frame or an error report; a null item when not Done.
+
+   procedure Send
+     (To : Socket; Item : Socket_Frames.Item; Result : out Outcome)
+   with Global => (In_Out => Network);
+   --  Hand a frame to the interface's transmit queue.
+
+   procedure Close (Old : Socket)
+   with Global => (In_Out => Network);
+   --  Give Old back to the system.
+
+end Ravenchart.Can.Raw_Sockets;

@@ -1,0 +1,127 @@
+--  Frames and error reports as Linux hands them over on a raw CAN socket:
+--  struct can_frame of linux/can.h, and the error classes of
+--  linux/can/error.h.
+--
+--  Guarantees   what is converted there and back is the same frame; every
+--               item that a socket can hand over has a meaning
+--  Tasking      none: values
+--  Timing       constant
+
+with Interfaces;
+
+package Ravenchart.Can.Socket_Frames
+  with SPARK_Mode, Pure
+is
+   use type Interfaces.Unsigned_8;
+   use type Interfaces.Unsigned_32;
+
+   type Data_Bytes is array (Byte_Index) of Interfaces.Unsigned_8
+   with Convention => C;
+   --  Byte 0 goes over the bus first.
+
+   type Item is record
+      Id       : Interfaces.Unsigned_32 := 0;
+      Length   : Interfaces.Unsigned_8 := 0;
+      Padding  : Interfaces.Unsigned_8 := 0;
+      Reserved : Interfaces.Unsigned_8 := 0;
+      Raw_Dlc  : Interfaces.Unsigned_8 := 0;
+      Data     : Data_Bytes := (others => 0);
+   end record
+   with Convention => C;
+   --  struct can_frame: 16 bytes, Id in the order of the machine.
+
+   Extended_Flag : constant Interfaces.Unsigned_32 := 16#8000_0000#;
+   Remote_Flag   : constant Interfaces.Unsigned_32 := 16#4000_0000#;
+   Error_Flag    : constant Interfaces.Unsigned_32 := 16#2000_0000#;
+   --  CAN_EFF_FLAG, CAN_RTR_FLAG and CAN_ERR_FLAG, within Id.
+
+   Extended_Bits : constant Interfaces.Unsigned_32 := 16#1FFF_FFFF#;
+   Standard_Bits : constant Interfaces.Unsigned_32 := 16#7FF#;
+   --  CAN_EFF_MASK and CAN_SFF_MASK.
+
+   function Is_Error (I : Item) return Boolean
+   is ((I.Id and Error_Flag) /= 0)
+   with Global => null;
+   --  An error report rather than a frame of the bus.
+
+   function Is_Frame (I : Item) return Boolean
+   is (not Is_Error (I)
+       and then I.Length <= 8
+       and then ((I.Id and Extended_Flag) /= 0
+                 or else (I.Id and Extended_Bits) <= Standard_Bits))
+   with Global => null;
+   --  A classic frame; the system hands over no other without an error flag.
+
+   function Frame_Of (I : Item) return Frame
+   with
+     Global => null,
+     Pre    => Is_Frame (I),
+     Post   =>
+       Frame_Of'Result.Length = Natural (I.Length)
+       and then Frame_Of'Result.Id = Identifier (I.Id and Extended_Bits)
+       and then (Frame_Of'Result.Format = Extended)
+                = ((I.Id and Extended_Flag) /= 0)
+       and then (Frame_Of'Result.Kind = Remote)
+                = ((I.Id and Remote_Flag) /= 0)
+       and then (if Frame_Of'Result.Kind = Data
+                 then (for all B in Byte_Index =>
+                         (if B < Frame_Of'Result.Length
+                          then Byte (Frame_Of'Result, B) = I.Data (B))));
+   --  The frame that was received.
+
+   function Item_Of (F : Frame) return Item
+   with
+     Global => null,
+     Post   =>
+       Is_Frame (Item_Of'Result)
+       and then Natural (Item_Of'Result.Length) = F.Length
+       and then (Item_Of'Result.Id and Extended_Bits)
+                = Interfaces.Unsigned_32 (F.Id)
+       and then ((Item_Of'Result.Id and Extended_Flag) /= 0)
+                = (F.Format = Extended)
+       and then ((Item_Of'Result.Id and Remote_Flag) /= 0)
+                = (F.Kind = Remote)
+       and then (for all B in Byte_Index =>
+                   Item_Of'Result.Data (B) = Byte (F, B));
+   --  What is handed to the socket to send F.
+
+   --  Error reports
+
+   Bus_Off_Class    : constant Interfaces.Unsigned_32 := 16#40#;
+   Restarted_Class  : constant Interfaces.Unsigned_32 := 16#100#;
+   Controller_Class : constant Interfaces.Unsigned_32 := 16#4#;
+   Counters_Class   : constant Interfaces.Unsigned_32 := 16#200#;
+   --  CAN_ERR_BUSOFF, _RESTARTED, _CRTL and _CNT, within Id.
+
+   Passive_Bits : constant Interfaces.Unsigned_8 := 16#30#;
+   --  CAN_ERR_CRTL_RX_PASSIVE and _TX_PASSIVE, in byte 1.
+
+   Active_Bits : constant Interfaces.Unsigned_8 := 16#4C#;
+   --  CAN_ERR_CRTL_ACTIVE and the two warning levels, in byte 1: a
+   --  controller that warns is error-active.
+
+   function State_After
+     (Report : Item; Now : Controller_State) return Controller_State
+   is (if not Is_Error (Report)
+       then Now
+       elsif (Report.Id and Bus_Off_Class) /= 0
+       then Bus_Off
+       elsif (Report.Id and Restarted_Class) /= 0
+       then Error_Active
+       elsif (Report.Id and Controller_Class) /= 0
+         and then (Report.Data (1) and Passive_Bits) /= 0
+       then Error_Passive
+       elsif (Report.Id and Controller_Class) /= 0
+         and then (Report.Data (1) and Active_Bits) /= 0
+       then Error_Active
+       else Now)
+   with Global => null;
+   --  How the controller stands after an error report; a frame changes
+   --  nothing.
+
+   function Has_Counters (Report : Item) return Boolean
+   is (Is_Error (Report) and then (Report.Id and Counters_Class) /= 0)
+   with Global => null;
+   --  Does it carry the error counters: transmit in byte 6, receive in 7?
+
+end Ravenchart.Can.Socket_Frames;
