@@ -6,6 +6,7 @@ import argparse
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 from hw_can.bench.bus_records import NAME_LENGTH
@@ -81,24 +82,25 @@ def words(options: argparse.Namespace) -> list[str]:
     return told + [f"event={event}" for event in options.event]
 
 
+@cache
 def built() -> Path:
-    """The server's program, compiled if need be; ToolMissing or ToolFailed."""
+    """The server's program, compiled if need be, and once; ToolMissing or ToolFailed."""
     options = ["-p", "-q", "-j0", "-P", PROJECT.name]
     toolchain.run("gprbuild", options, PROJECT.parent, {"MODE": "release"})
     return ROOT / "obj" / "bus-release" / "can_bus"
 
 
 @contextmanager
-def started(*told: str) -> Iterator[str]:
-    """A bus server on a free port for the time of a block; its channel, ``host:port``."""
+def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A bus server for the time of a block, and its channel, ``host:port``."""
     with subprocess.Popen(
-        [built(), "port=0", *told], stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
+        [built(), *told], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
     ) as server:
         assert server.stdout is not None
         try:
-            yield server.stdout.readline().split()[-1]
+            yield server, server.stdout.readline().split()[-1]
         finally:
-            server.terminate()
+            server.kill()
 
 
 def serve(told: Sequence[str]) -> int:

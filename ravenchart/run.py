@@ -332,7 +332,8 @@ def run_nodes(
     played: ScenarioResult | None = None
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
-    with separate_cores(), bus.started(*_bus_words(analysis, controllers, plan)) as channel:
+    words = _bus_words(analysis, controllers, plan)
+    with separate_cores(), bus.running("port=0", *words) as (_, channel):
         running: list[ControllerProcess] = []
         try:
             for number, (one, trace) in enumerate(zip(controllers, traces, strict=True)):

@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from functools import cache
-from pathlib import Path
 
-from ravenchart import bus
+from ravenchart.bus import running
 
 Start = Callable[..., str]
 """Starts a bus with such words beside the port; its channel."""
-
-
-@cache
-def _program() -> Path:
-    """The server's program, looked after once."""
-    return bus.built()
 
 
 @contextmanager
@@ -29,17 +20,6 @@ def started(*words: str) -> Iterator[str]:
         finally:
             server.terminate()
             assert server.wait(10) == 0
-
-
-@contextmanager
-def running(*words: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A bus server that whoever started it ends, and the channel it is at."""
-    with subprocess.Popen([_program(), *words], stdout=subprocess.PIPE, text=True) as server:
-        assert server.stdout is not None
-        try:
-            yield server, server.stdout.readline().split()[-1]
-        finally:
-            server.kill()
 
 
 @contextmanager

@@ -1,10 +1,13 @@
-"""Random CAN frames of every kind."""
+"""CAN frames: random ones of every kind, and those that come next."""
 
 from __future__ import annotations
 
 import random
 
 import can
+
+WAIT = 10.0
+"""Seconds within which a frame must have come."""
 
 FD_LENGTHS = (*range(9), 12, 16, 20, 24, 32, 48, 64)
 
@@ -32,3 +35,11 @@ def _frame(chance: random.Random, kind: str) -> can.Message:
         data=None if kind == "remote" else chance.randbytes(length),
         check=True,
     )
+
+
+def taken(bus: can.BusABC, count: int) -> list[can.Message]:
+    """The next ``count`` frames, or fewer when none came for long."""
+    found: list[can.Message] = []
+    while len(found) < count and (message := bus.recv(WAIT)) is not None:
+        found.append(message)
+    return found

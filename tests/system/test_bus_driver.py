@@ -11,12 +11,13 @@ import pytest
 from hw_can.bench.bus_client import RavenchartBus
 from hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
 from ravenchart import toolchain
+from ravenchart.bus import running
 from ravenchart.toolchain import ROOT
 from tests.support.bus_server import BusServer
-from tests.support.can_bus import running, started
+from tests.support.can_bus import started
+from tests.support.can_frames import WAIT, taken
 from tests.support.can_node import JOINED, node
 
-WAIT = 10.0
 MOST_OPEN = 8
 DEPTH = 1000
 """Requests that the driver has open, and frames that its transmit queue holds (nodes.ads)."""
@@ -34,15 +35,6 @@ def built(mode: str) -> Path:
 def echo() -> Path:
     """The program, with every contract executed."""
     return built("checks") / "can_echo"
-
-
-def taken(bus: can.BusABC, count: int) -> list[can.Message]:
-    """The next frames, without error frames."""
-    found: list[can.Message] = []
-    while len(found) < count and (message := bus.recv(WAIT)) is not None:
-        if not message.is_error_frame:
-            found.append(message)
-    return found
 
 
 def order_burst(bus: can.BusABC, length: int) -> None:

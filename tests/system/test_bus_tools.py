@@ -18,10 +18,9 @@ import pytest
 
 from hw_can.bench.bus_client import RavenchartBus
 from tests.support.can_bus import started
-from tests.support.can_frames import mixed_frames
+from tests.support.can_frames import WAIT, mixed_frames, taken
 
 ROOT = Path(__file__).parents[2]
-WAIT = 10.0
 
 
 @pytest.fixture
@@ -34,14 +33,6 @@ def channel() -> Iterator[str]:
 def pair(channel: str) -> Iterator[tuple[RavenchartBus, RavenchartBus]]:
     with RavenchartBus(channel, fd=True) as a, RavenchartBus(channel, fd=True) as b:
         yield a, b
-
-
-def taken(bus: can.BusABC, count: int) -> list[can.Message]:
-    """The next ``count`` frames, or fewer when none came for long."""
-    found: list[can.Message] = []
-    while len(found) < count and (message := bus.recv(WAIT)) is not None:
-        found.append(message)
-    return found
 
 
 def same(sent: list[can.Message], received: list[can.Message], *, direction: bool = True) -> bool:

@@ -17,23 +17,16 @@ from hw_can.bench.bus_client import RavenchartBus
 from hw_can.bench.bus_records import MARK, RECORD_BYTES, Kind, Record, Status, encode
 from ravenchart.__main__ import main
 from tests.support.can_bus import Start, started, starter
+from tests.support.can_frames import WAIT, taken
 from tests.support.raw_client import RawClient
 
 ROOT = Path(__file__).parents[2]
-WAIT = 10.0
 
 
 @pytest.fixture
 def start() -> Iterator[Start]:
     with starter() as one:
         yield one
-
-
-def taken(bus: can.BusABC, count: int) -> list[can.Message]:
-    found: list[can.Message] = []
-    while len(found) < count and (message := bus.recv(WAIT)) is not None:
-        found.append(message)
-    return found
 
 
 def test_the_loopback_suite_passes_on_it(
@@ -146,6 +139,7 @@ def test_chance_is_the_same_again(start: Start) -> None:
 SENDER = """
 import can, sys
 from hw_can.bench.bus_client import RavenchartBus
+from tests.support.can_frames import WAIT, taken
 with RavenchartBus(sys.argv[1], fd=True) as bus:
     for number in range(100):
         frame = can.Message(arbitration_id=int(sys.argv[2]), data=bytes([number]))

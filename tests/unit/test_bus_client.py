@@ -14,9 +14,9 @@ import pytest
 from hw_can.bench.bus_client import RavenchartBus
 from hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
 from tests.support.bus_server import BusServer
+from tests.support.can_frames import WAIT, taken
 
 ROOT = Path(__file__).parents[2]
-WAIT = 10.0
 
 
 @pytest.fixture
@@ -30,14 +30,6 @@ def server() -> Iterator[BusServer]:
 def pair(server: BusServer) -> Iterator[tuple[RavenchartBus, RavenchartBus]]:
     with RavenchartBus(server.channel, fd=True) as a, RavenchartBus(server.channel, fd=True) as b:
         yield a, b
-
-
-def taken(bus: can.BusABC, count: int) -> list[can.Message]:
-    """The next ``count`` frames, or fewer when none came for long."""
-    found: list[can.Message] = []
-    while len(found) < count and (message := bus.recv(WAIT)) is not None:
-        found.append(message)
-    return found
 
 
 def test_filters_are_for_frames_and_not_for_errors(
