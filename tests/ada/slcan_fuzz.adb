@@ -48,13 +48,19 @@ procedure Slcan_Fuzz is
    Seed   : Interfaces.Unsigned_64 := 16#9E37_79B9_7F4A_7C15#;
 
    function Random return Interfaces.Unsigned_64;
-   --  Marsaglia's xorshift, of period 2**64 - 1.
+   --  Marsaglia's xorshift, of period 2**64 - 1, times a constant (Vigna's
+   --  xorshift64*): the low bits alone would follow from those before.
 
    function Below (Limit : Positive) return Natural
-   is (Natural (Random mod Interfaces.Unsigned_64 (Limit)));
+   is (Natural
+         (Interfaces.Shift_Right (Random, 32)
+          mod Interfaces.Unsigned_64 (Limit)));
 
    function Any_Byte return Byte_Value
-   is (Byte_Value (Random mod 256));
+   is (Byte_Value (Below (256)));
+
+   function Byte_Of_Lines return Byte_Value
+   is (Character'Pos (Alphabet (1 + Below (Alphabet'Length))));
 
    function Any_Frame return Frame;
 
@@ -78,7 +84,7 @@ procedure Slcan_Fuzz is
       Seed := Seed xor Interfaces.Shift_Left (Seed, 13);
       Seed := Seed xor Interfaces.Shift_Right (Seed, 7);
       Seed := Seed xor Interfaces.Shift_Left (Seed, 17);
-      return Seed;
+      return Seed * 16#2545_F491_4F6C_DD1D#;
    end Random;
 
    ---------------
@@ -115,8 +121,7 @@ procedure Slcan_Fuzz is
             end loop;
          when Bytes_Of_Lines =>
             for I in 1 .. Length loop
-               Text (I) := Character'Pos
-                 (Alphabet (1 + Below (Alphabet'Length)));
+               Text (I) := Byte_Of_Lines;
             end loop;
          when Changed_Line | Whole_Line =>
             Sent := Any_Frame;
@@ -126,7 +131,8 @@ procedure Slcan_Fuzz is
                Text (I) := Whole (I);
             end loop;
             if How = Changed_Line then
-               Text (1 + Below (Length)) := Any_Byte;
+               Text (1 + Below (Length)) :=
+                 (if Below (2) = 0 then Any_Byte else Byte_Of_Lines);
                Length := Length - Below (2);
             end if;
       end case;
@@ -174,6 +180,10 @@ procedure Slcan_Fuzz is
       Lines := Lines + 1;
       if Result = Slcan.Frame_Line then
          Frames := Frames + 1;
+         Expect
+           ("a frame is one",
+            F.Length'Valid and then F.Id'Valid
+            and then Fits (F.Id, F.Format));
          Slcan.Format_Line (F, Again, Last);
          Expect
            ("a frame is written as it was read",

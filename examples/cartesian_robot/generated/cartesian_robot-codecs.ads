@@ -114,6 +114,7 @@ is
       Item  : out Cartesian_Robot.Robot_Order;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Robot_Order_Kind_Raw (Word) <= 3
@@ -179,6 +180,7 @@ is
       Item  : out Cartesian_Robot.Robot_Report;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Robot_Report_Condition_Raw (Word) <= 5
@@ -233,6 +235,7 @@ is
       Item  : out Cartesian_Robot.Drive_Set_Point;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Drive_Set_Point_Mode_Raw (Word) <= 1
@@ -304,6 +307,7 @@ is
       Item  : out Cartesian_Robot.Drive_Feedback;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Drive_Feedback_Count_Raw (Word) <= 2_000_000

@@ -142,6 +142,7 @@ is
       Item  : out Infusion_System.Press;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Press_Key_Raw (Word) <= 5
@@ -194,6 +195,7 @@ is
       Item  : out Infusion_System.View;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (View_Given_Raw (Word) <= 1_000_000

@@ -65,6 +65,7 @@ is
       Item  : out Two_Nodes.Servo_Order;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Servo_Order_Wish_Raw (Word) <= 1
@@ -113,6 +114,7 @@ is
       Item  : out Two_Nodes.Servo_Report;
       Valid : out Boolean)
    with
+     Convention => C,
      Post =>
        Valid
        = (Servo_Report_Condition_Raw (Word) <= 2
