@@ -33,7 +33,7 @@ WAIT = 5.0
 """Seconds after which a frame is lost."""
 BIT_RATE = 1_000_000
 """Of the bus that is paced by the clock, in bit/s."""
-ECHO = "slcan_echo"
+ECHO = "can_echo"
 """The Ada program: it sends each frame back."""
 
 Ends = tuple[can.BusABC, can.BusABC]
@@ -89,7 +89,9 @@ def slcan() -> Iterator[Ends]:
     toolchain.run("gprbuild", options, where, {"MODE": "release", "CAN_DRIVER": "slcan"})
     program = ROOT / "obj" / "tests-release-slcan" / "bin" / ECHO
     environment = {**os.environ, "RAVENCHART_CAN_PORT": "0"}
-    with subprocess.Popen([program], env=environment, stdout=subprocess.PIPE, text=True) as ada:
+    with subprocess.Popen(
+        [program, "0"], env=environment, stdout=subprocess.PIPE, text=True
+    ) as ada:
         assert ada.stdout is not None
         try:
             port = ada.stdout.readline().rpartition(":")[2].strip()
@@ -106,7 +108,7 @@ def slcan() -> Iterator[Ends]:
 def server(*told: str) -> Iterator[Ends]:
     """Two nodes on a bus server that is told this."""
     with (
-        bus.started(*told) as channel,
+        bus.running("port=0", *told) as (_, channel),
         RavenchartBus(channel) as near,
         RavenchartBus(channel) as far,
     ):

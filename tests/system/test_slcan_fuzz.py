@@ -25,7 +25,7 @@ FRAME = re.compile(
 )
 COMMANDS = {b"": "EMPTY_LINE", b"O": "OPEN_CHANNEL", b"C": "CLOSE_CHANNEL",
             b"V": "VERSION_QUERY", b"N": "SERIAL_QUERY"}  # fmt: skip
-SETTING = re.compile(rb"[FPALEv]|[SYZQWX][0-9]|[sMm][0-9A-Fa-f]{2,}")
+SETTING = re.compile(rb"[FPALEvzZ]|[SYZQWX][0-9]|[sMm][0-9A-Fa-f]{2,}")
 
 
 def meaning(line: bytes) -> str:
