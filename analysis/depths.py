@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
-from gen.model import Connection, Instance, Port, PortKind
+from gen.component import Port, PortKind
+from gen.model import Connection, Instance
 from gen.statechart import Overflow
 from gen.terms import Origin
 
@@ -60,9 +61,8 @@ def depths(analysis: Analysis) -> Iterator[Depth]:
             yield Depth(queue, "transmit_depth", bus.origin, bus.transmit_depth, needed)
     for processor in system.processors:
         own = analysis.found.responses[processor.name].bound
-        here = processor.released_by, processor.node
-        received = [d for d in analysis.deliveries.values() if d.message.bus == here[0]]
-        taken = [d for d in received if system.receiver(d.message) == here[1]]
+        received = system.received(processor.released_by, processor.node)
+        taken = [analysis.deliveries[one.element] for one in received]
         waits = [None if d.bound is None or own is None else d.bound - own for d in taken]
         if not waits or processor.released_by is None:
             continue

@@ -183,11 +183,8 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
 def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
     """Receptions that take frames no faster than they come."""
     for processor in analysis.system.processors:
-        taken_here = [
-            one.message
-            for one in analysis.deliveries.values()
-            if one.message.bus == processor.released_by
-        ]
+        received = analysis.system.received(processor.released_by, processor.node)
+        taken_here = [one.message for one in received]
         load = sum((Fraction(processor.period, m.period) for m in taken_here), Fraction(0))
         if load > 1 or any(message in analysis.undelivered for message in taken_here):
             lost = "frames will be lost" if load > 1 else "a frame may wait without bound"

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import networkx as nx
 
-from gen.model import Activity, Component, Direction, Instance, System, Work
+from gen.component import Activity, Component, Direction
+from gen.model import Instance, System, Work
 from gen.statechart import Region
 
 FLOW = frozenset({"reads", "writes", "sends", "carries"})

@@ -50,7 +50,8 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
 
 def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     """From each start of the first row to the end of the journey that the next one begins."""
-    first, *others = _stages(chain, system, seen)
+    starts, *others = _stages(chain, system, seen)
+    first = [start for start in starts if start >= seen.ready]
     last = seen.executions.get(chain.way[-1], 0)
     origins = first if chain.way[0].startswith("message ") else (None, *first)
     found = []
@@ -80,9 +81,10 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Sequenc
     for place in chain.way:
         if place.startswith("message "):
             name = place.removeprefix("message ")
-            kinds = ["arrived"] if sources[name] is None else ["sent", "arrived"]
-            yield from ([r.time for r in seen.of(kind, name)] for kind in kinds)
+            kind = "arrived" if sources[name] is None else "sent"
+            yield [r.time for r in seen.of(kind, name)]
         elif place in inputs:
+            yield [r.time for r in seen.of("arrived", place)]
             yield [r.time for r in seen.of("activity", f"{place.partition('.')[0]}.ports")]
         elif place in rows:
             yield [r.time for r in seen.of("activity", place)]

@@ -19,7 +19,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from gen.model import Activity, Message, Port, PortKind, Processor, System
+from gen.component import Activity, Port, PortKind
+from gen.model import Message, Processor, Reception, System
 from gen.statechart import Region
 from gen.terms import named
 
@@ -36,19 +37,24 @@ __all__ = ["Delivery", "Hop", "Latencies", "Latency", "deliveries"]
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """How long a received message takes from its event until the reception has handed it over.
+    """How long a received message takes from its event until it is handed over on a node.
 
     ``bound`` is None where frames come faster than they are taken; ``wait`` is the part
     spent in the queue.
     """
 
-    message: Message
+    reception: Reception
     bound: int | None
     wait: int | None
 
+    @property
+    def message(self) -> Message:
+        """What is received."""
+        return self.reception.message
+
 
 def deliveries(system: System, found: Holistic) -> dict[str, Delivery]:
-    """Every message that some reception hands over, by its element.
+    """Every message on every node that hands it over, by the element of its reception.
 
     The separation counts from when the reception first ran, which can be as late as
     its response.
@@ -58,20 +64,14 @@ def deliveries(system: System, found: Holistic) -> dict[str, Delivery]:
         frames = reception_frames(processor, system, found)
         turns = {r.frame.name: r.bound for r in can.analyse(frames, Bus(bit_time=1))}
         own = found.responses[processor.name].bound
-        for message in _received(processor, system):
-            bound, late = turns.get(message.element), found.from_event(message.driver("rx"))
+        for one in system.received(processor.released_by, processor.node):
+            bound, late = turns.get(one.element), found.from_event(one.driver)
             if bound is None or own is None or late is None:
-                made[message.element] = Delivery(message, None, None)
+                made[one.element] = Delivery(one, None, None)
             else:
                 turn = bound - processor.period
-                made[message.element] = Delivery(message, turn + 2 * own, turn + own - late)
+                made[one.element] = Delivery(one, turn + 2 * own, turn + own - late)
     return made
-
-
-def _received(processor: Processor, system: System) -> list[Message]:
-    """The messages that a processor receives."""
-    here = processor.released_by, processor.node
-    return [m for m in system.messages if (m.bus, system.receiver(m)) == here]
 
 
 def reception_frames(processor: Processor, system: System, found: Holistic) -> list[Frame]:
@@ -81,12 +81,13 @@ def reception_frames(processor: Processor, system: System, found: Holistic) -> l
     time of an arrival has no bound.
     """
     frames = []
-    for number, message in enumerate(_received(processor, system)):
-        late = found.from_event(message.driver("rx"))
+    received = system.received(processor.released_by, processor.node)
+    for number, one in enumerate(received):
+        late = found.from_event(one.driver)
         if late is None:
             return []
-        times = (message.period, message.limit, processor.period, late)
-        frames.append(Frame(message.element, number, *times, queue=processor.name))
+        times = (one.message.period, one.message.limit, processor.period, late)
+        frames.append(Frame(one.element, number, *times, queue=processor.name))
     return frames
 
 
@@ -115,7 +116,7 @@ class Latencies:
         released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
         for element, one in delivered.items():
             items.append((_item(handed(element), one.message.period, 1), one.bound))
-            released[handed(element)] = one.message.driver("rx")
+            released[handed(element)] = one.reception.driver
         tasks = [task for task in network.tasks if not task.rows]
         tasks += [item for item, _ in items]
         view = replace(network, tasks=tuple(tasks), released_by=released)
@@ -138,7 +139,8 @@ class Latencies:
         for place, following in zip_longest(way, way[1:], fillvalue=""):
             if place.startswith("message "):
                 found = named(self.system.messages, place.removeprefix("message "))
-                steps += _of_message(found, steps, released)
+                received = self.system.reception(found, following)
+                steps += _of_message(found, received, steps, released)
                 continue
             row, port = place, self._input(place)
             if port is not None:
@@ -217,18 +219,20 @@ def handed(element: str) -> str:
 
 
 def _sending(system: System) -> set[str]:
-    return {m.driver("tx") for m in system.messages}
+    return {message.sending for message in system.messages}
 
 
-def _of_message(message: Message, steps: Sequence[Step], released: dict[str, str]) -> list[Step]:
-    """The driver's work and the frame, then the reception where it is received here."""
+def _of_message(
+    message: Message, received: Reception | None, steps: Sequence[Step], released: dict[str, str]
+) -> list[Step]:
+    """The driver's work and the frame, then its reception where there is one."""
     names = [message.element]
     if message.source is not None:
-        names.insert(0, message.driver("tx"))
+        names.insert(0, message.sending)
         if steps:
             released[names[0]] = steps[-1].name
-    if message.targets:
-        names += [message.driver("rx"), handed(message.element)]
+    if received is not None:
+        names += [received.driver, handed(received.element)]
     return [Step(name, Hop.RELEASED) for name in names]
 
 

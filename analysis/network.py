@@ -29,8 +29,8 @@ def network_of(system: System) -> Network:
     tasks = {task.element for task in system.tasks}
     released = {t.element: t.released_by for t in system.tasks if t.released_by is not None}
     for message in system.messages:
-        if message.source is not None and message.driver("tx") in tasks:
-            released[message.element] = message.driver("tx")
+        if message.source is not None and message.sending in tasks:
+            released[message.element] = message.sending
     return Network(
         tasks=tuple(_task(task, system) for task in system.tasks),
         frames={

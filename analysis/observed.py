@@ -116,6 +116,8 @@ class Observation:
     complete: bool = False
     start: Ns = NO_TIME
     """The machine's clock when this controller's time was 0."""
+    ready: Ns = NO_TIME
+    """From when on all controllers ran."""
 
     @property
     def misses(self) -> int:
@@ -216,6 +218,7 @@ def together(parts: Mapping[str, Observation]) -> Observation:
         if part.host_latency is not None:
             whole.host_latency = max(whole.host_latency or Ns(0), part.host_latency)
         whole.complete = whole.complete and part.complete
+        whole.ready = max(whole.ready, Ns(late))
         whole.map = replace(part.map, elements=elements)
     whole.records.sort(key=lambda record: record.time)
     return whole

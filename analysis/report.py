@@ -298,8 +298,12 @@ def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
         length = frame_length(message, bus)
         bits = length.nominal + length.data
         row = _item(analysis, sent.frame.name)
-        delivery = analysis.deliveries.get(message.element)
-        messages.append(row | {"message": message, "bits": bits, "delivery": delivery})
+        received = [
+            analysis.deliveries[one.element]
+            for one in analysis.system.receptions(message)
+            if one.element in analysis.deliveries
+        ]
+        messages.append(row | {"message": message, "bits": bits, "received": received})
     return {"bus": bus, "load": analysis.bus_load(bus), "messages": messages}
 
 

@@ -140,7 +140,8 @@ class Analysis:
     @property
     def undelivered(self) -> tuple[Message, ...]:
         """Messages that may wait for their reception without bound."""
-        return tuple(one.message for one in self.deliveries.values() if one.bound is None)
+        lost = (one.message for one in self.deliveries.values() if one.bound is None)
+        return tuple(dict.fromkeys(lost))
 
     @property
     def overloaded(self) -> tuple[Bus, ...]:
@@ -164,7 +165,7 @@ class Analysis:
 
     @cached_property
     def deliveries(self) -> dict[str, Delivery]:
-        """How each received message gets through the queue of its bus, by element."""
+        """How each received message gets through the queue of its bus, by reception."""
         return latencies.deliveries(self.system, self.found)
 
     @cached_property

@@ -12,8 +12,9 @@ import heapq
 from collections import deque
 from collections.abc import Iterator
 
-from gen.model import Activity, End, Instance, PortKind, Slot, System, Work
-from gen.model import Port as InputPort
+from gen.component import Activity, PortKind
+from gen.component import Port as InputPort
+from gen.model import End, Instance, Slot, System, Work
 from gen.statechart import DONE, OnEvent, Overflow, Region
 from gen.terms import Ns, Value
 

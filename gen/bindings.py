@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from .commands import Binding, Device, Need
+from .component import Component
 from .derive import table_period
 from .devices import (
     Devices,
@@ -22,7 +23,7 @@ from .devices import (
     ungathered,
     wcet_of,
 )
-from .model import Component, Instance, Processor, Slot, System
+from .model import Instance, Processor, Slot, System
 from .names import Findings, Scope, meant
 from .schema_devices import BindingForm
 from .statechart import Region

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from .commands import Binding, Device, DeviceType, DriverCommand, Provided, Server
-from .model import Component, System
+from .component import Component
+from .model import System
 
 
 def rows_of(system: System, binding: Binding) -> tuple[str, ...]:

@@ -31,13 +31,21 @@ class Reach:
     def __post_init__(self) -> None:
         """Follow everything until nothing is new."""
         self.found |= self._entered(Place(None, ""), ())
+        left = list(self.tree.region.transitions)
         while True:
             size = len(self.found)
-            for transition in self.tree.region.transitions:
+            for transition in tuple(left):
                 if self.fires(transition):
                     self.found |= self.after(transition)
+                    if not self._depends(transition):
+                        left.remove(transition)
             if len(self.found) == size:
                 return
+
+    def _depends(self, transition: Transition) -> bool:
+        """Whether where it leads depends on what is reached."""
+        known = (PseudoKind.JOIN, PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY)
+        return any(self.tree.kind(way.target) in known for way in self.tree.ways(transition))
 
     def fires(self, transition: Transition) -> bool:
         """Whether a transition can fire as far as its source is concerned."""

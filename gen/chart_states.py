@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .chart_names import FINAL_STATE, Row, States, vertex_of, walk
+from .component import Event
 from .flows import Targets, flow_of
-from .model import Event
 from .names import Findings, Scope
 from .schema import InitialForm, NestedRegionForm, RegionForm, StateForm
 from .statechart import Initial, NestedRegion, PseudoKind, Pseudostate, State

@@ -13,12 +13,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from .claims import Claims
+from .component import Component
 from .derive import programs
 from .diagnostics import Diagnostic, error
 from .emit.ada_text import WIDTH, print_unit
 from .emit.naming import ada_case
 from .generate import Made, program
-from .model import Component, System
+from .model import System
 from .terms import EnumerationType, Origin
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})
@@ -60,6 +61,10 @@ def _elements(system: System) -> Iterator[_Element]:
         yield from _members(component)
     for message in system.messages:
         yield _Element("message", message.name, message.origin)
+        several = (one for one in system.receptions(message) if one.several)
+        yield from (
+            _Element("message", f"{message.name}_{r.node}", r.message.origin) for r in several
+        )
     for type_ in system.types:
         yield _Element("type", type_.name, type_.origin)
         if isinstance(type_, EnumerationType):

@@ -9,10 +9,10 @@ from .chart_names import States, names_of
 from .chart_structure import structure_errors
 from .charts import region_of
 from .commands import Command, Need
+from .component import Activity, Component, Direction, StateRef
 from .flows import Targets, Use, called, flow_of
 from .interfaces import needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
-from .model import Activity, Component, Direction, StateRef
 from .names import Findings, Scope, meant
 from .quantities import shown
 from .schema import ActivityForm, ComponentForm, PortRegionForm, ProbeForm, RegionForm

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from .component import Direction, Port
 from .components import Parts, timing_of
 from .derive import table_deadline, table_period
 from .identifiers import OPEN
@@ -14,12 +15,10 @@ from .model import (
     BusErrors,
     Chain,
     Connection,
-    Direction,
     End,
     Instance,
     Message,
     Node,
-    Port,
     Processor,
     Shutdown,
     Slot,

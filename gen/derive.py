@@ -10,19 +10,9 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from .calls import callers, callers_of, readers_through, repliers, replies_read, rows_of
+from .component import Activity
 from .distribution import as_one, part_of
-from .model import (
-    Activity,
-    Bus,
-    Instance,
-    Message,
-    Node,
-    Processor,
-    SharedObject,
-    Slot,
-    System,
-    Task,
-)
+from .model import Bus, Instance, Message, Node, Processor, SharedObject, Slot, System, Task
 from .statechart import Region
 from .terms import Ns
 from .ways import routed
@@ -121,13 +111,14 @@ def tasks_of(system: System) -> tuple[Task, ...]:
     top = max((processor.priority for processor in system.processors), default=0)
     for message in system.messages:
         bus = system.bus(message.bus)
-        ways = [
-            ("tx", system.sender(message), sender_of(system, message)),
-            ("rx", system.receiver(message), message.element),
-        ]
+        ways: list[tuple[str, str, str | None]] = []
+        home = system.sender(message)
+        if home is not None:
+            ways.append((message.sending, home, sender_of(system, message)))
+        ways += [(one.driver, one.node, message.element) for one in system.receptions(message)]
         tasks += [
             Task(
-                element=message.driver(way),
+                element=driver,
                 origin=message.origin,
                 node=node,
                 period=message.period,
@@ -138,8 +129,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                 released_by=releaser,
                 core=driver_core(system, bus, node),
             )
-            for way, node, releaser in ways
-            if node is not None
+            for driver, node, releaser in ways
         ]
     for host in system.nodes:
         if host.probe is not None:

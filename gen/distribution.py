@@ -95,9 +95,8 @@ def placed(system: System) -> System:
         elif processor.released_by is None:
             found.append(replace(processor, node=system.instance(processor.slots[0].owner).node))
         else:
-            received = [m for m in system.messages if m.bus == processor.released_by]
-            receivers = {system.receiver(message) for message in received}
-            homes = [node.name for node in system.nodes if node.name in receivers]
+            bus = processor.released_by
+            homes = [node.name for node in system.nodes if system.received(bus, node.name)]
             found += [_on(processor, home, several=len(homes) > 1) for home in homes]
     return replace(system, processors=tuple(found))
 
@@ -117,10 +116,11 @@ def part_of(system: System, node: Node) -> System:
         replace(
             message,
             source=message.source if system.sender(message) == node.name else None,
-            targets=message.targets if system.receiver(message) == node.name else (),
+            targets=tuple(end for end in message.targets if end.instance in here),
         )
         for message in system.messages
-        if node.name in (system.sender(message), system.receiver(message))
+        if system.sender(message) == node.name
+        or any(end.instance in here for end in message.targets)
     )
     used = {message.bus for message in messages}
     bindings = tuple(b for b in system.bindings if b.instance in here)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .commands import Need
-from .model import Event
+from .component import Event
 from .names import Findings, Scope, meant
 from .schema import CallForm, IfForm, RaiseForm, SendForm, SetForm
 from .statechart import DONE

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from .calls import device_types
 from .claims import Claims
+from .component import Component
 from .derive import programs
 from .emit.ada import Package, Unit
 from .emit.ada_text import print_item, print_unit
@@ -25,8 +26,8 @@ from .emit.project import project_text, simulation_project
 from .emit.quiet import has_decided_conditions, quiet
 from .emit.simulation import emit_simulation, simulated
 from .emit.types import emit_root
-from .model import Component, System
-from .parallel import made_by_all
+from .model import System
+from .parallel import MANY, made_by_all
 from .readings import Reading, readings
 from .terms import IntegerType
 from .trace import trace_json
@@ -42,9 +43,6 @@ SIMULATED = (
 )
 
 T = TypeVar("T")
-
-MANY = 500
-"""So many regions are made by all processors of the machine together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,14 +74,12 @@ class _Maker:
     def logic(self, meanwhile: Callable[[], T]) -> tuple[list[Made], T]:
         """The root and the components (no state, no tasks), and what is made ``meanwhile``."""
         root = self.made([emit_root(self.system, self.header)])
-        if sum(len(c.regions) for c in self.components) < MANY:
-            parts, besides = [self._of_component(c) for c in self.components], meanwhile()
-        else:
-            parts, besides = made_by_all(
-                lambda number: self._of_component(self.components[number]),
-                len(self.components),
-                meanwhile,
-            )
+        parts, besides = made_by_all(
+            lambda number: self._of_component(self.components[number]),
+            len(self.components),
+            meanwhile,
+            worthwhile=sum(len(c.regions) for c in self.components) >= MANY,
+        )
         return [*root, *(made for part in parts for made in part)], besides
 
     def _of_component(self, component: Component) -> list[Made]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from .commands import Command, CommandKind, Need, Provided, Published, Request, StandIn
+from .component import Activity, Component, Data, Direction, Event, Port
 from .members import Members, Namespace
-from .model import Activity, Component, Data, Direction, Event, Port
 from .names import Findings, Scope
 from .schema import ComponentForm
 from .schema_devices import CommandForm, NeedForm, ProvidedForm, RequiredForm

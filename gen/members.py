@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from .chart_names import walk
-from .model import Data, Direction, Event, Invariant, Parameter, Port, PortKind
+from .component import Data, Direction, Event, Invariant, Parameter, Port, PortKind
 from .names import HIDING, Findings, Scope
 from .schema import ComponentForm, InputForm, OutputForm
 from .statechart import DONE, Overflow

@@ -7,6 +7,9 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
 
+MANY = 500
+"""So many regions are worth the other processors of the machine."""
+
 T = TypeVar("T")
 U = TypeVar("U")
 
@@ -15,13 +18,14 @@ _shared: list[Callable[[int], object]] = []
 
 
 def made_by_all(
-    make: Callable[[int], T], count: int, meanwhile: Callable[[], U]
+    make: Callable[[int], T], count: int, meanwhile: Callable[[], U], *, worthwhile: bool = True
 ) -> tuple[list[T], U]:
     """``[make(0), ... make(count - 1)]``, and what this process makes ``meanwhile``.
 
-    What ``make`` gives is sent between processes. Without `fork` one process makes all.
+    What ``make`` gives is sent between processes. Without `fork` one process makes all,
+    and it does so where it is not ``worthwhile``.
     """
-    if "fork" not in multiprocessing.get_all_start_methods():
+    if not worthwhile or "fork" not in multiprocessing.get_all_start_methods():
         return [make(number) for number in range(count)], meanwhile()
     _shared[:] = [make]
     try:

@@ -11,8 +11,10 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from itertools import product
 
+from .component import Component, Direction
 from .diagnostics import Diagnostic, error, warning
-from .model import Bus, Component, Direction, Instance, Message, Processor, Slot, System, Work
+from .model import Bus, Instance, Message, Processor, Slot, System, Work
+from .parallel import MANY, made_by_all
 from .quantities import shown
 from .resolve import Resolved
 from .rules_components import COMPONENT_RULES
@@ -28,11 +30,15 @@ STANDARD_LAST, EXTENDED_LAST = 0x7FF, 0x1FFF_FFFF
 
 def violations(resolved: Resolved) -> Iterator[Diagnostic]:
     """Everything that breaks a rule."""
-    for component in resolved.system.components:
-        for component_rule in COMPONENT_RULES:
-            yield from component_rule(component, resolved)
-    for rule in (*RULES, *NODE_RULES):
-        yield from rule(resolved)
+    components = resolved.system.components
+    found, others = made_by_all(
+        lambda n: [d for rule in COMPONENT_RULES for d in rule(components[n], resolved)],
+        len(components),
+        lambda: [d for rule in (*RULES, *NODE_RULES) for d in rule(resolved)],
+        worthwhile=sum(len(component.regions) for component in components) >= MANY,
+    )
+    yield from (diagnostic for own in found for diagnostic in own)
+    yield from others
 
 
 # --- Names -------------------------------------------------------------------------
@@ -363,9 +369,7 @@ def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
     if not {"processors", "messages"} <= resolved.sound_sections:
         return
     for bus, node in product(system.buses, system.nodes):
-        receives = any(
-            item.bus == bus.name and system.receiver(item) == node.name for item in system.messages
-        )
+        receives = bool(system.received(bus.name, node.name))
         serving = [
             (processor, slot)
             for processor, slot in _rows(system)

@@ -13,8 +13,8 @@ from .chart_reach import Reach
 from .chart_steps import RAISED, Steps, Tally
 from .chart_structure import BRANCHING, always_enabled, is_literal
 from .chart_tree import Tree, is_segment
+from .component import Activity, Component
 from .diagnostics import Diagnostic, error, warning
-from .model import Activity, Component
 from .resolve import Resolved
 from .statechart import DONE, RAISED_PER_STEP, Completion, OnEvent, Region, Transition, When
 from .terms import Origin

@@ -6,9 +6,9 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 
 from .chart_steps import tally
+from .component import Activity, Component
 from .diagnostics import Diagnostic, error, warning
 from .flows import actions_of
-from .model import Activity, Component
 from .resolve import Resolved
 from .rules_charts import (
     completions_can_come,

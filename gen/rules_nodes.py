@@ -13,18 +13,6 @@ ABSENT = "RV-0802"
 """What cannot reach from one node to another yet."""
 
 
-def messages_have_one_receiver(resolved: Resolved) -> Iterator[Diagnostic]:
-    """The instances that receive a message are all on one node."""
-    system = resolved.system
-    for message in system.messages:
-        homes = {system.instance(end.instance).node: str(end) for end in message.targets}
-        if len(homes) > 1:
-            ends = " and ".join(f"{end} on {node}" for node, end in homes.items())
-            text = f"{message.name} is received by {ends}: a message goes to one node, so far"
-            hint = "give the sender one output port for each of these nodes"
-            yield error(ABSENT, message.origin, text, hint=hint)
-
-
 def calls_stay_on_their_node(resolved: Resolved) -> Iterator[Diagnostic]:
     """Who provides a command is on the node of whoever requires it; a device is on one."""
     system = resolved.system
@@ -76,7 +64,6 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 NODE_RULES = (
-    messages_have_one_receiver,
     calls_stay_on_their_node,
     cores_exist,
     raised_events_are_near,

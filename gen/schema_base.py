@@ -171,57 +171,65 @@ class Element(BaseModel):
         return element
 
     @property
+    def tree(self) -> Map:
+        """What was read."""
+        private = self.__pydantic_private__  # `self._raw` would search for it
+        assert private is not None
+        found: Map = private["_raw"]
+        return found
+
+    @property
     def origin(self) -> Origin:
         """Where the element begins: its key, or its first character in a list."""
-        return self._raw.origin
+        return self.tree.origin
 
     @property
     def damaged(self) -> bool:
         """Whether something inside was wrong and taken out."""
-        return self._raw.damaged
+        return self.tree.damaged
 
     def has(self, name: str) -> bool:
         """Whether the key is given."""
-        return name in self._raw
+        return name in self.tree
 
     def at(self, name: str) -> Origin:
         """Where the value of the key stands; where the element begins, without it."""
-        place = self._raw.values_at.get(name)
+        place = self.tree.values_at.get(name)
         return self.origin if place is None else place.origin
 
     def at_key(self, name: str) -> Origin:
         """Where the key itself stands; where the element begins, without it."""
-        return self._raw.keys_at.get(name, self.origin)
+        return self.tree.keys_at.get(name, self.origin)
 
     def place(self, name: str, inside: str | None = None) -> Place:
         """The place of the key's value, or of an entry of the mapping that it holds."""
-        value = self._raw.get(name)
+        value = self.tree.get(name)
         if inside is not None and isinstance(value, Map):
             return value.values_at.get(inside, Place(value.origin))
-        return self._raw.values_at.get(name, Place(self.origin))
+        return self.tree.values_at.get(name, Place(self.origin))
 
     def item_at(self, name: str, index: int) -> Origin:
         """Where an item of the list under the key stands."""
-        value = self._raw.get(name)
+        value = self.tree.get(name)
         if isinstance(value, Seq) and index < len(value.items_at):
             return value.items_at[index].origin
         return self.at(name)
 
     def entry_at(self, name: str, entry: str) -> Origin:
         """Where the key ``entry`` of the mapping under the key ``name`` stands."""
-        value = self._raw.get(name)
+        value = self.tree.get(name)
         return value.keys_at.get(entry, value.origin) if isinstance(value, Map) else self.at(name)
 
     def dropped(self, name: str) -> tuple[str, ...]:
         """The entries of the mapping under the key that were wrong and taken out."""
-        value = self._raw.get(name)
+        value = self.tree.get(name)
         return tuple(value.dropped) if isinstance(value, Map) else ()
 
     def list_damaged(self, name: str) -> bool:
         """Whether an item of the list under the key was wrong and taken out."""
-        value = self._raw.get(name)
+        value = self.tree.get(name)
         return isinstance(value, Seq) and value.damaged
 
     def lost(self, name: str) -> bool:
         """Whether the key was given with a wrong value, and taken out."""
-        return name in self._raw.dropped
+        return name in self.tree.dropped

@@ -1,4 +1,4 @@
-"""Figures: what the runtime's operations cost, and how generator and analysis grow.
+"""Figures: what runtime, codecs and buses cost, and how generator and analysis grow.
 
 Everything is measured in one run, and what matters are the ratios: absolute
 times depend on the machine.
@@ -17,7 +17,15 @@ import behaviour.rules
 from gen.generate import generate
 from gen.load import load
 
-from . import bench_charts, bench_commands, bench_timing, steps, toolchain
+from . import (
+    bench_buses,
+    bench_charts,
+    bench_codecs,
+    bench_commands,
+    bench_timing,
+    steps,
+    toolchain,
+)
 from .large_models import large_model
 from .toolchain import ROOT
 
@@ -83,6 +91,8 @@ def main() -> None:
     """All figures."""
     runtime_operations()
     bench_commands.main()
+    bench_codecs.main()
+    bench_buses.main()
     bench_charts.main()
     generator()
     large_models()

@@ -27,8 +27,16 @@ EXAMPLES = (
     "qhsmtst",
     "surgical_robot",
     "three_components",
+    "two_nodes",
 )
-DRIVERS = ("loopback", "slcan", "socketcan")
+DRIVER_FOLDERS = {
+    "loopback": ("loopback",),
+    "slcan": ("drivers/slcan", "drivers/tcp"),
+    "bus": ("protocol", "drivers/bus", "drivers/tcp"),
+    "socketcan": ("drivers/socketcan",),
+}
+"""What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
+DRIVERS = tuple(DRIVER_FOLDERS)
 BUS = "bus"
 
 
@@ -55,6 +63,13 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
             yield from _example(example)
 
 
+def record_names(example: str) -> tuple[str, ...]:
+    """The records of an example: one, or one for each node that has a program."""
+    generated = ROOT / "examples" / example / "generated"
+    nodes = sorted(project.parent.name for project in generated.glob("*/*.gpr"))
+    return tuple(f"{example}-{node}" for node in nodes) or (example,)
+
+
 def _bus() -> Target:
     folder, obj = ROOT / "hw_can" / "bus", ROOT / "obj"
     return Target(
@@ -62,13 +77,12 @@ def _bus() -> Target:
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
-        (folder,),
+        (folder, ROOT / "hw_can" / "protocol"),
     )
 
 
 def _runtime(driver: str) -> Target:
     obj = ROOT / "obj"
-    body = ROOT / "hw_can" / ("loopback" if driver == "loopback" else f"drivers/{driver}")
     return Target(
         f"runtime-{driver}",
         ROOT / "proofs" / "proofs.gpr",
@@ -78,7 +92,7 @@ def _runtime(driver: str) -> Target:
             ROOT / "spark_runtime",
             ROOT / "hw_can" / "hal",
             ROOT / "hw_can" / "simulator",
-            body,
+            *(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver]),
             ROOT / "proofs" / "instances",
         ),
     )

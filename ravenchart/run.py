@@ -165,12 +165,12 @@ def run_alone(
 
 
 def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple[Path, ...]:
-    """Write report.html, and positions.png after a scenario, into ``out_dir``; what it wrote."""
+    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both."""
     out_dir.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     pictures: list[tuple[str, str]] = []
     played = outcome.scenario_result
-    if played is not None:
+    if played is not None and played.tracks:
         figure = plots.positions(played.tracks, result.spans(outcome), result.marks(played))
         picture = out_dir / "positions.png"
         picture.write_bytes(plots.png(figure))

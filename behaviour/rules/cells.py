@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from gen.model import Component
+from gen.component import Component
 from gen.statechart import When
 from gen.terms import EnumerationType, Expression, If, IntegerType, Reading, ScalarType, Set
 

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import z3
 
+from gen.component import Invariant
 from gen.diagnostics import Diagnostic, error, warning
-from gen.model import Invariant, System
+from gen.model import System
 from gen.terms import Origin
 
 from . import logic

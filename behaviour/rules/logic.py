@@ -11,7 +11,7 @@ from typing import Any
 
 import z3
 
-from gen.model import Component
+from gen.component import Component
 from gen.terms import (
     BOOLEAN,
     EnumerationType,

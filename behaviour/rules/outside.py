@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gen.model import Activity, Component, System
+from gen.component import Activity, Component
+from gen.model import System
 from gen.statechart import DONE, Every, Initial, Overflow, Region, State, Transition, TransitionKind
 from gen.terms import InState, Ns, Reading
 

@@ -18,7 +18,8 @@ from dataclasses import dataclass, field
 
 import z3
 
-from gen.model import Component, System
+from gen.component import Component
+from gen.model import System
 from gen.statechart import DONE, After, Every, When
 from gen.terms import BOOLEAN, Set
 

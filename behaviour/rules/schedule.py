@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import z3
 
-from gen.model import Component, System, Work
+from gen.component import Component
+from gen.model import System, Work
 
 from .logic import Term
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from ..model import Activity, Component, StateRef
+from ..component import Activity, Component, StateRef
 from ..quantities import shown
 from ..statechart import Initial, Region, State, Transition, TransitionKind
 from . import words

@@ -14,7 +14,8 @@ from itertools import pairwise, product, zip_longest
 
 import networkx as nx
 
-from ..model import Bus, Direction, End, Instance, Message, Node, Port, Processor, System
+from ..component import Direction, Port
+from ..model import Bus, End, Instance, Message, Node, Processor, System
 from ..quantities import BITS_PER_SECOND, shown
 from .dot import (
     Attributes,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..model import Direction, Instance, Message, System
+from ..component import Direction
+from ..model import Instance, Message, System
 
 
 def plantuml(system: System) -> str:

@@ -14,7 +14,7 @@ from collections.abc import Set
 
 from ..claims import ChainClaim, Claims
 from ..model import SharedObject, System, Task
-from .ada import SPARK, Aspect, Comment, Decl, Expr, Package, Ref, Unit, number
+from .ada import SPARK, Aspect, Chain, Comment, Decl, Expr, Package, Ref, Unit, number
 from .certificate_bus import bus_claims, bus_terms
 from .certificate_chains import chain_claims
 from .certificate_hops import hops_of
@@ -210,7 +210,7 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
         tail = "" if len(windows) == 1 else f"_{job + 1}"
         last, needs = Ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
         if len(windows) == 1:
-            items.append(named(f"{own}_W", Ref(f"{own}_R - {own}_J")))
+            items.append(named(f"{own}_W", Chain("-", (bound, jitter))))
         else:
             items.append(stated(f"{own}_W{tail}", window))
         work = _work(task, number(job + 1))

@@ -9,12 +9,12 @@ each of them, and to others it is as late as it may have waited.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Set
+from collections.abc import Callable, Iterable, Set
 from dataclasses import dataclass
 
 from ..claims import Claim, Claims
 from ..identifiers import leading
-from ..model import Bus, Message, System
+from ..model import Bus, Message, Reception, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
 from .certificate_terms import (
     ONE,
@@ -97,7 +97,7 @@ def _terms(message: Message, bus: str) -> list[Decl]:
     if message.source is None:
         items.append(stated(f"{own}_J", 0))
     else:
-        items.append(named(f"{own}_J", Ref(f"{name_of(message.driver('tx'))}_R")))
+        items.append(named(f"{own}_J", Ref(f"{name_of(message.sending)}_R")))
     return [*items, arrivals(own)]
 
 
@@ -163,8 +163,9 @@ def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> li
         level = _Level(message, order[:reach], order[reach:], system.queue)
         items += _of_message(bus, level, claims)
     for message in order:
-        if message.element in handed:
-            items += _turns(system, message, claims.turns.get(message.element, Claim()))
+        for one in system.receptions(message):
+            if one.element in handed:
+                items += _turns(system, one, claims.turns.get(one.element, Claim()))
     return items
 
 
@@ -265,36 +266,38 @@ def _instances(
     return items
 
 
-def _turns(system: System, message: Message, claim: Claim) -> list[Decl]:
+def _turns(system: System, one: Reception, claim: Claim) -> list[Decl]:
     """When the reception, which keeps its least separation, has handed a message over."""
-    here = message.bus, system.receiver(message)
+    here = one.message.bus, one.node
     processor = next(p for p in system.processors if (p.released_by, p.node) == here)
     separation, response = (Ref(f"{name_of(processor.name)}_{letter}") for letter in "TR")
-    received = [m for m in system.messages if (m.bus, system.receiver(m)) == here]
-    own = name_of(message.element)
+    received = system.received(*here)
+    own = name_of(one.element)
 
-    def served(window: Expr, among: list[Message]) -> list[Expr]:
+    def served(window: Expr, among: Iterable[Reception]) -> list[Expr]:
         return [
             times(
                 ceiling(
-                    plus(window, Ref(f"{name_of(m.driver('rx'))}_R")),
-                    Ref(f"{name_of(m.element)}_T"),
+                    plus(window, Ref(f"{name_of(r.driver)}_R")),
+                    Ref(f"{name_of(r.message.element)}_T"),
                 ),
                 separation,
             )
-            for m in among
+            for r in among
         ]
 
     def waiting(instance: int, window: Expr) -> Expr:
         earlier = [times(number(instance), separation)] if instance else []
-        others = [m for m in received if m is not message]
+        others = [r for r in received if r != one]
         return plus(*earlier, *served(plus(window, number(1)), others))
 
-    label = message.element
+    label = one.element
     words = f"[{label}] its turn in the queue of {processor.name}, and when it is handed over"
-    items: list[Decl] = [
-        Comment(words),
-        named(f"{own}_Turn_J", Ref(f"{name_of(message.driver('rx'))}_R")),
+    items: list[Decl] = [Comment(words)]
+    if one.several:
+        items.append(named(f"{own}_T", Ref(f"{name_of(one.message.element)}_T")))
+    items += [
+        named(f"{own}_Turn_J", Ref(f"{name_of(one.driver)}_R")),
         *_instances(own, label, claim, waiting, lambda w: plus(*served(w, received)), "Turn_"),
         stated(f"{own}_Turn", claim.response),
     ]

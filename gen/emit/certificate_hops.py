@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from ..model import Activity, Chain, PortKind, Processor, Slot, System
+from ..component import Activity, PortKind
+from ..model import Chain, Processor, Slot, System
 from ..statechart import Region
 from ..terms import named
 
@@ -40,7 +41,8 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
     sure = True  # whether the row before renews what stands between it and the next
     for number, place in enumerate(chain.way):
         if place.startswith("message "):
-            hops += _message(system, place.removeprefix("message "))
+            following = next(iter(chain.way[number + 1 :]), "")
+            hops += _message(system, place.removeprefix("message "), following)
             continue
         owner, _, name = place.partition(".")
         component = system.instance(owner).component
@@ -61,14 +63,16 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
     return tuple(hops)
 
 
-def _message(system: System, name: str) -> Iterator[Hop]:
+def _message(system: System, name: str, following: str) -> Iterator[Hop]:
+    """The driver's work and the frame, then its reception for the port that follows."""
     message = named(system.messages, name)
     if message.source is not None:
-        yield Hop(message.driver("tx"), "item", "released")
+        yield Hop(message.sending, "item", "released")
     yield Hop(message.element, "item", "released")
-    if message.targets:
-        yield Hop(message.driver("rx"), "item", "released")
-        yield Hop(message.element, "handed", "released")
+    received = system.reception(message, following)
+    if received is not None:
+        yield Hop(received.driver, "item", "released")
+        yield Hop(received.element, "handed", "released")
 
 
 def _row(system: System, element: str, row: Region | Activity, hops: list[Hop]) -> Hop:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..model import Activity, Component, Direction, Port, System
+from ..component import Activity, Component, Direction, Port
+from ..model import System
 from ..statechart import RAISED_PER_STEP, Region
 from ..terms import Type, always
 from .ada import (

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from ..calls import callers_of, published_by, repliers, replies_read
 from ..commands import Binding, Device, Need, Provided, Server
-from ..model import Component, Instance, Port, System
+from ..component import Component, Port
+from ..model import Instance, System
 from ..terms import Type, named
 from .ada import (
     Aggregate,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..model import Component, Event, System
+from ..component import Component, Event
+from ..model import System
 from ..terms import Type, named
 from .ada import Aggregate, Arg, Comment, Decl, EnumType, Expr, Object, RecordType, Ref
 from .ada import Component as Field

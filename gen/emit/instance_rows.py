@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..commands import Binding, Server
-from ..model import Activity, Port
+from ..component import Activity, Port
 from ..statechart import DONE, Region
 from .ada import (
     Arg,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..model import Activity, Data, End, Instance, Port, Slot, System, Work
+from ..component import Activity, Data, Port
+from ..model import End, Instance, Slot, System, Work
 from ..statechart import Region
 from .ada import (
     Call,

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..commands import Provided
-from ..model import Activity, Event, Port, PortKind, System, Work
+from ..component import Activity, Event, Port, PortKind
+from ..model import System, Work
 from ..statechart import Overflow, Region
 from ..terms import named
 from .ada import (

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ..model import Component, Instance, Processor, Slot, System
+from ..component import Component
+from ..model import Instance, Processor, Slot, System
 from ..statechart import Region
 from ..terms import (
     BOOLEAN,

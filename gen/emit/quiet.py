@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from .. import terms as m
-from ..model import Component, StateRef, System
+from ..component import Component, StateRef
+from ..model import System
 from ..statechart import When
 from .ada import Package, Pragma, Ref, Unit
 from .charts.compound import Place

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..component import Port
 from ..derive import on_one_node
-from ..model import Instance, Port, System, Work
+from ..model import Instance, System, Work
 from ..terms import IntegerType, RecordType, ScalarType, Type, Value
 from .ada import (
     Aggregate,

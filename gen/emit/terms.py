@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from .. import terms as m
-from ..model import Component, System
+from ..component import Component
+from ..model import System
 from .ada import (
     FALSE,
     TRUE,

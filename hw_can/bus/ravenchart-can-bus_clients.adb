@@ -110,7 +110,7 @@ is
                  (To,
                   Bus_Records.Welcome
                     (P.Name (1 .. P.Length), P.Data > 0, P.Nominal, P.Data,
-                     P.Began, Now, C),
+                     P.Began, Now, Positive (C)),
                   Now);
                Tell_State (To, Fresh);
             end if;

@@ -159,7 +159,9 @@ is
          Result := Version_Query;
       elsif Count = 1 and then Line (1) = Code ('N') then
          Result := Serial_Query;
-      elsif Settings_Are_Sound (Line, Count) then
+      elsif Settings_Are_Sound (Line, Count)
+        or else (Count = 1 and then Line (1) in Code ('z') | Code ('Z'))
+      then
          Result := Other_Command;
       else
          Result := Rejected_Line;

@@ -17,6 +17,9 @@ is
    Carriage_Return : constant Interfaces.Unsigned_8 := 13;
    --  Ends every line.
 
+   Bell : constant Interfaces.Unsigned_8 := 7;
+   --  What an adapter says instead when it refuses a line.
+
    Line_Limit : constant := 27;
    --  The longest line: T, 8 digits of identifier, 1 of length, 16 of data,
    --  and the carriage return.
@@ -39,7 +42,7 @@ is
       Empty_Line,
       Rejected_Line);
    --  What the last byte completed. Other_Command needs no answer here: bit
-   --  rates, filters, time stamps.
+   --  rates, filters, time stamps, an adapter's word that it has sent.
 
    type Parser is private
    with Default_Initial_Condition => Pending (Parser) = 0;

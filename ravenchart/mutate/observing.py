@@ -16,9 +16,10 @@ from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
 from behaviour.stimuli import Arrived, Raised, Stimuli
 from behaviour.traces import Record
+from gen.component import Event, Port
 from gen.emit.naming import ada_case
 from gen.generate import simulation
-from gen.model import End, Event, Port, System
+from gen.model import End, System
 from gen.terms import IntegerType, Ns, RecordType, Scalar, ScalarType, Type, Value
 
 from .. import simulate, steps
@@ -49,6 +50,12 @@ class Observer:
 
     def differs(self, mutant: Mutant, executable: Path) -> str:
         """How the broken program differs; empty when it does not."""
+        if mutant.rule == "Deadline":
+            return unnoticed(self.checked.system, mutant.file, executable, self.folder)
+        return self.seen(mutant, executable)
+
+    def seen(self, mutant: Mutant, executable: Path) -> str:
+        """How it differs where nothing holds it up."""
         raise NotImplementedError
 
     def model_differs(self, system: System) -> str:
@@ -113,11 +120,11 @@ class Simulated(Observer):
         if difference := self._difference():
             raise ToolFailed(f"the unbroken program differs: {difference}")
 
-    def differs(self, mutant: Mutant, executable: Path) -> str:
+    def seen(self, mutant: Mutant, executable: Path) -> str:
         """The first step that differs."""
         twin = self.mutants.get(mutant.key)
         if twin is None:
-            return self.real.differs(mutant, executable)
+            return self.real.seen(mutant, executable)
         path = self.home / "source" / mutant.file
         path.write_text(twin.applied(self.files[mutant.file]))
         try:
@@ -228,17 +235,15 @@ class Real(Observer):
 
     def prepare(self, executable: Path) -> None:
         """What the unbroken program does."""
-        self.expected = self._seen(executable)
+        self.expected = self._observed(executable)
 
-    def _seen(self, executable: Path) -> Observation:
+    def _observed(self, executable: Path) -> Observation:
         return ran(executable, self.folder, lambda process: time.sleep(SECONDS))
 
-    def differs(self, mutant: Mutant, executable: Path) -> str:
+    def seen(self, mutant: Mutant, executable: Path) -> str:
         """Another transition, another rate, or an end with an error."""
-        if mutant.rule == "Deadline":
-            return unnoticed(self.checked.system, mutant.file, executable, self.folder)
         try:
-            seen = self._seen(executable)
+            seen = self._observed(executable)
         except (TraceError, OSError) as problem:
             return str(problem)
         if not seen.complete:
@@ -273,10 +278,8 @@ def _near(found: int, wanted: int) -> bool:
 class Played(Observer):
     """A scenario on the program's bus."""
 
-    def differs(self, mutant: Mutant, executable: Path) -> str:
+    def seen(self, mutant: Mutant, executable: Path) -> str:
         """What failed."""
-        if mutant.rule == "Deadline":
-            return unnoticed(self.checked.system, mutant.file, executable, self.folder)
         return self._failures(executable)
 
     def prepare(self, executable: Path) -> None:

@@ -1,14 +1,11 @@
---  The slcan parser: valid lines, garbage, and a million random bytes.
+--  The slcan parser: valid lines and garbage.
 
 with Facts;
-with Interfaces;
 with Ravenchart.Can;
 with Ravenchart.Can.Slcan;
 
 procedure Test_Slcan is
    use Ravenchart.Can;
-   use type Interfaces.Unsigned_8;
-   use type Interfaces.Unsigned_64;
    use type Slcan.Outcome;
 
    Base : constant Frame_Format := Ravenchart.Can.Standard;
@@ -28,8 +25,6 @@ procedure Test_Slcan is
    procedure Check_Commands;
 
    procedure Check_Garbage;
-
-   procedure Check_Random_Bytes;
 
    ----------
    -- Feed --
@@ -155,65 +150,9 @@ procedure Test_Slcan is
          Slcan.Pending (Parser) = 0);
    end Check_Garbage;
 
-   ------------------------
-   -- Check_Random_Bytes --
-   ------------------------
-
-   procedure Check_Random_Bytes is
-      Alphabet : constant String := "tTrR0123456789ABCDEFabcdefOCSVN";
-      Seed     : Interfaces.Unsigned_64 := 7;
-      Byte     : Interfaces.Unsigned_8;
-      Result   : Slcan.Outcome;
-      F        : Frame;
-      Lines    : Natural := 0;
-      Frames   : Natural := 0;
-      Rejected : Natural := 0;
-      Returns  : Natural := 0;
-      Right    : Boolean := True;
-   begin
-      for I in 1 .. 1_000_000 loop
-         Seed :=
-           Seed * 6_364_136_223_846_793_005 + 1_442_695_040_888_963_407;
-         Byte := Interfaces.Unsigned_8
-           (Interfaces.Shift_Right (Seed, 40) and 16#FF#);
-         if I > 500_000 then
-            --  Bytes that lines are made of.
-            Byte :=
-              (if Byte < 20 then Slcan.Carriage_Return
-               else Character'Pos
-                 (Alphabet (Natural (Byte) mod Alphabet'Length + 1)));
-         end if;
-         Slcan.Feed (Parser, Byte, Result, F);
-         if Byte = Slcan.Carriage_Return then
-            Returns := Returns + 1;
-         end if;
-         if Result /= Slcan.Incomplete then
-            Lines := Lines + 1;
-         end if;
-         if Result = Slcan.Frame_Line then
-            Frames := Frames + 1;
-            Right  := Right and then Fits (F.Id, F.Format);
-         elsif Result = Slcan.Rejected_Line then
-            Rejected := Rejected + 1;
-         end if;
-      end loop;
-      Facts.Check
-        ("a million random bytes end a line at each carriage return",
-         Lines = Returns);
-      Facts.Check
-        ("random bytes give some frames, all well formed",
-         Right and then Frames > 0);
-      Facts.Check ("random bytes are mostly rejected", Rejected > Frames);
-      Slcan.Feed (Parser, Slcan.Carriage_Return, Result, F);
-      Facts.Check
-        ("a frame is read after random bytes",
-         Says ("t0010", Slcan.Frame_Line));
-   end Check_Random_Bytes;
-
 begin
    Check_Frames;
    Check_Commands;
    Check_Garbage;
-   Check_Random_Bytes;
    Facts.Finish;
 end Test_Slcan;

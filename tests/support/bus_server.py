@@ -36,7 +36,7 @@ class BusServer:
     def __init__(self, *, fd: bool = True, version: int = VERSION, first: bytes = b"") -> None:
         """``first`` is said in place of a welcome."""
         self._flags = int(Flag.FD) if fd else 0
-        self._version, self._first = version, first
+        self._version, self.first = version, first
         self._socket = socket.create_server(("127.0.0.1", 0))
         self.channel = f"127.0.0.1:{self._socket.getsockname()[1]}"
         self.confirms = True
@@ -93,12 +93,12 @@ class BusServer:
             hello = _read(link)
             if hello is None or hello.kind is not Kind.HELLO:
                 return
-            if hello.code != self._version and not self._first:
+            if hello.code != self._version and not self.first:
                 link.sendall(encode(Record(Kind.STATUS, code=Status.WRONG_VERSION)))
                 return
             with self._lock:
                 self._joined = node = self._joined + 1
-                link.sendall(self._first or self._welcome(node))
+                link.sendall(self.first or self._welcome(node))
                 self.clients[node] = (link, bool(hello.flags & Flag.FD))
             while (record := _read(link)) is not None:
                 with self._lock:

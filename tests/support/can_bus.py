@@ -23,15 +23,23 @@ def _program() -> Path:
 @contextmanager
 def started(*words: str) -> Iterator[str]:
     """A bus server; the channel it is at."""
-    with subprocess.Popen(
-        [_program(), "port=0", *words], stdout=subprocess.PIPE, text=True
-    ) as server:
-        assert server.stdout is not None
+    with running("port=0", *words) as (server, channel):
         try:
-            yield server.stdout.readline().split()[-1]
+            yield channel
         finally:
             server.terminate()
             assert server.wait(10) == 0
+
+
+@contextmanager
+def running(*words: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A bus server that whoever started it ends, and the channel it is at."""
+    with subprocess.Popen([_program(), *words], stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        try:
+            yield server, server.stdout.readline().split()[-1]
+        finally:
+            server.kill()
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from gen.emit.ada_text import print_unit
 from gen.emit.certificate import emit_certificate
 from gen.emit.naming import ada_case
 from gen.generate import HEADER
-from gen.model import BusErrors, End, Message, Processor, Slot, System, Task, Tick, Work
+from gen.model import BusErrors, End, Message, Processor, Reception, Slot, System, Task, Tick, Work
 from gen.statechart import Timing
 from gen.terms import Ns
 from tests.support.systems import HERE, bus, message, system
@@ -99,8 +99,9 @@ def random_system(seed: int) -> System:
     top = max(task.priority for task in whole.tasks) + 1
     tasks = [*whole.tasks]
     for one, sender_name in messages:
-        way = "rx" if sender_name is None else "tx"
-        element, releaser = one.driver(way), sender_name or one.element
+        received = Reception(one, "cpu", several=False).driver
+        element = received if sender_name is None else one.sending
+        releaser = sender_name or one.element
         times = (one.period, Ns(0), one.limit, one_bus.driver_wcet)
         tasks.append(Task(element, HERE, "cpu", *times, top, released_by=releaser))
     return replace(whole, tasks=tuple(tasks), messages=tuple(one for one, _ in messages))

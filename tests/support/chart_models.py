@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textwrap import indent
 
-from gen.model import Component
+from gen.component import Component
 from gen.statechart import Region
 from tests.support.pump import loaded
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gen.model import Activity, Component, Data, Direction, Event, Port, StateRef
+from gen.component import Activity, Component, Data, Direction, Event, Port, StateRef
 from gen.statechart import (
     After,
     Completion,

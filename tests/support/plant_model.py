@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
+from gen.component import Activity, Component, Data, Direction, Event, Parameter, Port
 from gen.derive import completed
 from gen.model import (
-    Activity,
     Bus,
-    Component,
     Connection,
-    Data,
-    Direction,
     End,
-    Event,
     Instance,
     Message,
     Node,
-    Parameter,
-    Port,
     Processor,
     Shutdown,
     Slot,

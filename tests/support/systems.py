@@ -4,18 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gen.model import (
-    Bus,
-    Component,
-    End,
-    Instance,
-    Message,
-    Node,
-    SharedObject,
-    Shutdown,
-    System,
-    Task,
-)
+from gen.component import Component
+from gen.model import Bus, End, Instance, Message, Node, SharedObject, Shutdown, System, Task
 from gen.terms import IntegerType, Ns, Origin
 
 HERE = Origin("model.yaml", 1, 1)

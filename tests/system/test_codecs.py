@@ -20,7 +20,11 @@ from ravenchart import steps
 from ravenchart.toolchain import ROOT
 from tests.support.codec_runner import Runner, Values, boundaries, literal
 
-CASES = ROOT / "tests" / "feature"
+CASES = {
+    "signals": ROOT / "tests" / "feature" / "signals",
+    "pages": ROOT / "tests" / "feature" / "pages",
+    "robot": ROOT / "examples" / "cartesian_robot",
+}
 
 
 class Peer:
@@ -40,9 +44,9 @@ class Peer:
         self.database = database
 
 
-@pytest.fixture(scope="module", params=["signals", "pages"])
+@pytest.fixture(scope="module", params=CASES)
 def peer(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Peer:
-    return Peer(CASES / request.param, tmp_path_factory.mktemp("codecs"))
+    return Peer(CASES[request.param], tmp_path_factory.mktemp("codecs"))
 
 
 def sent(message: Message, values: Values) -> dict[str, int]:
@@ -111,16 +115,19 @@ def test_random_frames_are_accepted_exactly_when_every_raw_value_is_in_range(pee
     for message in peer.system.messages:
         frames = drawn(peer, message)
         other = peer.database.get_message_by_name(message.name)
-        accepted = 0
+        accepted: list[Values] = []
         for frame, found in zip(frames, peer.runner.unpacked(message, frames), strict=True):
             wanted = expected(message, frame)
             if page_is_known(other, message, frame):
                 assert by_database(other, frame) == wanted, (message.name, frame.hex())
             assert (found is not None) == (wanted is not None), (message.name, frame.hex())
             if found is not None:
-                accepted += 1
+                accepted.append(found)
                 assert sent(message, found) == wanted
-        assert 0 < accepted < len(frames), message.name
+        assert 0 < len(accepted) < len(frames), message.name
+        for value, again in zip(accepted, peer.runner.packed(message, accepted), strict=True):
+            if has_signals(message, value):
+                assert again == other.encode(dict(sent(message, value)), scaling=False)
 
 
 def drawn(peer: Peer, message: Message) -> list[bytes]:

@@ -10,7 +10,11 @@ import pytest
 from ravenchart import house, proving
 from ravenchart.toolchain import ROOT
 
-NAMES = (*(f"runtime-{d}" for d in house.DRIVERS), house.BUS, *house.EXAMPLES)
+NAMES = (
+    *(f"runtime-{driver}" for driver in house.DRIVERS),
+    house.BUS,
+    *(name for example in house.EXAMPLES for name in house.record_names(example)),
+)
 
 
 def _record(name: str) -> Path:
@@ -32,7 +36,8 @@ def test_nothing_is_unproved_justified_or_assumed(name: str) -> None:
 
 def test_every_generated_and_user_source_of_the_examples_is_in_its_record() -> None:
     for name in house.EXAMPLES:
-        recorded = set(tomllib.loads(_record(name).read_text())["sources"])
+        records = [tomllib.loads(_record(n).read_text()) for n in house.record_names(name)]
+        recorded = {source for record in records for source in record["sources"]}
         folder = ROOT / "examples" / name
         there = {str(p.relative_to(ROOT)) for p in folder.rglob("*.ad[sb]")}
         assert there <= recorded, sorted(there - recorded)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from gen.generate import generate
-from ravenchart import steps
+from ravenchart import proving, steps, toolchain
 from ravenchart.toolchain import ROOT
 
 HERE = ROOT / "examples" / "surgical_robot"
@@ -28,6 +29,8 @@ SENSED = {
 """What the facade of the robot is then, and which stand-ins are needed."""
 
 STAND_INS = {"Follow", "Differ", "Presume"}
+
+LONG = "RAVENCHART_LONG_TESTS" in os.environ
 
 Variant = Callable[[str, str, str], steps.Checked]
 
@@ -100,6 +103,32 @@ def test_the_level_of_control_is_chosen_by_a_line(level: str, variant: Variant) 
     units = {path.name for path in (checked.folder / "generated").glob("*.ads")}
     assert "surgical_robot-drives.ads" in units
     assert "surgical_robot-servo_1.ads" not in units
+
+
+DEPLOYMENTS = [
+    *(("software_control.yaml", LINE, f"Robot: {{facade: {m}}}") for m, _ in SENSED.values()),
+    ("model.yaml", "software_control.yaml", "supervisory_control.yaml"),
+    ("model.yaml", "software_control.yaml", "interface_only.yaml"),
+]
+
+
+@pytest.mark.skipif(not LONG, reason="minutes of proof each: `make test-long` proves them all")
+@pytest.mark.parametrize("change", DEPLOYMENTS, ids=[*SENSED, "drives", "interface only"])
+def test_every_deployment_is_proved(change: tuple[str, str, str], variant: Variant) -> None:
+    if not toolchain.have("gnatprove"):
+        pytest.skip(toolchain.INSTALL_HINT["gnatprove"])
+    checked = variant(*change)
+    steps.write_program(checked)
+    (made,) = steps.programs_of(checked)
+    proof = proving.prove(
+        made.project,
+        made.scenario("checks", "loopback"),
+        made.proof_folders("loopback")[:1],
+        (checked.folder,),
+        warnings="error",
+    )
+    assert proof.clean, proof.summary()
+    assert proof.checks > 100
 
 
 def test_the_supervisor_is_the_same_over_its_own_servo_loop_and_over_drives(

@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from analysis.claims import claims_of
+from analysis.timing import analyse
 from gen.derive import on_one_node, programs
 from gen.diagnostics import render
+from gen.generate import generate
 from gen.load import Loaded, load, read_file
 from gen.model import System
 from ravenchart.toolchain import ROOT
@@ -90,6 +93,68 @@ def test_a_message_of_the_model_carries_the_connections_of_its_port() -> None:
     told = system_of(given).messages[0]
     assert (told.name, told.identifier, told.limit) == ("told", 0x42, 5_000_000)
     assert [str(target) for target in told.targets] == ["servo.order"]
+
+
+LISTENER = """
+components:
+  Ear:
+    ports:
+      order: {in: Servo_Order}
+    port_region: {period: 20 ms, wcet: 20 us}
+    data:
+      heard: {type: Position, initial: 0}
+    activities:
+      listen:
+        period: 20 ms
+        wcet: 20 us
+        reads: [order]
+        writes: [heard]
+        body: [{set: heard, to: order.target}]
+"""
+
+
+def test_a_message_reaches_every_node_that_listens() -> None:
+    listener = (
+        ("  drive:\n", "  log: {context_switch: 10 us, critical_section: 5 us}\n  drive:\n"),
+        ("  servo: {comp", "  listener: {component: Ear, node: log}\n  servo: {comp"),
+        (
+            "processors:",
+            "processors:\n  logging: {stack: 8 KiB, activities: [listener.ports, listener.listen]}",
+        ),
+        (
+            "  - {from: servo.report",
+            "  - {from: supervisor.order, to: listener.order}\n  - {from: servo.report",
+        ),
+        (
+            "chains:\n",
+            "chains:\n  heard: {path: [supervisor.plan, listener.listen], reaction: 90 ms}\n",
+        ),
+        ("system: Two_Nodes", LISTENER.strip() + "\nsystem: Two_Nodes"),
+    )
+    system = system_of(*listener)
+    order = next(m for m in system.messages if m.name == "supervisor_order")
+    assert [(one.node, one.element) for one in system.receptions(order)] == [
+        ("drive", "link.supervisor_order.drive"),
+        ("log", "link.supervisor_order.log"),
+    ]
+    assert [p.nodes[0].name for p in programs(system)] == ["panel", "log", "drive"]
+    log = programs(system)[1]
+    assert [(m.name, [str(end) for end in m.targets]) for m in log.messages] == [
+        ("supervisor_order", ["listener.order"])
+    ]
+    found = analyse(system)
+    assert found.schedulable
+    assert {"link.supervisor_order.log", "link.supervisor_order.drive"} <= set(found.deliveries)
+    steps = [
+        hop.step.name for hop in found.latency(("message supervisor_order", "listener.order")).hops
+    ]
+    assert "link.driver_rx.supervisor_order.log" in steps
+    assert "Link_Supervisor_Order_Log_Handed" in _certificate(system)
+
+
+def _certificate(system: System) -> str:
+    files = generate(system, claims_of(analyse(system)))
+    return files["log/two_nodes-timing_certificate.ads"]
 
 
 def test_each_node_has_its_program_and_sees_the_other_as_outside() -> None:

@@ -32,31 +32,37 @@ def seen(analysis: Analysis, panel: list[str], drive: list[str], late: int = 0) 
                 text.append(f"A {known.named(words[1], 'row').number} {words[2]}")
                 continue
             time, kind, name = words
-            row = {"activity": "row", "sent": "message", "arrived": "message"}[kind]
+            row = {"activity": "row", "sent": "message", "arrived": "port"}[kind]
             text.append(f"T {int(float(time) * MS)} {kind} {known.named(name, row).number} 0")
         parts[node] = read_trace([*text, "L trace 0", "END"], known)
     return together(parts)
 
 
 PANEL = [
-    "0 activity supervisor.plan",
+    "0 activity supervisor.plan",  # before the drive runs: no reaction is counted from here
     "0.1 sent supervisor_order",
-    "20 activity supervisor.plan",
-    "20.1 sent supervisor_order",
+    "60 activity supervisor.plan",
+    "60.1 sent supervisor_order",
+    "80 activity supervisor.plan",
+    "80.1 sent supervisor_order",
 ]
 DRIVE = [
     "-7 activity servo.ports",
-    "14 arrived supervisor_order",
-    "18 activity servo.ports",
-    "18.3 activity servo.control",
+    "74 arrived servo.order",
+    "78 activity servo.ports",
+    "78.3 activity servo.control",
     "A servo.control 200000",
 ]
 
 
 def test_times_of_all_nodes_count_from_the_first_start(analysis: Analysis) -> None:
     found = seen(analysis, PANEL, DRIVE, late=7 * MS)
-    assert [r.time for r in found.of("arrived", "supervisor_order")] == [21 * MS]
-    assert [r.time for r in found.of("sent", "supervisor_order")] == [MS // 10, 201 * MS // 10]
+    assert [r.time for r in found.of("arrived", "servo.order")] == [81 * MS]
+    assert [r.time for r in found.of("sent", "supervisor_order")] == [
+        MS // 10,
+        601 * MS // 10,
+        801 * MS // 10,
+    ]
     times = [record.time for record in found.records]
     assert times == sorted(times)
     assert found.complete
@@ -67,13 +73,13 @@ def test_times_of_all_nodes_count_from_the_first_start(analysis: Analysis) -> No
 def test_a_reaction_is_to_what_the_run_before_has_just_missed(analysis: Analysis) -> None:
     planned = next(j for j in journeys(analysis, seen(analysis, PANEL, DRIVE, late=7 * MS)))
     bound = dict((c.name, found.reaction) for c, found in analysis.limited)["planned"]
-    # from the plan at 0, whose input was missed, to the control at 25.3 and its 0.2
+    # from the plan at 60, whose input was missed, to the control at 85.3 and its 0.2
     assert planned == Journey("planned", 1, 25_500_000, bound or 0, 60 * MS)
     assert not planned.exceeded
 
 
 def test_a_reaction_above_its_bound_is_told(analysis: Analysis) -> None:
-    found = journeys(analysis, seen(analysis, PANEL, DRIVE, late=60 * MS))
+    found = journeys(analysis, seen(analysis, PANEL, DRIVE, late=50 * MS))
     assert [j.chain for j in found if j.exceeded] == ["planned"]
 
 

@@ -153,3 +153,13 @@ def test_the_report_counts_by_kind_and_shows_what_survived(rich: Files) -> None:
     found = json.loads(as_json(outcomes))
     assert found["kinds"]["target"]["survived"] == 1
     assert [m["caught_by"] for m in found["mutants"]] == ["gnatprove", None]
+
+
+def test_that_a_region_has_started_is_exchanged_with_nothing() -> None:
+    checked = steps.check(ROOT / "examples" / "three_components" / "model.yaml")
+    files = generate(checked.system, steps.claims(checked))
+    order = [m for m in mutants_of(files) if m.kind == "order"]
+    assert order
+    diffs = [mutant.diff(files[mutant.file]) for mutant in order]
+    over = re.compile(r"^[-+].*\n +Self\.Started :=.*\n[-+]|^[-+] +Self\.Started :=", re.M)
+    assert not [diff for diff in diffs if over.search(diff)]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gen.model import Direction, PortKind, Work
+from gen.component import Direction, PortKind
+from gen.model import Work
 from gen.statechart import After, OnEvent, Overflow, TransitionKind
 from gen.terms import If, Literal, Name, Send, Set
 from tests.support.pump import changed, codes, loaded, system_of

@@ -1050,7 +1050,8 @@ is
    --  [robot_bus.driver_rx.robot_command] what can delay it: jobs of the
    --  same or higher priority
    Robot_Bus_Driver_Rx_Robot_Command_W : constant :=
-     Robot_Bus_Driver_Rx_Robot_Command_R - Robot_Bus_Driver_Rx_Robot_Command_J;
+     Robot_Bus_Driver_Rx_Robot_Command_R
+     - Robot_Bus_Driver_Rx_Robot_Command_J;
    Robot_Bus_Driver_Rx_Robot_Command_Needs : constant :=
      Robot_Bus_Driver_Rx_Robot_Command_C
      + Robot_Bus_Driver_Rx_Robot_Command_B

@@ -6,7 +6,8 @@ each transition; `Is_Selection` says what is chosen. All proofs are about them.
 
 from __future__ import annotations
 
-from ...model import Component, System
+from ...component import Component
+from ...model import System
 from ...statechart import Region, When
 from ..ada import (
     FALSE,

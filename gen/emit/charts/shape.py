@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ... import terms as m
-from ...model import Component, System
+from ...component import Component
+from ...model import System
 from ...statechart import (
     After,
     Completion,

@@ -1,5 +1,6 @@
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
---  which stands for the rest of the bus.
+--  which stands for the rest of the bus; or the host of an slcan adapter on
+--  the serial line that RAVENCHART_CAN_DEVICE names.
 --
 --  Guarantees   only whole, well-formed lines go to the client; a client that
 --               stops reading delays the writer alone
@@ -17,7 +18,7 @@ with Ada.Synchronous_Task_Control;
 with Ravenchart.Epochs;
 with Ravenchart.Waiting_Queues;
 with Ravenchart.Can.Slcan;
-with Ravenchart.Can.Slcan_Sockets;
+with Ravenchart.Can.Tcp_Sockets;
 
 package body Ravenchart.Can.Controllers
   with
@@ -28,9 +29,10 @@ package body Ravenchart.Can.Controllers
 is
    use Ada.Synchronous_Task_Control;
    use type Ada.Real_Time.Time;
+   use type Interfaces.Unsigned_8;
    use type Queueing.Put_Status;
    use type Slcan.Outcome;
-   use type Slcan_Sockets.Socket;
+   use type Tcp_Sockets.Socket;
 
    type Line_Kind is (Frame_Line, Version_Answer, Serial_Answer);
    --  What the writer can be asked to write.
@@ -59,7 +61,7 @@ is
    protected Link
      with Priority => Transmit_Ceiling
    is
-      procedure Attach (New_Client : Slcan_Sockets.Socket);
+      procedure Attach (New_Client : Tcp_Sockets.Socket);
       --  A client has come; its channel is closed at first.
 
       procedure Set_Channel (To : Channel_State);
@@ -69,7 +71,7 @@ is
       --  The client has gone: no further line is begun.
 
       procedure Begin_Line
-        (Kind : Line_Kind; To : out Slcan_Sockets.Socket);
+        (Kind : Line_Kind; To : out Tcp_Sockets.Socket);
       --  The client that a line may go to, or No_Socket.
 
       procedure End_Line (Kind : Line_Kind; Done : Boolean);
@@ -89,7 +91,7 @@ is
       function All_Counts return Counters;
 
    private
-      Client  : Slcan_Sockets.Socket := Slcan_Sockets.No_Socket;
+      Client  : Tcp_Sockets.Socket := Tcp_Sockets.No_Socket;
       Channel : Channel_State := Closed;
       Idle    : Boolean := True;
       --  False while the writer uses the client's socket.
@@ -122,12 +124,12 @@ is
                    Receive.State, Receive.Wake_Up));
    --  Do what a line of the client says.
 
-   procedure Serve (Client : Slcan_Sockets.Socket)
+   procedure Serve (Client : Tcp_Sockets.Socket)
    with
      Global =>
        (In_Out => (Link, Transmit.State, Transmit.Wake_Up,
                    Receive.State, Receive.Wake_Up,
-                   Slcan_Sockets.Network));
+                   Tcp_Sockets.Network));
    --  Take the client's lines until it goes.
 
    procedure Wait_Idle
@@ -147,7 +149,7 @@ is
 
    protected body Link is
 
-      procedure Attach (New_Client : Slcan_Sockets.Socket) is
+      procedure Attach (New_Client : Tcp_Sockets.Socket) is
       begin
          Client  := New_Client;
          Channel := Closed;
@@ -160,18 +162,18 @@ is
 
       procedure Detach is
       begin
-         Client  := Slcan_Sockets.No_Socket;
+         Client  := Tcp_Sockets.No_Socket;
          Channel := Closed;
       end Detach;
 
       procedure Begin_Line
-        (Kind : Line_Kind; To : out Slcan_Sockets.Socket) is
+        (Kind : Line_Kind; To : out Tcp_Sockets.Socket) is
       begin
          To :=
            (if Kind = Frame_Line and then Channel = Closed
-            then Slcan_Sockets.No_Socket
+            then Tcp_Sockets.No_Socket
             else Client);
-         Idle := To = Slcan_Sockets.No_Socket;
+         Idle := To = Tcp_Sockets.No_Socket;
       end Begin_Line;
 
       procedure End_Line (Kind : Line_Kind; Done : Boolean) is
@@ -261,19 +263,23 @@ is
    -- Serve --
    -----------
 
-   procedure Serve (Client : Slcan_Sockets.Socket) is
+   procedure Serve (Client : Tcp_Sockets.Socket) is
       Parser : Slcan.Parser;
-      Bytes  : Slcan_Sockets.Chunk;
-      Last   : Slcan_Sockets.Chunk_Length;
+      Bytes  : Tcp_Sockets.Chunk;
+      Last   : Tcp_Sockets.Chunk_Length;
       Result : Slcan.Outcome;
       F      : Frame;
    begin
       loop
-         Slcan_Sockets.Receive (Client, Bytes, Last);
+         Tcp_Sockets.Receive (Client, Bytes, Last);
          exit when Last = 0;
          for I in 1 .. Last loop
-            Slcan.Feed (Parser, Bytes (I), Result, F);
-            Obey (Result, F);
+            if Bytes (I) = Slcan.Bell then
+               Link.Count_Rejected;
+            else
+               Slcan.Feed (Parser, Bytes (I), Result, F);
+               Obey (Result, F);
+            end if;
          end loop;
       end loop;
    end Serve;
@@ -343,31 +349,40 @@ is
    ------------
 
    task body Reader is
-      Server : Slcan_Sockets.Socket;
-      Client : Slcan_Sockets.Socket;
+      Server : Tcp_Sockets.Socket := Tcp_Sockets.No_Socket;
+      Client : Tcp_Sockets.Socket;
+      Serial : Boolean;
    begin
       delay until Epochs.Start;
       --  A client that came before the processors run would find nobody
       --  to take its frames.
-      loop
-         Slcan_Sockets.Open_Server (Server);
-         exit when Server /= Slcan_Sockets.No_Socket;
+      Tcp_Sockets.Ask_For_Device (Serial);
+      while not Serial loop
+         Tcp_Sockets.Open_Server (Server);
+         exit when Server /= Tcp_Sockets.No_Socket;
          Pause (Milliseconds => 1_000);
       end loop;
       loop
-         Slcan_Sockets.Accept_Client (Server, Client);
-         if Client = Slcan_Sockets.No_Socket then
+         if Serial then
+            Tcp_Sockets.Open_Device (Client);
+         else
+            Tcp_Sockets.Accept_Client (Server, Client);
+         end if;
+         if Client = Tcp_Sockets.No_Socket then
             Pause (Milliseconds => 100);
          else
             Link.Attach (Client);
+            if Serial then
+               Link.Set_Channel (Open);
+            end if;
             Serve (Client);
             --  The writer may be waiting for this client. End its wait, and
             --  close only when it has let go: the system gives the number of
             --  a closed socket to the next one.
             Link.Detach;
-            Slcan_Sockets.Break_Off (Client);
+            Tcp_Sockets.Break_Off (Client);
             Wait_Idle;
-            Slcan_Sockets.Close (Client);
+            Tcp_Sockets.Close (Client);
          end if;
       end loop;
    end Reader;
@@ -380,7 +395,7 @@ is
       Item   : Outgoing;
       Line   : Slcan.Line_Bytes;
       Last   : Slcan.Line_Length;
-      Client : Slcan_Sockets.Socket;
+      Client : Tcp_Sockets.Socket;
       Done   : Boolean;
    begin
       loop
@@ -388,8 +403,9 @@ is
          Format (Item, Line, Last);
          Link.Begin_Line (Item.Kind, Client);
          Done := False;
-         if Client /= Slcan_Sockets.No_Socket then
-            Slcan_Sockets.Send (Client, Line, Last, Done);
+         if Client /= Tcp_Sockets.No_Socket then
+            Tcp_Sockets.Send
+              (Client, Tcp_Sockets.Octets (Line (1 .. Last)), Done);
          end if;
          Link.End_Line (Item.Kind, Done);
          Set_True (Let_Go);

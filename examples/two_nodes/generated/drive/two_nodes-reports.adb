@@ -10,6 +10,7 @@ with Ravenchart.Traces;
 with Two_Nodes.Control;
 with Two_Nodes.Elements;
 with Two_Nodes.Health_Counts;
+with Two_Nodes.Host_Probe;
 with Two_Nodes.Link;
 with Two_Nodes.Reception_Drive;
 with Two_Nodes.Trace;
@@ -78,6 +79,7 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Link_Counters : Ravenchart.Can.Counters;
+      Late : Ravenchart.Nanoseconds;
    begin
       Report_Reception_Drive;
       Report_Control;
@@ -93,5 +95,7 @@ is
       Ravenchart.Hosts.Put_Lost
         ("link.rejected_lines",
          Link_Counters.Rejected_Lines);
+      Host_Probe.Read (Late);
+      Ravenchart.Hosts.Put_Host_Latency (Late);
    end Put_All;
 end Two_Nodes.Reports;

@@ -19,16 +19,18 @@ is
    --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Reception_Panel_R : constant := 205_000;
-   Reception_Drive_R : constant := 205_000;
-   Supervision_R : constant := 675_000;
-   Control_R : constant := 775_000;
-   Link_Driver_Tx_Supervisor_Order_R : constant := 800_000;
-   Link_Driver_Rx_Supervisor_Order_R : constant := 1_265_000;
-   Link_Driver_Tx_Servo_Report_R : constant := 900_000;
-   Link_Driver_Rx_Servo_Report_R : constant := 1_365_000;
-   Link_Supervisor_Order_R : constant := 1_140_000;
-   Link_Servo_Report_R : constant := 1_240_000;
+   Reception_Panel_R : constant := 245_000;
+   Reception_Drive_R : constant := 245_000;
+   Supervision_R : constant := 715_000;
+   Control_R : constant := 815_000;
+   Link_Driver_Tx_Supervisor_Order_R : constant := 880_000;
+   Link_Driver_Rx_Supervisor_Order_R : constant := 1_385_000;
+   Link_Driver_Tx_Servo_Report_R : constant := 980_000;
+   Link_Driver_Rx_Servo_Report_R : constant := 1_485_000;
+   Panel_Probe_R : constant := 45_000;
+   Drive_Probe_R : constant := 45_000;
+   Link_Supervisor_Order_R : constant := 1_220_000;
+   Link_Servo_Report_R : constant := 1_320_000;
 
    --  [panel] what the platform takes, each at its longest
    Panel_Context_Switch : constant := 10_000;
@@ -153,6 +155,28 @@ is
      Link_Driver_Rx_Servo_Report_Budget + 2 * Panel_Context_Switch;
    Link_Driver_Rx_Servo_Report_B : constant := Panel_Critical_Section;
 
+   --  [panel.probe] priority 6, released every T. B: main may be inside
+   --  panel.probe.board.
+   Panel_Probe_Budget : constant := 20_000;
+   Panel_Probe_T : constant := 1_000_000;
+   Panel_Probe_D : constant := 1_000_000;
+   Panel_Probe_J : constant := 0;
+   Panel_Probe_A : constant := Panel_Probe_J + (Panel_Probe_T - 1);
+   Panel_Probe_C : constant :=
+     Panel_Probe_Budget + 2 * Panel_Context_Switch;
+   Panel_Probe_B : constant := Panel_Critical_Section;
+
+   --  [drive.probe] priority 6, released every T. B: main may be inside
+   --  drive.probe.board.
+   Drive_Probe_Budget : constant := 20_000;
+   Drive_Probe_T : constant := 1_000_000;
+   Drive_Probe_D : constant := 1_000_000;
+   Drive_Probe_J : constant := 0;
+   Drive_Probe_A : constant := Drive_Probe_J + (Drive_Probe_T - 1);
+   Drive_Probe_C : constant :=
+     Drive_Probe_Budget + 2 * Drive_Context_Switch;
+   Drive_Probe_B : constant := Drive_Critical_Section;
+
    --  [link] bits in a second, and one bit in nanoseconds, rounded up. Of a
    --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
    --  the longest frame, with 10 bits that are not stuffed and 3 to the
@@ -201,7 +225,9 @@ is
         * Link_Driver_Tx_Supervisor_Order_C)
      + (((Reception_Panel_W + Link_Driver_Rx_Servo_Report_A)
          / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C);
+        * Link_Driver_Rx_Servo_Report_C)
+     + (((Reception_Panel_W + Panel_Probe_A) / Panel_Probe_T)
+        * Panel_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Reception_Panel_W,
@@ -229,7 +255,9 @@ is
         * Link_Driver_Rx_Supervisor_Order_C)
      + (((Reception_Drive_W + Link_Driver_Tx_Servo_Report_A)
          / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C);
+        * Link_Driver_Tx_Servo_Report_C)
+     + (((Reception_Drive_W + Drive_Probe_A) / Drive_Probe_T)
+        * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Reception_Drive_W,
@@ -258,7 +286,8 @@ is
         * Link_Driver_Tx_Supervisor_Order_C)
      + (((Supervision_W + Link_Driver_Rx_Servo_Report_A)
          / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C);
+        * Link_Driver_Rx_Servo_Report_C)
+     + (((Supervision_W + Panel_Probe_A) / Panel_Probe_T) * Panel_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Supervision_W,
@@ -276,7 +305,7 @@ is
    pragma Assert (Supervision_R <= Supervision_D);
 
    --  [supervisor.ports] done, from the event that releases its processor
-   Supervisor_Ports_Done : constant := 325_000;
+   Supervisor_Ports_Done : constant := 365_000;
    Supervisor_Ports_W : constant := Supervisor_Ports_Done - Supervision_J;
    Supervisor_Ports_Needs : constant :=
      2 * Panel_Context_Switch
@@ -289,7 +318,9 @@ is
         * Link_Driver_Tx_Supervisor_Order_C)
      + (((Supervisor_Ports_W + Link_Driver_Rx_Servo_Report_A)
          / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C);
+        * Link_Driver_Rx_Servo_Report_C)
+     + (((Supervisor_Ports_W + Panel_Probe_A) / Panel_Probe_T)
+        * Panel_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Supervisor_Ports_W,
@@ -299,7 +330,7 @@ is
       "supervisor.ports " & "can take longer than its claimed response time");
 
    --  [supervisor.plan] done, from the event that releases its processor
-   Supervisor_Plan_Done : constant := 675_000;
+   Supervisor_Plan_Done : constant := 715_000;
    Supervisor_Plan_W : constant := Supervisor_Plan_Done - Supervision_J;
    Supervisor_Plan_Needs : constant :=
      2 * Panel_Context_Switch
@@ -314,7 +345,9 @@ is
         * Link_Driver_Tx_Supervisor_Order_C)
      + (((Supervisor_Plan_W + Link_Driver_Rx_Servo_Report_A)
          / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C);
+        * Link_Driver_Rx_Servo_Report_C)
+     + (((Supervisor_Plan_W + Panel_Probe_A) / Panel_Probe_T)
+        * Panel_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Supervisor_Plan_W,
@@ -336,7 +369,8 @@ is
         * Link_Driver_Rx_Supervisor_Order_C)
      + (((Control_W + Link_Driver_Tx_Servo_Report_A)
          / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C);
+        * Link_Driver_Tx_Servo_Report_C)
+     + (((Control_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Control_W,
@@ -354,7 +388,7 @@ is
    pragma Assert (Control_R <= Control_D);
 
    --  [servo.ports] done, from the event that releases its processor
-   Servo_Ports_Done : constant := 325_000;
+   Servo_Ports_Done : constant := 365_000;
    Servo_Ports_W : constant := Servo_Ports_Done - Control_J;
    Servo_Ports_Needs : constant :=
      2 * Drive_Context_Switch
@@ -367,7 +401,8 @@ is
         * Link_Driver_Rx_Supervisor_Order_C)
      + (((Servo_Ports_W + Link_Driver_Tx_Servo_Report_A)
          / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C);
+        * Link_Driver_Tx_Servo_Report_C)
+     + (((Servo_Ports_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Servo_Ports_W,
@@ -377,7 +412,7 @@ is
       "servo.ports " & "can take longer than its claimed response time");
 
    --  [servo.control] done, from the event that releases its processor
-   Servo_Control_Done : constant := 675_000;
+   Servo_Control_Done : constant := 715_000;
    Servo_Control_W : constant := Servo_Control_Done - Control_J;
    Servo_Control_Needs : constant :=
      2 * Drive_Context_Switch
@@ -392,7 +427,8 @@ is
         * Link_Driver_Rx_Supervisor_Order_C)
      + (((Servo_Control_W + Link_Driver_Tx_Servo_Report_A)
          / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C);
+        * Link_Driver_Tx_Servo_Report_C)
+     + (((Servo_Control_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Servo_Control_W,
@@ -402,7 +438,7 @@ is
       "servo.control " & "can take longer than its claimed response time");
 
    --  [servo.tell] done, from the event that releases its processor
-   Servo_Tell_Done : constant := 775_000;
+   Servo_Tell_Done : constant := 815_000;
    Servo_Tell_W : constant := Servo_Tell_Done - Control_J;
    Servo_Tell_Needs : constant :=
      2 * Drive_Context_Switch
@@ -418,7 +454,8 @@ is
         * Link_Driver_Rx_Supervisor_Order_C)
      + (((Servo_Tell_W + Link_Driver_Tx_Servo_Report_A)
          / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C);
+        * Link_Driver_Tx_Servo_Report_C)
+     + (((Servo_Tell_W + Drive_Probe_A) / Drive_Probe_T) * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Servo_Tell_W,
@@ -436,7 +473,9 @@ is
      + Link_Driver_Tx_Supervisor_Order_B
      + (((Link_Driver_Tx_Supervisor_Order_W + Link_Driver_Rx_Servo_Report_A)
          / Link_Driver_Rx_Servo_Report_T)
-        * Link_Driver_Rx_Servo_Report_C);
+        * Link_Driver_Rx_Servo_Report_C)
+     + (((Link_Driver_Tx_Supervisor_Order_W + Panel_Probe_A) / Panel_Probe_T)
+        * Panel_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Link_Driver_Tx_Supervisor_Order_W,
@@ -470,7 +509,9 @@ is
      + Link_Driver_Rx_Supervisor_Order_B
      + (((Link_Driver_Rx_Supervisor_Order_W + Link_Driver_Tx_Servo_Report_A)
          / Link_Driver_Tx_Servo_Report_T)
-        * Link_Driver_Tx_Servo_Report_C);
+        * Link_Driver_Tx_Servo_Report_C)
+     + (((Link_Driver_Rx_Supervisor_Order_W + Drive_Probe_A) / Drive_Probe_T)
+        * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Link_Driver_Rx_Supervisor_Order_W,
@@ -504,7 +545,9 @@ is
      + Link_Driver_Tx_Servo_Report_B
      + (((Link_Driver_Tx_Servo_Report_W + Link_Driver_Rx_Supervisor_Order_A)
          / Link_Driver_Rx_Supervisor_Order_T)
-        * Link_Driver_Rx_Supervisor_Order_C);
+        * Link_Driver_Rx_Supervisor_Order_C)
+     + (((Link_Driver_Tx_Servo_Report_W + Drive_Probe_A) / Drive_Probe_T)
+        * Drive_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Link_Driver_Tx_Servo_Report_W,
@@ -536,7 +579,9 @@ is
      + Link_Driver_Rx_Servo_Report_B
      + (((Link_Driver_Rx_Servo_Report_W + Link_Driver_Tx_Supervisor_Order_A)
          / Link_Driver_Tx_Supervisor_Order_T)
-        * Link_Driver_Tx_Supervisor_Order_C);
+        * Link_Driver_Tx_Supervisor_Order_C)
+     + (((Link_Driver_Rx_Servo_Report_W + Panel_Probe_A) / Panel_Probe_T)
+        * Panel_Probe_C);
 
    pragma Compile_Time_Error
      (0 > Link_Driver_Rx_Servo_Report_W,
@@ -558,6 +603,44 @@ is
      (Link_Driver_Rx_Servo_Report_Needs <= Link_Driver_Rx_Servo_Report_W);
    pragma Assert
      (Link_Driver_Rx_Servo_Report_R <= Link_Driver_Rx_Servo_Report_D);
+
+   --  [panel.probe] what can delay it: jobs of the same or higher priority
+   Panel_Probe_W : constant := Panel_Probe_R - Panel_Probe_J;
+   Panel_Probe_Needs : constant := Panel_Probe_C + Panel_Probe_B;
+
+   pragma Compile_Time_Error
+     (0 > Panel_Probe_W,
+      "panel.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Panel_Probe_Needs > Panel_Probe_W,
+      "panel.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Panel_Probe_J + Panel_Probe_W) > Panel_Probe_T,
+      "panel.probe " & "can be released again before it completes");
+   pragma Compile_Time_Error
+     (Panel_Probe_R > Panel_Probe_D,
+      "panel.probe " & "can miss its deadline");
+   pragma Assert (Panel_Probe_Needs <= Panel_Probe_W);
+   pragma Assert (Panel_Probe_R <= Panel_Probe_D);
+
+   --  [drive.probe] what can delay it: jobs of the same or higher priority
+   Drive_Probe_W : constant := Drive_Probe_R - Drive_Probe_J;
+   Drive_Probe_Needs : constant := Drive_Probe_C + Drive_Probe_B;
+
+   pragma Compile_Time_Error
+     (0 > Drive_Probe_W,
+      "drive.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Drive_Probe_Needs > Drive_Probe_W,
+      "drive.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Drive_Probe_J + Drive_Probe_W) > Drive_Probe_T,
+      "drive.probe " & "can be released again before it completes");
+   pragma Compile_Time_Error
+     (Drive_Probe_R > Drive_Probe_D,
+      "drive.probe " & "can miss its deadline");
+   pragma Assert (Drive_Probe_Needs <= Drive_Probe_W);
+   pragma Assert (Drive_Probe_R <= Drive_Probe_D);
 
    --  [link.supervisor_order] what can delay it: frames that go before it
    Link_Supervisor_Order_Busy : constant := 340_000;
@@ -706,7 +789,7 @@ is
       "link.supervisor_order "
       & "can take longer than its claimed response time");
 
-   Link_Supervisor_Order_Turn : constant := 1_265_000;
+   Link_Supervisor_Order_Turn : constant := 1_385_000;
 
    pragma Compile_Time_Error
      ((Link_Supervisor_Order_Turn_J + Link_Supervisor_Order_Turn_W)
@@ -753,7 +836,7 @@ is
       "link.servo_report "
       & "can take longer than its claimed response time");
 
-   Link_Servo_Report_Turn : constant := 1_365_000;
+   Link_Servo_Report_Turn : constant := 1_485_000;
 
    pragma Compile_Time_Error
      ((Link_Servo_Report_Turn_J + Link_Servo_Report_Turn_W)
@@ -766,7 +849,7 @@ is
 
    --  [planned] from end to end. supervisor.plan samples. servo.ports
    --  samples.
-   Chain_Planned_Reaction : constant := 32_350_000;
+   Chain_Planned_Reaction : constant := 32_590_000;
    Chain_Planned_Reaction_Limit : constant := 60_000_000;
    Chain_Planned_Reaction_Needs : constant :=
      Supervision_T
@@ -783,7 +866,7 @@ is
    pragma Assert
      (Chain_Planned_Reaction_Needs <= Chain_Planned_Reaction_Limit);
 
-   Chain_Planned_Age : constant := 22_350_000;
+   Chain_Planned_Age : constant := 22_590_000;
    Chain_Planned_Age_Limit : constant := 50_000_000;
    Chain_Planned_Age_Needs : constant :=
      Link_Supervisor_Order_Handed
@@ -800,7 +883,7 @@ is
 
    --  [followed] from end to end. servo.control samples. servo.tell
    --  samples. supervisor.ports samples.
-   Chain_Followed_Reaction : constant := 53_125_000;
+   Chain_Followed_Reaction : constant := 53_405_000;
    Chain_Followed_Reaction_Limit : constant := 70_000_000;
    Chain_Followed_Reaction_Needs : constant :=
      Control_T
@@ -819,7 +902,7 @@ is
    pragma Assert
      (Chain_Followed_Reaction_Needs <= Chain_Followed_Reaction_Limit);
 
-   Chain_Followed_Age : constant := 33_125_000;
+   Chain_Followed_Age : constant := 33_405_000;
    Chain_Followed_Age_Limit : constant := 60_000_000;
    Chain_Followed_Age_Needs : constant :=
      Servo_Control_Done

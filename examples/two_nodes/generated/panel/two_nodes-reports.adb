@@ -9,6 +9,7 @@ with Ravenchart.Queueing;
 with Ravenchart.Traces;
 with Two_Nodes.Elements;
 with Two_Nodes.Health_Counts;
+with Two_Nodes.Host_Probe;
 with Two_Nodes.Link;
 with Two_Nodes.Reception_Panel;
 with Two_Nodes.Supervision;
@@ -78,6 +79,7 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Link_Counters : Ravenchart.Can.Counters;
+      Late : Ravenchart.Nanoseconds;
    begin
       Report_Reception_Panel;
       Report_Supervision;
@@ -93,5 +95,7 @@ is
       Ravenchart.Hosts.Put_Lost
         ("link.rejected_lines",
          Link_Counters.Rejected_Lines);
+      Host_Probe.Read (Late);
+      Ravenchart.Hosts.Put_Host_Latency (Late);
    end Put_All;
 end Two_Nodes.Reports;

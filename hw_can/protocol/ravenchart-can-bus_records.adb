@@ -7,65 +7,6 @@ is
    use type Fd_Frames.Bit_Rate_Use;
    use type Fd_Frames.Sender_State;
 
-   Mark : constant := 16#4E56_4152#;
-
-   Extended_Flag : constant Byte := 1;
-   Remote_Flag   : constant Byte := 2;
-   Fd_Flag       : constant Byte := 4;
-   Brs_Flag      : constant Byte := 8;
-   Esi_Flag      : constant Byte := 16;
-
-   Hello_Kind        : constant Byte := 1;
-   Welcome_Kind      : constant Byte := 2;
-   Frame_Kind_Code   : constant Byte := 3;
-   Error_Kind        : constant Byte := 4;
-   State_Kind        : constant Byte := 5;
-   Confirmation_Kind : constant Byte := 6;
-   Status_Kind       : constant Byte := 7;
-   Recovery_Kind     : constant Byte := 8;
-
-   --  Where the fields are, from 1
-
-   Kind_At     : constant := 1;
-   Flags_At    : constant := 2;
-   Length_At   : constant := 3;
-   Code_At     : constant := 4;
-   Id_At       : constant := 5;
-   Time_At     : constant := 9;
-   Number_At   : constant := 17;
-   Transmit_At : constant := 21;
-   Receive_At  : constant := 23;
-   Data_At     : constant := 25;
-   Nominal_At  : constant := Data_At + 16;
-   Fast_At     : constant := Data_At + 20;
-   Began_At    : constant := Data_At + 24;
-
-   subtype Width is Positive range 1 .. 8;
-
-   function Number_At_Place
-     (Bytes : Image; First : Position; Count : Width)
-      return Interfaces.Unsigned_64
-   with
-     Global => null,
-     Pre    => First <= Record_Bytes - Count + 1;
-   --  Little-endian.
-
-   procedure Put
-     (Bytes : in out Image;
-      First : Position;
-      Count : Width;
-      Value : Interfaces.Unsigned_64)
-   with
-     Global => null,
-     Pre    => First <= Record_Bytes - Count + 1;
-   --  Little-endian.
-
-   function Is_Zero
-     (Bytes : Image; First : Positive; Last : Natural) return Boolean
-   is (for all I in First .. Last => Bytes (I) = 0)
-   with Global => null, Pre => Last <= Record_Bytes;
-   --  Is nothing there?
-
    function Read_Hello (Bytes : Image) return Request
    with
      Global => null,
@@ -113,12 +54,35 @@ is
       end loop;
    end Put;
 
+   -----------------
+   -- Is_Greeting --
+   -----------------
+
+   function Is_Greeting (Bytes : Image) return Boolean is
+      Length  : constant Byte := Bytes (Length_At);
+      Nominal : constant Interfaces.Unsigned_64 :=
+        Number_At_Place (Bytes, Nominal_At, 4);
+      Fast    : constant Interfaces.Unsigned_64 :=
+        Number_At_Place (Bytes, Fast_At, 4);
+   begin
+      return Number_At_Place (Bytes, Id_At, 4) = Mark
+        and then (Bytes (Flags_At) and not Fd_Flag) = 0
+        and then Length in 1 .. 16
+        and then Is_Zero
+                   (Bytes, Data_At + Natural (Length), Nominal_At - 1)
+        and then Is_Zero (Bytes, Began_At + 8, Record_Bytes)
+        and then Nominal <= 1_000_000
+        and then Fast <= 20_000_000
+        and then
+          (for all I in Data_At .. Data_At + Natural (Length) - 1 =>
+             Bytes (I) in 16#21# .. 16#7E#);
+   end Is_Greeting;
+
    ----------------
    -- Read_Hello --
    ----------------
 
    function Read_Hello (Bytes : Image) return Request is
-      Length  : constant Byte := Bytes (Length_At);
       Nominal : constant Interfaces.Unsigned_64 :=
         Number_At_Place (Bytes, Nominal_At, 4) and 16#FFFF_FFFF#;
       Fast    : constant Interfaces.Unsigned_64 :=
@@ -130,17 +94,9 @@ is
          return (others => <>);
       elsif Bytes (Code_At) /= Version then
          return (Kind => Wrong_Version, others => <>);
-      elsif (Bytes (Flags_At) and not Fd_Flag) /= 0
-        or else Length not in 1 .. 16
+      elsif not Is_Greeting (Bytes)
         or else not Is_Zero (Bytes, Time_At, Data_At - 1)
-        or else not Is_Zero
-                  (Bytes, Data_At + Natural (Length), Nominal_At - 1)
-        or else not Is_Zero (Bytes, Began_At, Record_Bytes)
-        or else Nominal > 1_000_000
-        or else Fast > 20_000_000
-        or else
-          (for some I in Data_At .. Data_At + Natural (Length) - 1 =>
-             Bytes (I) not in 16#21# .. 16#7E#)
+        or else not Is_Zero (Bytes, Began_At, Began_At + 7)
       then
          return (others => <>);
       else
@@ -153,18 +109,16 @@ is
       end if;
    end Read_Hello;
 
-   ----------------
-   -- Read_Frame --
-   ----------------
+   --------------
+   -- Frame_In --
+   --------------
 
-   function Read_Frame (Bytes : Image) return Request is
+   function Frame_In (Bytes : Image) return Frame_Reading is
       Kind     : constant Byte := Bytes (Kind_At);
       Flags    : constant Byte := Bytes (Flags_At);
       Length   : constant Byte := Bytes (Length_At);
       Id       : constant Interfaces.Unsigned_64 :=
         Number_At_Place (Bytes, Id_At, 4);
-      Number   : constant Interfaces.Unsigned_64 :=
-        Number_At_Place (Bytes, Number_At, 4) and 16#FFFF_FFFF#;
       Format   : constant Frame_Format :=
         (if (Flags and Extended_Flag) /= 0 then Extended else Standard);
       Allowed  : constant Byte :=
@@ -174,21 +128,19 @@ is
          else Extended_Flag or Remote_Flag);
       Carried  : constant Natural :=
         (if (Flags and Remote_Flag) /= 0 then 0 else Natural (Length));
-      Result   : Request :=
-        (Kind => Frame_Request, Number => Bit_Rate (Number), others => <>);
+      Result   : Frame_Reading;
    begin
       if (Flags and not Allowed) /= 0
-        or else Number = 0
         or else Id > Interfaces.Unsigned_64 (Identifier'Last)
         or else not Fits (Identifier (Id), Format)
         or else Bytes (Code_At) /= 0
-        or else not Is_Zero (Bytes, Time_At, Number_At - 1)
         or else not Is_Zero (Bytes, Transmit_At, Data_At - 1)
         or else Length > 64
         or else not Is_Zero (Bytes, Data_At + Carried, Record_Bytes)
       then
          return (others => <>);
       end if;
+      Result.Is_Sound := True;
       if (Flags and Fd_Flag) /= 0 then
          if Natural (Length) not in Fd_Frames.Fd_Length then
             return (others => <>);
@@ -229,6 +181,29 @@ is
          end;
       end if;
       return Result;
+   end Frame_In;
+
+   ----------------
+   -- Read_Frame --
+   ----------------
+
+   function Read_Frame (Bytes : Image) return Request is
+      Found  : constant Frame_Reading := Frame_In (Bytes);
+      Number : constant Interfaces.Unsigned_64 :=
+        Number_At_Place (Bytes, Number_At, 4) and 16#FFFF_FFFF#;
+   begin
+      if not Found.Is_Sound
+        or else Number = 0
+        or else not Is_Zero (Bytes, Time_At, Number_At - 1)
+      then
+         return (others => <>);
+      else
+         return
+           (Kind   => Frame_Request,
+            Number => Interfaces.Unsigned_32 (Number),
+            Frame  => Found.Frame,
+            others => <>);
+      end if;
    end Read_Frame;
 
    ----------
@@ -265,7 +240,7 @@ is
       Data    : Bit_Rate;
       Began   : Nanoseconds;
       Now     : Nanoseconds;
-      Node    : Bus_Nodes.Node_Index) return Image
+      Node    : Node_Number) return Image
    is
       Result : Image := (others => 0);
    begin
@@ -337,11 +312,7 @@ is
       Result : Image := (others => 0);
    begin
       Result (Kind_At) := State_Kind;
-      Result (Code_At) :=
-        (case Fault_Confinement.State (Node) is
-           when Error_Passive => 1,
-           when Bus_Off       => 2,
-           when others        => 0);
+      Result (Code_At) := State_Code (Fault_Confinement.State (Node));
       Put (Result, Time_At, 8, Interfaces.Unsigned_64 (Now));
       Put
         (Result, Transmit_At, 2,

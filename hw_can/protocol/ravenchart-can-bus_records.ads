@@ -9,7 +9,6 @@
 
 with Interfaces;
 with Ravenchart.Can.Bus_Frames;
-with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Fault_Confinement;
 
 package Ravenchart.Can.Bus_Records
@@ -73,7 +72,10 @@ is
    is (Text'Length in Name_Length
        and then (for all C of Text => C in '!' .. '~'))
    with Global => null;
-   --  May the bus be called so?
+   --  May a bus or a node be called so?
+
+   subtype Node_Number is Positive range 1 .. 255;
+   --  By which the bus knows a node.
 
    function Welcome
      (Name    : String;
@@ -82,7 +84,7 @@ is
       Data    : Bit_Rate;
       Began   : Nanoseconds;
       Now     : Nanoseconds;
-      Node    : Bus_Nodes.Node_Index) return Image
+      Node    : Node_Number) return Image
    with
      Global => null,
      Pre    =>
@@ -119,5 +121,93 @@ is
    with Global => null;
    --  An error frame that was seen: class and details as in Linux's
    --  can/error.h.
+
+private
+
+   Mark : constant := 16#4E56_4152#;
+
+   Extended_Flag : constant Byte := 1;
+   Remote_Flag   : constant Byte := 2;
+   Fd_Flag       : constant Byte := 4;
+   Brs_Flag      : constant Byte := 8;
+   Esi_Flag      : constant Byte := 16;
+
+   Hello_Kind        : constant Byte := 1;
+   Welcome_Kind      : constant Byte := 2;
+   Frame_Kind_Code   : constant Byte := 3;
+   Error_Kind        : constant Byte := 4;
+   State_Kind        : constant Byte := 5;
+   Confirmation_Kind : constant Byte := 6;
+   Status_Kind       : constant Byte := 7;
+   Recovery_Kind     : constant Byte := 8;
+
+   --  Where the fields are, from 1
+
+   Kind_At     : constant := 1;
+   Flags_At    : constant := 2;
+   Length_At   : constant := 3;
+   Code_At     : constant := 4;
+   Id_At       : constant := 5;
+   Time_At     : constant := 9;
+   Number_At   : constant := 17;
+   Transmit_At : constant := 21;
+   Receive_At  : constant := 23;
+   Data_At     : constant := 25;
+   Nominal_At  : constant := Data_At + 16;
+   Fast_At     : constant := Data_At + 20;
+   Began_At    : constant := Data_At + 24;
+
+   subtype Width is Positive range 1 .. 8;
+
+   function Number_At_Place
+     (Bytes : Image; First : Position; Count : Width)
+      return Interfaces.Unsigned_64
+   with
+     Global => null,
+     Pre    => First <= Record_Bytes - Count + 1;
+   --  Little-endian.
+
+   procedure Put
+     (Bytes : in out Image;
+      First : Position;
+      Count : Width;
+      Value : Interfaces.Unsigned_64)
+   with
+     Global => null,
+     Pre    => First <= Record_Bytes - Count + 1;
+   --  Little-endian.
+
+   function Is_Zero
+     (Bytes : Image; First : Positive; Last : Natural) return Boolean
+   is (for all I in First .. Last => Bytes (I) = 0)
+   with Global => null, Pre => Last <= Record_Bytes;
+   --  Is nothing there?
+
+   function State_Code
+     (State : Fault_Confinement.Connected_State) return Byte
+   is (case State is
+         when Error_Active  => 0,
+         when Error_Passive => 1,
+         when Bus_Off       => 2)
+   with Global => null;
+   --  What stands for it in a bus state.
+
+   function Is_Greeting (Bytes : Image) return Boolean
+   with
+     Global => null,
+     Post   =>
+       (if Is_Greeting'Result then Bytes (Length_At) in 1 .. 16);
+   --  Do the flags, the mark, the name and the rates keep the rules of hello
+   --  and welcome, and is nothing behind them?
+
+   type Frame_Reading is record
+      Is_Sound : Boolean := False;
+      Frame    : Bus_Frames.Bus_Frame;
+   end record;
+
+   function Frame_In (Bytes : Image) return Frame_Reading
+   with Global => null;
+   --  The frame or error frame in a record of one of these kinds, if its
+   --  fields but time and number keep the rules.
 
 end Ravenchart.Can.Bus_Records;

@@ -1,0 +1,409 @@
+--  Driver "bus": a node of the simulated bus behind a bus server on this
+--  machine (docs/bus-protocol.md), as each other process that joins it.
+--
+--  Guarantees   whatever a server says or does, nothing is raised: the
+--               connection ends, and another is tried; frames go to the
+--               server in the order sent, Most_Open ahead of its answers
+--  Tasking      a reader, which joins and takes what the server says, and a
+--               writer, which waits for the transmit queue
+--  Timing       that of the server and of TCP: nothing here is real-time
+--  Assumptions  ASM-005, the socket calls do what their spec says; the
+--               server offers a node's oldest frame first (its default)
+--
+--  RAVENCHART_BUS_PORT and RAVENCHART_BUS_NAME say which server, and who
+--  joins. Sent counts what the bus has acknowledged, Rejected_Lines the
+--  connections that a server made impossible. A node that is bus-off asks for
+--  recovery, and its transmit queue waits meanwhile; while there is no
+--  server, what is sent is lost.
+
+with Ada.Real_Time;
+with Ada.Synchronous_Task_Control;
+with Ravenchart.Epochs;
+with Ravenchart.Waiting_Queues;
+with Ravenchart.Can.Bus_Members;
+with Ravenchart.Can.Bus_Records.Client_Side;
+with Ravenchart.Can.Tcp_Sockets;
+
+package body Ravenchart.Can.Controllers
+  with
+    SPARK_Mode,
+    Refined_State =>
+      (State   => (Transmit.State, Receive.State, Link, Reader, Writer),
+       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go, Room))
+is
+   use Ada.Synchronous_Task_Control;
+   use type Ada.Real_Time.Time;
+   use type Bus_Members.Consequence;
+   use type Queueing.Put_Status;
+   use type Tcp_Sockets.Socket;
+
+   package Client_Side renames Bus_Records.Client_Side;
+
+   subtype Wire_Record is Tcp_Sockets.Octets (Bus_Records.Position);
+   --  A record as the socket calls take it.
+
+   package Transmit is new Waiting_Queues
+     (Element_Type => Frame,
+      Null_Element => Null_Frame,
+      Capacity     => Transmit_Depth,
+      Ceiling      => Transmit_Ceiling);
+
+   package Receive is new Waiting_Queues
+     (Element_Type => Frame,
+      Null_Element => Null_Frame,
+      Capacity     => Receive_Depth,
+      Ceiling      => Receive_Ceiling);
+
+   type Permission is (Write, Wait, Give_Up);
+   --  What the writer does with a frame.
+
+   protected Link
+     with Priority => Transmit_Ceiling
+   is
+      procedure Attach (To : Tcp_Sockets.Socket);
+      --  There is a connection; the server has still to take us in.
+
+      procedure Detach;
+      --  The connection is gone: no further record is begun.
+
+      procedure Hear
+        (A : Client_Side.Answer; Then_Do : out Bus_Members.Consequence);
+      --  The server has said A.
+
+      procedure Begin_Request
+        (May    : out Permission;
+         Number : out Bus_Members.Request_Number;
+         To     : out Tcp_Sockets.Socket);
+      --  May a frame be sent now, under which number, and where to?
+
+      procedure End_Request;
+      --  Its record was written, or not: the answer, or the end of the
+      --  connection, tells.
+
+      procedure Count_Received;
+      --  A frame was accepted.
+
+      function Is_Idle return Boolean;
+      --  The writer uses no socket.
+
+      function State_Now return Controller_State;
+
+      function All_Counts return Counters;
+
+   private
+      Server : Tcp_Sockets.Socket := Tcp_Sockets.No_Socket;
+      Idle   : Boolean := True;
+      --  False while the writer uses the server's socket.
+      Node   : Bus_Members.Member;
+   end Link;
+
+   Let_Go : Suspension_Object;
+   --  True when the writer may have become idle since the reader looked.
+
+   Room : Suspension_Object;
+   --  True when the writer may be allowed more since it asked.
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Reader
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Joins the bus, as often as it must.
+
+   task Writer
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Asks for what is in the transmit queue to be sent.
+
+   procedure Say_Hello (Server : Tcp_Sockets.Socket; Done : out Boolean)
+   with Global => (In_Out => Tcp_Sockets.Network);
+   --  Ask to be taken in, under the name that the environment gives.
+
+   procedure Take (F : Frame)
+   with Global => (In_Out => (Link, Receive.State, Receive.Wake_Up));
+   --  A frame came over the bus.
+
+   procedure Recover (Server : Tcp_Sockets.Socket; Done : out Boolean)
+   with
+     Global => (In_Out => (Let_Go, Tcp_Sockets.Network), Input => Link);
+   --  Ask for the way out of bus-off.
+
+   procedure Serve (Server : Tcp_Sockets.Socket; Announced : in out Boolean)
+   with
+     Global =>
+       (In_Out => (Link, Receive.State, Receive.Wake_Up, Let_Go, Room,
+                   Tcp_Sockets.Network));
+   --  Say hello, and take what the server says until the connection ends.
+
+   procedure Wait_Idle
+   with Global => (In_Out => Let_Go, Input => Link);
+   --  Suspend the reader until the writer uses no socket.
+
+   procedure Pause (Milliseconds : Positive)
+   with Global => (Input => Ada.Real_Time.Clock_Time);
+   --  Let time pass before the next connection.
+
+   protected body Link is
+
+      procedure Attach (To : Tcp_Sockets.Socket) is
+      begin
+         Server := To;
+      end Attach;
+
+      procedure Detach is
+      begin
+         Server := Tcp_Sockets.No_Socket;
+         Bus_Members.Leave (Node);
+      end Detach;
+
+      procedure Hear
+        (A : Client_Side.Answer; Then_Do : out Bus_Members.Consequence) is
+      begin
+         Bus_Members.Hear (Node, A, Then_Do);
+      end Hear;
+
+      procedure Begin_Request
+        (May    : out Permission;
+         Number : out Bus_Members.Request_Number;
+         To     : out Tcp_Sockets.Socket) is
+      begin
+         Number := 1;
+         To     := Server;
+         if Bus_Members.State (Node) = Stopped then
+            May := Give_Up;
+            Bus_Members.Count_Lost (Node);
+         elsif Bus_Members.May_Ask (Node) then
+            May  := Write;
+            Idle := False;
+            Bus_Members.Ask (Node, Number);
+         else
+            May := Wait;
+         end if;
+      end Begin_Request;
+
+      procedure End_Request is
+      begin
+         Idle := True;
+      end End_Request;
+
+      procedure Count_Received is
+      begin
+         Bus_Members.Count_Received (Node);
+      end Count_Received;
+
+      function Is_Idle return Boolean
+      is (Idle);
+
+      function State_Now return Controller_State
+      is (Bus_Members.State (Node));
+
+      function All_Counts return Counters
+      is (Node.Counts);
+
+   end Link;
+
+   ---------------
+   -- Say_Hello --
+   ---------------
+
+   procedure Say_Hello (Server : Tcp_Sockets.Socket; Done : out Boolean) is
+      Default : constant String := "ravenchart";
+      Text    : Tcp_Sockets.Name_Text;
+      Last    : Tcp_Sockets.Name_Length;
+      Bytes   : Bus_Records.Image;
+   begin
+      Tcp_Sockets.Read_Name (Text, Last);
+      if Bus_Records.Is_Name (Text (1 .. Last)) then
+         Bytes := Client_Side.Hello (Text (1 .. Last));
+      else
+         if Last > 0 then
+            Tcp_Sockets.Complain
+              ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;"
+               & " joining as " & Default);
+         end if;
+         Bytes := Client_Side.Hello (Default);
+      end if;
+      Tcp_Sockets.Send (Server, Wire_Record (Bytes), Done);
+   end Say_Hello;
+
+   ----------
+   -- Take --
+   ----------
+
+   procedure Take (F : Frame) is
+      Status : Queueing.Put_Status;
+   begin
+      if Accepts (F.Id, F.Format) then
+         Link.Count_Received;
+         pragma Warnings
+           (GNATprove, Off, """Status"" is set by*",
+            Reason => "the queue counts what it rejects");
+         Receive.Put (F, Status);
+         pragma Warnings (GNATprove, On, """Status"" is set by*");
+      end if;
+   end Take;
+
+   -------------
+   -- Recover --
+   -------------
+
+   procedure Recover (Server : Tcp_Sockets.Socket; Done : out Boolean) is
+   begin
+      --  While the node is bus-off the writer begins nothing.
+      Wait_Idle;
+      Tcp_Sockets.Send (Server, Wire_Record (Client_Side.Recovery), Done);
+   end Recover;
+
+   -----------
+   -- Serve --
+   -----------
+
+   procedure Serve (Server : Tcp_Sockets.Socket; Announced : in out Boolean)
+   is
+      Bytes   : Wire_Record;
+      Done    : Boolean;
+      A       : Client_Side.Answer;
+      Then_Do : Bus_Members.Consequence;
+   begin
+      Say_Hello (Server, Done);
+      while Done loop
+         Tcp_Sockets.Receive_All (Server, Bytes, Done);
+         exit when not Done;
+         A := Client_Side.Heard (Bus_Records.Image (Bytes));
+         Link.Hear (A, Then_Do);
+         case Then_Do is
+            when Bus_Members.Note_Joined    =>
+               if not Announced then
+                  Tcp_Sockets.Announce_Joined;
+                  Announced := True;
+               end if;
+            when Bus_Members.Take_Frame     =>
+               Take (A.Came);
+            when Bus_Members.Ask_Recovery   =>
+               Recover (Server, Done);
+            when Bus_Members.Carry_On       =>
+               Set_True (Room);
+            when Bus_Members.End_Connection =>
+               exit;
+         end case;
+      end loop;
+   end Serve;
+
+   ---------------
+   -- Wait_Idle --
+   ---------------
+
+   procedure Wait_Idle is
+      Idle : Boolean;
+   begin
+      loop
+         Idle := Link.Is_Idle;
+         exit when Idle;
+         Suspend_Until_True (Let_Go);
+      end loop;
+   end Wait_Idle;
+
+   -----------
+   -- Pause --
+   -----------
+
+   procedure Pause (Milliseconds : Positive) is
+      Now : constant Ada.Real_Time.Time := Ada.Real_Time.Clock;
+   begin
+      delay until Now + Ada.Real_Time.Milliseconds (Milliseconds);
+   end Pause;
+
+   ------------
+   -- Reader --
+   ------------
+
+   task body Reader is
+      Server    : Tcp_Sockets.Socket;
+      Announced : Boolean := False;
+   begin
+      delay until Epochs.Start;
+      --  Frames that come before the processors run would find nobody.
+      loop
+         Tcp_Sockets.Connect (Server);
+         if Server /= Tcp_Sockets.No_Socket then
+            Link.Attach (Server);
+            Serve (Server, Announced);
+            --  The writer may be waiting for the server, or for an answer.
+            --  Close only when it has let go: the system gives the number of
+            --  a closed socket to the next one.
+            Link.Detach;
+            Set_True (Room);
+            Tcp_Sockets.Break_Off (Server);
+            Wait_Idle;
+            Tcp_Sockets.Close (Server);
+         end if;
+         Pause (Milliseconds => 100);
+      end loop;
+   end Reader;
+
+   ------------
+   -- Writer --
+   ------------
+
+   task body Writer is
+      F      : Frame;
+      May    : Permission;
+      Number : Bus_Members.Request_Number;
+      Server : Tcp_Sockets.Socket;
+      Done   : Boolean;
+   begin
+      loop
+         Transmit.Wait (F);
+         loop
+            Link.Begin_Request (May, Number, Server);
+            exit when May /= Wait;
+            Suspend_Until_True (Room);
+         end loop;
+         if May = Write then
+            Tcp_Sockets.Send
+              (Server, Wire_Record (Client_Side.Request (F, Number)), Done);
+            if not Done then
+               Tcp_Sockets.Break_Off (Server);
+            end if;
+            Link.End_Request;
+            Set_True (Let_Go);
+         end if;
+      end loop;
+   end Writer;
+
+   procedure Send (F : Frame; Status : out Send_Status)
+   with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
+   is
+      Result : Queueing.Put_Status;
+   begin
+      Transmit.Put (F, Result);
+      Status :=
+        (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
+   end Send;
+
+   procedure Wait_Frame (F : out Frame)
+   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
+   is
+   begin
+      Receive.Wait (F);
+   end Wait_Frame;
+
+   procedure Read_State (Now : out Controller_State)
+   with Refined_Global => Link
+   is
+   begin
+      Now := Link.State_Now;
+   end Read_State;
+
+   procedure Read_Counters (C : out Counters)
+   with Refined_Global => (Transmit.State, Receive.State, Link)
+   is
+      Lost_Out : constant Event_Count := Transmit.Lost;
+      Lost_In  : constant Event_Count := Receive.Lost;
+   begin
+      C          := Link.All_Counts;
+      C.Lost_Out := Bus_Members.Sum (C.Lost_Out, Lost_Out);
+      C.Lost_In  := Lost_In;
+   end Read_Counters;
+
+end Ravenchart.Can.Controllers;

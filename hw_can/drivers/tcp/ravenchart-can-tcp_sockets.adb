@@ -1,0 +1,528 @@
+with Interfaces.C.Strings;
+with System;
+
+package body Ravenchart.Can.Tcp_Sockets
+  with SPARK_Mode => Off
+--  ASM-005. Sockets are reached through the C library, by address.
+is
+   use type Interfaces.C.int;
+   use type Interfaces.C.long;
+
+   subtype C_Int is Interfaces.C.int;
+
+   --  The C library
+
+   type Socket_Address is record
+      Family  : Interfaces.Unsigned_16 := 2;
+      Port    : Interfaces.Unsigned_16 := 0;
+      Host    : Interfaces.Unsigned_32 := 0;
+      Padding : Interfaces.Unsigned_64 := 0;
+   end record
+   with Convention => C;
+   --  struct sockaddr_in; Port and Host in the order of the network.
+
+   Address_Length : constant C_Int := 16;
+
+   function C_Socket (Domain, Kind, Protocol : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "socket";
+
+   function C_Set_Option
+     (File, Level, Name : C_Int; Value : System.Address; Length : C_Int)
+      return C_Int
+   with Import, Convention => C, External_Name => "setsockopt";
+
+   function C_Bind
+     (File : C_Int; Name : System.Address; Length : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "bind";
+
+   function C_Connect
+     (File : C_Int; Name : System.Address; Length : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "connect";
+
+   function C_Listen (File, Backlog : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "listen";
+
+   function C_Get_Name
+     (File : C_Int; Name, Length : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "getsockname";
+
+   function C_Accept
+     (File : C_Int; Name, Length : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "accept";
+
+   function C_Receive
+     (File   : C_Int;
+      Data   : System.Address;
+      Length : Interfaces.C.size_t;
+      Flags  : C_Int) return Interfaces.C.long
+   with Import, Convention => C, External_Name => "recv";
+
+   function C_Send
+     (File   : C_Int;
+      Data   : System.Address;
+      Length : Interfaces.C.size_t;
+      Flags  : C_Int) return Interfaces.C.long
+   with Import, Convention => C, External_Name => "send";
+
+   function C_Write
+     (File : C_Int; Data : System.Address; Length : Interfaces.C.size_t)
+      return Interfaces.C.long
+   with Import, Convention => C, External_Name => "write";
+
+   function C_Read
+     (File : C_Int; Data : System.Address; Length : Interfaces.C.size_t)
+      return Interfaces.C.long
+   with Import, Convention => C, External_Name => "read";
+
+   function C_Open (Path : System.Address; Flags : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "open";
+
+   function C_Get_Line (File : C_Int; To : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "tcgetattr";
+
+   procedure C_Make_Raw (Line : System.Address)
+   with Import, Convention => C, External_Name => "cfmakeraw";
+
+   function C_Set_Line
+     (File, When_To : C_Int; From : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "tcsetattr";
+
+   function C_Shutdown (File, How : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "shutdown";
+
+   function C_Close (File : C_Int) return C_Int
+   with Import, Convention => C, External_Name => "close";
+
+   function C_Get_Environment
+     (Name : Interfaces.C.char_array) return Interfaces.C.Strings.chars_ptr
+   with Import, Convention => C, External_Name => "getenv";
+
+   function C_To_Network
+     (Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_16
+   with Import, Convention => C, External_Name => "htons";
+   --  The same both ways.
+
+   function C_Host_To_Network
+     (Value : Interfaces.Unsigned_32) return Interfaces.Unsigned_32
+   with Import, Convention => C, External_Name => "htonl";
+
+   --  The numbers of Linux
+
+   Internet        : constant C_Int := 2;
+   Stream          : constant C_Int := 1;
+   Close_On_Exec   : constant C_Int := 8#2000000#;
+   Socket_Level    : constant C_Int := 1;
+   Reuse_Address   : constant C_Int := 2;
+   Tcp_Level       : constant C_Int := 6;
+   No_Delay        : constant C_Int := 1;
+   No_Signal       : constant C_Int := 16#4000#;
+   Wait_For_All    : constant C_Int := 16#100#;
+   Both_Ways       : constant C_Int := 2;
+   Standard_Output : constant C_Int := 1;
+   Standard_Error  : constant C_Int := 2;
+   Local_Host      : constant := 16#7F00_0001#;
+
+   Both_Directions : constant C_Int := 2;
+   No_Terminal     : constant C_Int := 8#400#;
+   At_Once         : constant C_Int := 0;
+
+   type Line_Settings is array (1 .. 32) of Interfaces.Unsigned_64;
+   --  Room for a struct termios, and more.
+
+   Device_File : C_Int := -1
+   with Atomic;
+   --  The serial line, which takes no socket calls.
+
+   Complained : Boolean := False
+   with Atomic;
+   --  What fails is tried again; one message is enough.
+
+   Bus_Port : constant := 29_536;
+   --  Of a bus server that was told no other.
+
+   procedure Say (File : C_Int; Text : String);
+   --  Write Text to File, unbuffered.
+
+   function Setting (Name : String) return String;
+   --  What the environment says; nothing when it is not set.
+
+   procedure Read_Port
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      Sound    : out Boolean);
+   --  The port that Variable names; Default when it is not set.
+
+   function Address_Of (Port : Interfaces.Unsigned_16) return Socket_Address
+   is (Family  => 2,
+       Port    => C_To_Network (Port),
+       Host    => C_Host_To_Network (Local_Host),
+       Padding => 0);
+   --  That port of this machine.
+
+   function Image (Port : Interfaces.Unsigned_16) return String;
+   --  In decimal.
+
+   procedure Hurry (File : C_Int);
+   --  Small records shall not wait for more.
+
+   ---------
+   -- Say --
+   ---------
+
+   procedure Say (File : C_Int; Text : String) is
+      Line    : constant String := Text & ASCII.LF;
+      Ignored : Interfaces.C.long;
+   begin
+      Ignored := C_Write (File, Line'Address, Line'Length);
+   end Say;
+
+   --------------
+   -- Complain --
+   --------------
+
+   procedure Complain (Reason : String) is
+   begin
+      if not Complained then
+         Complained := True;
+         Say (Standard_Error, "error: can: " & Reason);
+      end if;
+   end Complain;
+
+   -------------
+   -- Setting --
+   -------------
+
+   function Setting (Name : String) return String is
+      use type Interfaces.C.Strings.chars_ptr;
+      Found : constant Interfaces.C.Strings.chars_ptr :=
+        C_Get_Environment (Interfaces.C.To_C (Name));
+   begin
+      return
+        (if Found = Interfaces.C.Strings.Null_Ptr then ""
+         else Interfaces.C.Strings.Value (Found));
+   end Setting;
+
+   ---------------
+   -- Read_Port --
+   ---------------
+
+   procedure Read_Port
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      Sound    : out Boolean)
+   is
+      Text : constant String := Setting (Variable);
+      Sum  : Natural := 0;
+   begin
+      Port  := Default;
+      Sound := True;
+      if Text = "" then
+         return;
+      end if;
+      for C of Text loop
+         if C in '0' .. '9' and then Sum <= 65_535 then
+            Sum := 10 * Sum + Character'Pos (C) - Character'Pos ('0');
+         else
+            Sound := False;
+         end if;
+      end loop;
+      Sound := Sound and then Sum <= 65_535;
+      if Sound then
+         Port := Interfaces.Unsigned_16 (Sum);
+      else
+         Complain (Variable & " must be a port, 0 to 65535");
+      end if;
+   end Read_Port;
+
+   -----------
+   -- Image --
+   -----------
+
+   function Image (Port : Interfaces.Unsigned_16) return String is
+      Text : constant String := Port'Image;
+   begin
+      return Text (Text'First + 1 .. Text'Last);
+   end Image;
+
+   -----------
+   -- Hurry --
+   -----------
+
+   procedure Hurry (File : C_Int) is
+      One     : aliased C_Int := 1;
+      Ignored : C_Int;
+   begin
+      Ignored := C_Set_Option
+        (File, Tcp_Level, No_Delay, One'Address, 4);
+   end Hurry;
+
+   -----------------
+   -- Open_Server --
+   -----------------
+
+   procedure Open_Server (Server : out Socket) is
+      One     : aliased C_Int := 1;
+      Length  : aliased C_Int := Address_Length;
+      Address : aliased Socket_Address;
+      Port    : Interfaces.Unsigned_16;
+      Sound   : Boolean;
+      File    : C_Int;
+      Result  : C_Int;
+   begin
+      Server := No_Socket;
+      Read_Port ("RAVENCHART_CAN_PORT", 0, Port, Sound);
+      if not Sound then
+         return;
+      end if;
+      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      if File < 0 then
+         Complain ("no socket: the system has none left");
+         return;
+      end if;
+      Result := C_Set_Option
+        (File, Socket_Level, Reuse_Address, One'Address, 4);
+      Address := Address_Of (Port);
+      if Result = 0 then
+         Result := C_Bind (File, Address'Address, Address_Length);
+      end if;
+      if Result = 0 then
+         Result := C_Listen (File, 1);
+      end if;
+      if Result = 0 then
+         Result := C_Get_Name (File, Address'Address, Length'Address);
+      end if;
+      if Result /= 0 then
+         Complain
+           ("port " & Image (Port) & " cannot be opened: is it in use?"
+            & " trying again");
+         Result := C_Close (File);
+         return;
+      end if;
+      Say
+        (Standard_Output,
+         "can: slcan on 127.0.0.1:" & Image (C_To_Network (Address.Port)));
+      Server := Socket (File);
+   end Open_Server;
+
+   --------------------
+   -- Ask_For_Device --
+   --------------------
+
+   procedure Ask_For_Device (Wanted : out Boolean) is
+   begin
+      Wanted := Setting ("RAVENCHART_CAN_DEVICE") /= "";
+   end Ask_For_Device;
+
+   -----------------
+   -- Open_Device --
+   -----------------
+
+   procedure Open_Device (Device : out Socket) is
+      Path    : constant String := Setting ("RAVENCHART_CAN_DEVICE");
+      Speed   : constant String := Setting ("RAVENCHART_CAN_SPEED");
+      C_Path  : constant String := Path & ASCII.NUL;
+      Line    : aliased Line_Settings := (others => 0);
+      Rate    : constant String :=
+        (if Speed = "" then "" else "S" & Speed & ASCII.CR);
+      Opening : constant String := "C" & ASCII.CR & Rate & "O" & ASCII.CR;
+      File    : C_Int;
+      Result  : C_Int;
+   begin
+      Device := No_Socket;
+      if Speed'Length > 1 or else (for some C of Speed => C not in '0' .. '8')
+      then
+         Complain ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
+         return;
+      end if;
+      File := C_Open
+        (C_Path'Address, Both_Directions + No_Terminal + Close_On_Exec);
+      if File < 0 then
+         Complain (Path & " cannot be opened: trying again");
+         return;
+      end if;
+      Result := C_Get_Line (File, Line'Address);
+      if Result = 0 then
+         C_Make_Raw (Line'Address);
+         Result := C_Set_Line (File, At_Once, Line'Address);
+      end if;
+      if Result /= 0
+        or else C_Write (File, Opening'Address, Opening'Length)
+                /= Opening'Length
+      then
+         Complain (Path & " is no serial line: trying again");
+         Result := C_Close (File);
+         return;
+      end if;
+      Device_File := File;
+      Say (Standard_Output, "can: slcan on " & Path);
+      Device := Socket (File);
+   end Open_Device;
+
+   -------------------
+   -- Accept_Client --
+   -------------------
+
+   procedure Accept_Client (Server : Socket; Client : out Socket) is
+      File : constant C_Int := C_Accept
+        (C_Int (Server), System.Null_Address, System.Null_Address);
+   begin
+      if File < 0 then
+         Client := No_Socket;
+      else
+         Hurry (File);
+         Client := Socket (File);
+      end if;
+   end Accept_Client;
+
+   -------------
+   -- Connect --
+   -------------
+
+   procedure Connect (Client : out Socket) is
+      Address : aliased Socket_Address;
+      Port    : Interfaces.Unsigned_16;
+      Sound   : Boolean;
+      File    : C_Int;
+      Result  : C_Int;
+   begin
+      Client := No_Socket;
+      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
+      if not Sound then
+         return;
+      end if;
+      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      if File < 0 then
+         Complain ("no socket: the system has none left");
+         return;
+      end if;
+      Address := Address_Of (Port);
+      Result  := C_Connect (File, Address'Address, Address_Length);
+      if Result /= 0 then
+         Complain
+           ("no bus server at 127.0.0.1:" & Image (Port)
+            & ": trying again");
+         Result := C_Close (File);
+         return;
+      end if;
+      Hurry (File);
+      Client := Socket (File);
+   end Connect;
+
+   ---------------------
+   -- Announce_Joined --
+   ---------------------
+
+   procedure Announce_Joined is
+      Port  : Interfaces.Unsigned_16;
+      Sound : Boolean;
+   begin
+      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
+      if Sound then
+         Say
+           (Standard_Output,
+            "can: joined the bus at 127.0.0.1:" & Image (Port));
+      end if;
+   end Announce_Joined;
+
+   ---------------
+   -- Read_Name --
+   ---------------
+
+   procedure Read_Name (Text : out Name_Text; Last : out Name_Length) is
+      Found : constant String := Setting ("RAVENCHART_BUS_NAME");
+   begin
+      Last := Natural'Min (Found'Length, Name_Length'Last);
+      Text := (others => ' ');
+      Text (1 .. Last) := Found (Found'First .. Found'First + Last - 1);
+   end Read_Name;
+
+   -------------
+   -- Receive --
+   -------------
+
+   procedure Receive
+     (From : Socket; Bytes : out Chunk; Last : out Chunk_Length)
+   is
+      Result : Interfaces.C.long;
+   begin
+      Bytes  := (others => 0);
+      Result := C_Read (C_Int (From), Bytes'Address, Chunk_Limit);
+      Last   := (if Result > 0 then Natural (Result) else 0);
+   end Receive;
+
+   -----------------
+   -- Receive_All --
+   -----------------
+
+   procedure Receive_All
+     (From : Socket; Bytes : out Octets; Done : out Boolean)
+   is
+      Got    : Natural := 0;
+      Result : Interfaces.C.long;
+   begin
+      Bytes := (others => 0);
+      while Got < Bytes'Length loop
+         Result := C_Receive
+           (C_Int (From),
+            Bytes (Bytes'First + Got)'Address,
+            Interfaces.C.size_t (Bytes'Length - Got),
+            Wait_For_All);
+         exit when Result <= 0;
+         Got := Got + Natural (Result);
+      end loop;
+      Done := Got = Bytes'Length;
+   end Receive_All;
+
+   ----------
+   -- Send --
+   ----------
+
+   procedure Send (To : Socket; Bytes : Octets; Done : out Boolean) is
+      Copy   : constant Octets := Bytes;
+      Sent   : Natural := 0;
+      Result : Interfaces.C.long;
+   begin
+      while Sent < Copy'Length loop
+         Result :=
+           (if C_Int (To) = Device_File
+            then C_Write
+              (C_Int (To),
+               Copy (Copy'First + Sent)'Address,
+               Interfaces.C.size_t (Copy'Length - Sent))
+            else C_Send
+              (C_Int (To),
+               Copy (Copy'First + Sent)'Address,
+               Interfaces.C.size_t (Copy'Length - Sent),
+               No_Signal));
+         exit when Result <= 0;
+         Sent := Sent + Natural (Result);
+      end loop;
+      Done := Sent = Copy'Length;
+   end Send;
+
+   ---------------
+   -- Break_Off --
+   ---------------
+
+   procedure Break_Off (Partner : Socket) is
+      Ignored : C_Int;
+   begin
+      Ignored := C_Shutdown (C_Int (Partner), Both_Ways);
+   end Break_Off;
+
+   -----------
+   -- Close --
+   -----------
+
+   procedure Close (Partner : Socket) is
+      Ignored : C_Int;
+   begin
+      if C_Int (Partner) = Device_File then
+         Device_File := -1;
+      end if;
+      Ignored := C_Close (C_Int (Partner));
+   end Close;
+
+end Ravenchart.Can.Tcp_Sockets;

@@ -1,0 +1,107 @@
+--  The few socket calls of the drivers that TCP on this machine reaches: a
+--  server with one client at a time, or a client.
+--
+--  Guarantees   a lost partner shows as an end of data or a failed Send,
+--               never as a signal or an exception
+--  Tasking      the two tasks of a driver; each call is independent
+--  Timing       Accept_Client and those that receive or send wait for the
+--               other side
+
+with Interfaces;
+
+package Ravenchart.Can.Tcp_Sockets
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (Network with Synchronous,
+                    External => (Async_Readers, Async_Writers,
+                                 Effective_Reads, Effective_Writes)),
+    Initializes    => Network
+is
+   type Socket is range -1 .. 2**31 - 1;
+   --  A descriptor of the operating system.
+
+   No_Socket : constant Socket := -1;
+   --  What a failed call hands over.
+
+   type Octets is array (Positive range <>) of Interfaces.Unsigned_8;
+
+   Chunk_Limit : constant := 256;
+   --  The most bytes one Receive takes.
+
+   subtype Chunk_Length is Natural range 0 .. Chunk_Limit;
+   --  Bytes received.
+
+   subtype Chunk is Octets (1 .. Chunk_Limit);
+   --  Received bytes, and unused ones behind them.
+
+   procedure Open_Server (Server : out Socket)
+   with Global => (In_Out => Network);
+   --  Listen on the port that RAVENCHART_CAN_PORT names, or on one that the
+   --  system chooses, and announce it on standard output.
+
+   procedure Ask_For_Device (Wanted : out Boolean)
+   with Global => (In_Out => Network);
+   --  Does RAVENCHART_CAN_DEVICE name a serial line, to be used instead?
+
+   procedure Open_Device (Device : out Socket)
+   with Global => (In_Out => Network);
+   --  Open that line as it is set, without echo and translation; tell the
+   --  slcan adapter there to open its channel, at the rate of the digit that
+   --  RAVENCHART_CAN_SPEED names (its command S), and announce it on
+   --  standard output.
+
+   procedure Accept_Client (Server : Socket; Client : out Socket)
+   with Global => (In_Out => Network);
+   --  Wait for the next client.
+
+   procedure Connect (Client : out Socket)
+   with Global => (In_Out => Network);
+   --  Become a client of the bus server on the port that RAVENCHART_BUS_PORT
+   --  names, 29536 without it.
+
+   procedure Announce_Joined
+   with Global => (In_Out => Network);
+   --  Say on standard output that the bus server has taken us in.
+
+   subtype Name_Text is String (1 .. 17);
+   --  Room for a name, and for one character more.
+
+   subtype Name_Length is Natural range 0 .. 17;
+
+   procedure Read_Name (Text : out Name_Text; Last : out Name_Length)
+   with Global => (In_Out => Network);
+   --  What RAVENCHART_BUS_NAME says, cut off behind 17 characters; nothing
+   --  when it is not set.
+
+   procedure Complain (Reason : String)
+   with Global => (In_Out => Network);
+   --  Say on standard error what is wrong: the first time only, as most is
+   --  tried again.
+
+   procedure Receive
+     (From : Socket; Bytes : out Chunk; Last : out Chunk_Length)
+   with Global => (In_Out => Network);
+   --  Wait for bytes; Last = 0 when the other side has gone.
+
+   procedure Receive_All
+     (From : Socket; Bytes : out Octets; Done : out Boolean)
+   with Global => (In_Out => Network);
+   --  Wait until Bytes are full; not Done when the other side has gone
+   --  before.
+
+   procedure Send (To : Socket; Bytes : Octets; Done : out Boolean)
+   with Global => (In_Out => Network);
+   --  Send all of Bytes, as soon as the other side takes them; not Done when
+   --  it has gone.
+
+   procedure Break_Off (Partner : Socket)
+   with Global => (In_Out => Network);
+   --  End the connection, and with it a call that waits; Partner stays
+   --  valid.
+
+   procedure Close (Partner : Socket)
+   with Global => (In_Out => Network);
+   --  Give Partner back to the system.
+
+end Ravenchart.Can.Tcp_Sockets;

@@ -1,0 +1,227 @@
+--  Random byte strings through the slcan parser: a number of them, and how
+--  many of the first lines are to be shown, are the two arguments. A quarter
+--  are any bytes, a quarter bytes that lines are made of, a quarter lines of
+--  frames, and a quarter such lines with a byte changed. The program stops
+--  with "not ok" where a line is taken for a frame that is written otherwise,
+--  or the line of a frame for anything else. It shows
+--  HEX/OUTCOME[/FORMAT/KIND/ID/LENGTH/PAYLOAD], then the number of frames.
+
+with Ada.Command_Line;
+with Ada.Text_IO;
+with Facts;
+with Interfaces;
+with Ravenchart.Can;
+with Ravenchart.Can.Slcan;
+
+procedure Slcan_Fuzz is
+   use Ravenchart.Can;
+   use type Interfaces.Unsigned_8;
+   use type Interfaces.Unsigned_64;
+   use type Slcan.Outcome;
+
+   subtype Byte_Value is Interfaces.Unsigned_8;
+
+   Longest : constant := Slcan.Line_Limit + 6;
+   --  Of the strings: some are too long for a line.
+
+   type Byte_String is array (Positive range 1 .. Longest) of Byte_Value;
+
+   type Drawing is (Any_Bytes, Bytes_Of_Lines, Changed_Line, Whole_Line);
+
+   Alphabet : constant String := "tTrR0123456789ABCDEFabcdefOCSVNsMm";
+
+   Strings : constant Natural :=
+     Natural'Value (Ada.Command_Line.Argument (1));
+   Shown   : constant Natural :=
+     Natural'Value (Ada.Command_Line.Argument (2));
+
+   Parser : Slcan.Parser;
+   Text   : Byte_String := (others => 0);
+   Length : Natural := 0;
+   Sent   : Frame;
+   --  Whose line Text is, or was before it was changed.
+   Line   : Byte_String := (others => 0);
+   Count  : Natural := 0;
+   --  What was fed since the last carriage return.
+   Lines  : Natural := 0;
+   Frames : Natural := 0;
+   Seed   : Interfaces.Unsigned_64 := 16#9E37_79B9_7F4A_7C15#;
+
+   function Random return Interfaces.Unsigned_64;
+   --  Marsaglia's xorshift, of period 2**64 - 1.
+
+   function Below (Limit : Positive) return Natural
+   is (Natural (Random mod Interfaces.Unsigned_64 (Limit)));
+
+   function Any_Byte return Byte_Value
+   is (Byte_Value (Random mod 256));
+
+   function Any_Frame return Frame;
+
+   procedure Draw (How : Drawing);
+
+   procedure Expect (Fact : String; Holds : Boolean);
+   --  Stop where it does not hold.
+
+   procedure Judge (Result : Slcan.Outcome; F : Frame);
+   --  Line has ended.
+
+   function Hex return String;
+   --  The bytes of Line.
+
+   ------------
+   -- Random --
+   ------------
+
+   function Random return Interfaces.Unsigned_64 is
+   begin
+      Seed := Seed xor Interfaces.Shift_Left (Seed, 13);
+      Seed := Seed xor Interfaces.Shift_Right (Seed, 7);
+      Seed := Seed xor Interfaces.Shift_Left (Seed, 17);
+      return Seed;
+   end Random;
+
+   ---------------
+   -- Any_Frame --
+   ---------------
+
+   function Any_Frame return Frame is
+      Format : constant Frame_Format :=
+        Frame_Format'Val (Below (2));
+      Id     : constant Identifier :=
+        Identifier
+          (Below (if Format = Extended then 2**29 else 2**11));
+   begin
+      if Below (2) = 0 then
+         return Remote_Frame (Id, Format, Below (9));
+      else
+         return Data_Frame (Id, Format, Below (9), Random);
+      end if;
+   end Any_Frame;
+
+   ----------
+   -- Draw --
+   ----------
+
+   procedure Draw (How : Drawing) is
+      Whole : Slcan.Line_Bytes;
+      Last  : Slcan.Line_Length;
+   begin
+      Length := Below (Longest + 1);
+      case How is
+         when Any_Bytes =>
+            for I in 1 .. Length loop
+               Text (I) := Any_Byte;
+            end loop;
+         when Bytes_Of_Lines =>
+            for I in 1 .. Length loop
+               Text (I) := Character'Pos
+                 (Alphabet (1 + Below (Alphabet'Length)));
+            end loop;
+         when Changed_Line | Whole_Line =>
+            Sent := Any_Frame;
+            Slcan.Format_Line (Sent, Whole, Last);
+            Length := Last - 1;
+            for I in 1 .. Length loop
+               Text (I) := Whole (I);
+            end loop;
+            if How = Changed_Line then
+               Text (1 + Below (Length)) := Any_Byte;
+               Length := Length - Below (2);
+            end if;
+      end case;
+   end Draw;
+
+   ------------
+   -- Expect --
+   ------------
+
+   procedure Expect (Fact : String; Holds : Boolean) is
+   begin
+      if not Holds then
+         Facts.Check (Fact & ": " & Hex, False);
+         Facts.Finish;
+      end if;
+   end Expect;
+
+   ---------
+   -- Hex --
+   ---------
+
+   function Hex return String is
+      Of_Digit : constant String := "0123456789abcdef";
+      Written  : String (1 .. 2 * Count);
+   begin
+      for I in 1 .. Count loop
+         Written (2 * I - 1) := Of_Digit (1 + Natural (Line (I) / 16));
+         Written (2 * I)     := Of_Digit (1 + Natural (Line (I) mod 16));
+      end loop;
+      return Written;
+   end Hex;
+
+   -----------
+   -- Judge --
+   -----------
+
+   procedure Judge (Result : Slcan.Outcome; F : Frame) is
+      Again : Slcan.Line_Bytes;
+      Last  : Slcan.Line_Length;
+
+      function Capital (B : Byte_Value) return Byte_Value
+      is (if B in Character'Pos ('a') .. Character'Pos ('f') then B - 32
+          else B);
+   begin
+      Lines := Lines + 1;
+      if Result = Slcan.Frame_Line then
+         Frames := Frames + 1;
+         Slcan.Format_Line (F, Again, Last);
+         Expect
+           ("a frame is written as it was read",
+            Last = Count + 1
+            and then Again (1) = Line (1)
+            and then (for all I in 2 .. Count =>
+                        Again (I) = Capital (Line (I))));
+      else
+         Expect ("no frame, no data", F = Null_Frame);
+      end if;
+      if Lines <= Shown then
+         Ada.Text_IO.Put_Line
+           (Hex & "/" & Result'Image
+            & (if Result /= Slcan.Frame_Line then ""
+               else "/" & F.Format'Image & "/" & F.Kind'Image & "/"
+                    & F.Id'Image & "/" & F.Length'Image & "/"
+                    & Interfaces.Unsigned_64'Image (Payload (F))));
+      end if;
+   end Judge;
+
+   How    : Drawing;
+   Byte   : Byte_Value;
+   Result : Slcan.Outcome;
+   F      : Frame;
+begin
+   for Unused in 1 .. Strings loop
+      How := Drawing'Val (Below (4));
+      Draw (How);
+      for I in 1 .. Length + 1 loop
+         Byte := (if I > Length then Slcan.Carriage_Return else Text (I));
+         Slcan.Feed (Parser, Byte, Result, F);
+         if Byte = Slcan.Carriage_Return then
+            Judge (Result, F);
+            Count := 0;
+         else
+            Count        := Count + 1;
+            Line (Count) := Byte;
+            Expect
+              ("a line ends with its carriage return",
+               Result = Slcan.Incomplete);
+         end if;
+      end loop;
+      if How = Whole_Line then
+         Expect
+           ("the line of a frame is read",
+            Result = Slcan.Frame_Line and then F = Sent);
+      end if;
+   end loop;
+   Ada.Text_IO.Put_Line (Natural'Image (Frames));
+   Facts.Finish;
+end Slcan_Fuzz;

@@ -1,0 +1,36 @@
+"""The codecs of the robot beside the C that cantools generates: the same frames, and faster."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from gen.model import System
+from ravenchart import bench_codecs, steps
+from ravenchart.toolchain import ROOT
+
+
+def test_the_codecs_take_no_longer_than_c_that_does_the_same() -> None:
+    robot = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
+    figures = bench_codecs.nanoseconds()
+    assert list(figures) == [message.name for message in robot.messages]
+    spent = {
+        kind: sum(one[way, kind] for one in figures.values() for way in bench_codecs.WAYS)
+        for kind in bench_codecs.KINDS
+    }
+    assert 0 < spent["ada"] <= spent["checked"]
+
+
+def test_c_that_makes_other_frames_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = bench_codecs.c_objects
+
+    def broken(system: System, database: Path, place: Path) -> list[str]:
+        text = database.read_text(encoding="utf-8")
+        database.write_text(text.replace("y : 21|19", "y : 21|18", 1), encoding="utf-8")
+        return made(system, database, place)
+
+    monkeypatch.setattr(bench_codecs, "c_objects", broken)
+    with pytest.raises(subprocess.CalledProcessError, match="codecs_bench"):
+        bench_codecs.nanoseconds()

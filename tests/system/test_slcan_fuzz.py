@@ -1,0 +1,67 @@
+"""Random byte strings through the slcan parser: nothing is raised or accepted wrongly.
+
+200,000 of them in each build; ten million with `make test-long`. What becomes of the
+first lines is held against the grammar of the protocol, as regular expressions.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+
+import pytest
+
+from ravenchart import toolchain
+from ravenchart.toolchain import ROOT
+
+STRINGS = 10_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 200_000
+SHOWN = 50_000
+LONGEST = 26
+"""Bytes of a line before its carriage return."""
+
+FRAME = re.compile(
+    rb"(?:([tr])([0-7][0-9A-Fa-f]{2})|([TR])([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)"
+)
+COMMANDS = {b"": "EMPTY_LINE", b"O": "OPEN_CHANNEL", b"C": "CLOSE_CHANNEL",
+            b"V": "VERSION_QUERY", b"N": "SERIAL_QUERY"}  # fmt: skip
+SETTING = re.compile(rb"[FPALEv]|[SYZQWX][0-9]|[sMm][0-9A-Fa-f]{2,}")
+
+
+def meaning(line: bytes) -> str:
+    """What the program is to show of a line."""
+    if len(line) > LONGEST:
+        return "REJECTED_LINE"
+    if line in COMMANDS:
+        return COMMANDS[line]
+    if SETTING.fullmatch(line):
+        return "OTHER_COMMAND"
+    found = FRAME.fullmatch(line)
+    if found is None:
+        return "REJECTED_LINE"
+    base, short, extended, long, length, data = found.groups()
+    letter, asked = base or extended, int(length)
+    kind = "DATA" if letter in b"tT" else "REMOTE"
+    if len(data) != (2 * asked if kind == "DATA" else 0):
+        return "REJECTED_LINE"
+    payload = int.from_bytes(bytes.fromhex(data.decode()), "little")
+    form = "STANDARD" if base else "EXTENDED"
+    return f"FRAME_LINE/{form}/{kind}/ {int(short or long, 16)}/ {asked}/ {payload}"
+
+
+@pytest.mark.parametrize("mode", ["checks", "release"])
+def test_what_is_accepted_is_written_as_it_was_read(mode: str) -> None:
+    options = ["-p", "-q", "-P", "tests.gpr", "slcan_fuzz.adb"]
+    where = ROOT / "tests" / "ada"
+    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": "loopback"})
+    program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "slcan_fuzz"
+    done = subprocess.run(
+        [program, str(STRINGS), str(SHOWN)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout[-500:] + done.stderr
+    *lines, frames = done.stdout.splitlines()
+    assert STRINGS / 4 < int(frames) < STRINGS / 2
+    shown = [line.split("/", 1) for line in lines]
+    assert len(shown) == SHOWN
+    assert [(hexed, word) for hexed, word in shown if meaning(bytes.fromhex(hexed)) != word] == []
+    assert {word.split("/")[0] for _, word in shown} >= {*COMMANDS.values(), "REJECTED_LINE"}

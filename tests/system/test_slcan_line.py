@@ -1,0 +1,139 @@
+"""The slcan driver as the host of an adapter on a serial line: here one end of a pty."""
+
+from __future__ import annotations
+
+import os
+import select
+import subprocess
+import time
+import tty
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from ravenchart import toolchain
+from ravenchart.toolchain import ROOT
+
+LIMIT = 20.0
+"""Seconds within which something must have happened."""
+
+
+class Adapter:
+    """An slcan adapter behind a device file that stays where it is when it is plugged in again."""
+
+    def __init__(self, device: Path) -> None:
+        self.device = device
+        self.master = -1
+        self.plug_in()
+
+    def plug_in(self) -> None:
+        """A new line, under the same name."""
+        self.master, slave = os.openpty()
+        tty.setraw(slave)
+        self.device.unlink(missing_ok=True)
+        self.device.symlink_to(os.ttyname(slave))
+        self._slave = slave
+
+    def unplug(self) -> None:
+        """The line is gone."""
+        self.device.unlink()
+        os.close(self._slave)
+        os.close(self.master)
+
+    def heard(self, text: str) -> None:
+        """Wait until exactly this has been written by the host."""
+        found, end = "", time.monotonic() + LIMIT
+        while len(found) < len(text) and time.monotonic() < end:
+            if select.select([self.master], [], [], 0.1)[0]:
+                found += os.read(self.master, len(text) - len(found)).decode()
+        assert found == text
+
+    def say(self, text: str) -> None:
+        """Write to the host."""
+        os.write(self.master, text.encode())
+
+
+@pytest.fixture(scope="module")
+def program() -> Path:
+    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
+    variables = {"MODE": "checks", "CAN_DRIVER": "slcan"}
+    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
+    return ROOT / "obj" / "tests-checks-slcan" / "bin" / "can_echo"
+
+
+@contextmanager
+def running(program: Path, device: Path, **environment: str) -> Iterator[subprocess.Popen[str]]:
+    """The echo, number 3: it answers frames whose identifier leaves 3 when divided by 4."""
+    with subprocess.Popen(
+        [program, "3"],
+        env={**os.environ, "RAVENCHART_CAN_DEVICE": str(device), **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def test_it_opens_the_channel_and_speaks_with_the_adapter(program: Path, tmp_path: Path) -> None:
+    adapter = Adapter(tmp_path / "adapter")
+    with running(program, adapter.device, RAVENCHART_CAN_SPEED="6"):
+        adapter.heard("C\rS6\rO\r")
+        adapter.say("\r\r")
+        adapter.say("t1233AABBCC\r")
+        adapter.heard("t1243AABBCC\r")
+        adapter.say("z\rT000000070\rT000012330\r")  # the filter refuses the first
+        adapter.heard("T000012340\r")
+        adapter.say("Z\r\x07r1232\r")
+        adapter.heard("r1242\r")
+
+
+def test_a_refusal_is_counted_and_no_frame_is_lost_by_it(program: Path, tmp_path: Path) -> None:
+    adapter = Adapter(tmp_path / "adapter")
+    with running(program, adapter.device) as process:
+        adapter.heard("C\rO\r")
+        adapter.say("\x07t1230\r")
+        adapter.heard("t1240\r")
+        assert process.stdout is not None
+        for line in process.stdout:
+            if "received= 1" in line and "sent= 1" in line:
+                assert "rejected= 1" in line
+                return
+        pytest.fail("it never said so")
+
+
+def test_an_adapter_that_is_plugged_in_again_is_opened_again(program: Path, tmp_path: Path) -> None:
+    adapter = Adapter(tmp_path / "adapter")
+    with running(program, adapter.device):
+        adapter.heard("C\rO\r")
+        adapter.unplug()
+        time.sleep(0.5)
+        adapter.plug_in()
+        adapter.heard("C\rO\r")
+        adapter.say("t0071FF\r")
+        adapter.heard("t0081FF\r")
+
+
+@pytest.mark.parametrize(
+    ("device", "speed", "message"),
+    [
+        ("nowhere", "6", "nowhere cannot be opened: trying again"),
+        ("file", "6", "file is no serial line: trying again"),
+        ("file", "9", "RAVENCHART_CAN_SPEED must be a digit, 0 to 8"),
+    ],
+)
+def test_what_cannot_be_opened_is_said_once(
+    program: Path, tmp_path: Path, device: str, speed: str, message: str
+) -> None:
+    (tmp_path / "file").write_text("")
+    with running(program, tmp_path / device, RAVENCHART_CAN_SPEED=speed) as process:
+        time.sleep(1.0)
+        process.kill()
+        assert process.stderr is not None
+        told = [line for line in process.stderr.read().splitlines() if "error" in line]
+    assert len(told) == 1
+    assert told[0].endswith(message)
