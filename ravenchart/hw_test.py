@@ -26,7 +26,7 @@ KERNEL = ROOT / "build" / "guest"
 
 HOME = ROOT / "build" / "hw-test"
 INIT = ROOT / "scripts" / "guest_init.sh"
-MODULES = ("virtio_pci", "9pnet_virtio", "9p", "can-raw", "vcan", "kvaser_pci")
+MODULES = ("virtio_pci", "9pnet_virtio", "9p", "can-raw", "vcan", "sch_tbf", "kvaser_pci")
 PATIENCE = 1_200
 """Seconds after which a guest is given up; it needs about a minute."""
 

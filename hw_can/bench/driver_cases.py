@@ -7,7 +7,9 @@ interfaces of one bus. Each case returns what it saw, or raises why not.
 from __future__ import annotations
 
 import copy
+import re
 import subprocess
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +27,9 @@ FD_UNIT = "72"
 
 BURST = 200
 """Frames of a burst: not more than the queue of a socket holds."""
+
+RESTING = 0.5
+"""Seconds without news after which the program has told everything."""
 
 LIMIT = 10.0
 """Seconds within which the driver must have noticed something."""
@@ -49,6 +54,14 @@ class Driver:
     def virtual(self) -> bool:
         """Whether the interface has no device: a vcan."""
         return not (INTERFACES / self.channel / "device").exists()
+
+    def settled(self) -> Standing:
+        """How it stands, once it has said nothing new for a while."""
+        last = None
+        while (now := self.echo.now) != last:
+            last = now
+            time.sleep(RESTING)
+        return now
 
     def stands(self, condition: Callable[[Standing], bool], wanted: str) -> Standing:
         """Wait until it stands so; Failed when it does not come to that."""
@@ -79,11 +92,17 @@ def started(program: Path, channel: str, *, emulated: bool = False) -> Iterator[
         echo.close()
 
 
-def _link(*words: str) -> None:
-    """Change an interface; Failed with what the program ip says."""
-    done = subprocess.run(["ip", "link", *words], capture_output=True, text=True, check=False)
+def _told(*words: str) -> str:
+    """What a program for interfaces prints; Failed with its complaint."""
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise Failed(f"ip link {' '.join(words)}: {done.stderr.strip()}")
+        raise Failed(f"{' '.join(words)}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def _link(*words: str) -> None:
+    """Change an interface."""
+    _told("ip", "link", *words)
 
 
 def _next(one: can.Message) -> can.Message:
@@ -134,7 +153,7 @@ def _every_byte(ends: Ends) -> str:
 
 
 def _burst(ends: Ends, driver: Driver) -> str:
-    before = driver.echo.now.sent
+    before = driver.settled().sent
     ends.near.send(frame(Echo.ORDER, BURST.to_bytes(2, "little")))
     expected = [frame(Echo.BURST, n.to_bytes(8, "little")) for n in range(1, BURST + 1)]
     got = [ends.near.recv(ends.patience) for _ in expected]
@@ -143,8 +162,24 @@ def _burst(ends: Ends, driver: Driver) -> str:
     return f"{BURST} frames in order, each counted"
 
 
+def _full(ends: Ends, driver: Driver) -> str:
+    if not driver.virtual:
+        raise Skipped("only a virtual interface is slowed down here")
+    place = ("dev", driver.channel, "root")
+    _told("tc", "qdisc", "add", *place, "tbf", "rate", "64kbit", "burst", "160", "limit", "320")
+    try:
+        said = _burst(ends, driver)
+        seen = _told("tc", "-s", "qdisc", "show", "dev", driver.channel)
+    finally:
+        _told("tc", "qdisc", "del", *place)
+    refused = re.search(r"dropped (\d+)", seen)
+    if refused is None or int(refused[1]) == 0:
+        raise Failed(f"the interface refused nothing: {seen}")
+    return f"{said}, though {refused[1]} were refused at first"
+
+
 def _filter(ends: Ends, driver: Driver) -> str:
-    before = driver.echo.now.received
+    before = driver.settled().received
     for refused in (0, 0x80, 0xFC):
         ends.near.send(frame(refused, extended=True))
     if (answer := ends.near.recv(SETTLING)) is not None:
@@ -168,7 +203,7 @@ def _fd(ends: Ends, driver: Driver) -> str:
 def _reports(ends: Ends, driver: Driver) -> str:
     if not driver.virtual:
         raise Skipped("only a virtual interface passes on an error report that a program wrote")
-    before = driver.echo.now.received
+    before = driver.settled().received
     steps = (
         (CONTROLLER | COUNTERS, WARNING, (96, 3), "ERROR_ACTIVE"),
         (CONTROLLER | COUNTERS, PASSIVE, (130, 5), "ERROR_PASSIVE"),
@@ -181,7 +216,7 @@ def _reports(ends: Ends, driver: Driver) -> str:
         data = bytes((0, detail, 0, 0, 0, 0, transmit, receive))
         ends.near.send(can.Message(arbitration_id=kind, is_error_frame=True, data=data))
         driver.reports(state, transmit, receive)
-    if driver.echo.now.received != before:
+    if driver.settled().received != before:
         raise Failed("an error report was counted as a frame")
     return f"{len(steps)} reports, their states and counters"
 
@@ -233,6 +268,7 @@ def cases(driver: Driver) -> tuple[Case, ...]:
         Case("identifiers at their limits", _identifiers),
         Case("every byte value", _every_byte),
         Case("burst", lambda ends: _burst(ends, driver)),
+        Case("interface without room", lambda ends: _full(ends, driver)),
         Case("acceptance filter", lambda ends: _filter(ends, driver)),
         Case("error reports", lambda ends: _reports(ends, driver)),
         Case("interface down and up", lambda ends: _down(ends, driver)),
