@@ -82,6 +82,10 @@ def _parser() -> argparse.ArgumentParser:
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",
     )  # fmt: skip
+    prove.add_argument(
+        "--whole", action="store_true",
+        help="prove the runtime and the HAL again, which `make prove` proves by themselves",
+    )  # fmt: skip
     prove.add_argument("--record", type=Path, help="write the proof record to this file")
     analyse = command(
         "analyse", _analyse, "response times against deadlines, of a model or of CSV or JSON"
@@ -212,7 +216,8 @@ def _prove(options: argparse.Namespace) -> int:
     for one in made:
         roots = (one.generated, checked.folder / "user")
         folders = one.proof_folders(driver)
-        proof = proving.prove(one.project, one.scenario("checks", driver), folders, roots)
+        variables = one.scenario("checks", driver)
+        proof = proving.prove(one.project, variables, folders, roots, whole=options.whole)
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean

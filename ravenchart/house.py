@@ -49,6 +49,8 @@ class Target:
     scenario: dict[str, str]
     results: tuple[Path, ...]
     roots: tuple[Path, ...]
+    whole: bool
+    """With the runtime and the HAL; the examples take them as proved."""
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
@@ -78,6 +80,7 @@ def _bus() -> Target:
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
         (folder, ROOT / "hw_can" / "protocol"),
+        whole=True,
     )
 
 
@@ -95,6 +98,7 @@ def _runtime(driver: str) -> Target:
             *(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver]),
             ROOT / "proofs" / "instances",
         ),
+        whole=True,
     )
 
 
@@ -109,6 +113,7 @@ def _example(name: str) -> Iterator[Target]:
             made.scenario("checks", driver),
             made.proof_folders(driver)[:1],
             (made.generated, checked.folder / "user") if made.folder else (checked.folder,),
+            whole=False,
         )
 
 
@@ -119,7 +124,12 @@ def prove(names: Sequence[str]) -> bool:
     for target in targets(names):
         print(f"proving {target.name} ...", flush=True)
         proof = proving.prove(
-            target.project, target.scenario, target.results, target.roots, warnings="error"
+            target.project,
+            target.scenario,
+            target.results,
+            target.roots,
+            warnings="error",
+            whole=target.whole,
         )
         print(f"{target.name}: {proof.summary()}", flush=True)
         (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")

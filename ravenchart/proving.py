@@ -61,18 +61,23 @@ def prove(
     roots: Sequence[Path],
     *,
     warnings: str = "continue",
+    whole: bool = False,
 ) -> Proof:
     """Prove a project; ``results`` are the folders its results land in, its own first.
 
     The record names every source below ``roots``. ToolFailed with gnatprove's
     messages when anything is left, and with ``warnings="error"`` also for a warning
     of flow analysis, such as a value that is set and never used. The results of
-    earlier runs go first: what is read then is of this run alone.
+    earlier runs go first: what is read then is of this run alone. Of the projects that
+    it uses, which are proved by themselves, it takes what their sources say, or with
+    ``whole`` proves them again.
     """
     for old in (path for folder in results for path in folder.glob("*.spark")):
         old.unlink()
     arguments = ["-P", project.name, "-f", "-q", "--output=oneline"]
     arguments.append(f"--warnings={warnings}")
+    if not whole:
+        arguments.append("--no-subprojects")
     toolchain.run("gnatprove", arguments, project.parent, scenario)
     return read_results(results, roots)
 
