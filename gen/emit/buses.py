@@ -119,7 +119,10 @@ def _send_body(system: System, message: Message) -> Subprogram:
         Payload=call(f"Codecs.Pack_{codec_name(message)}", Ref("Item")),
     )
     lost: list[Stmt] = [
-        Do("Health_Counts.Record_Fault", arguments(Ref("Ravenchart.Health.Queue_Overflow"))),
+        Do(
+            "Health_Counts.Counters.Record_Fault",
+            arguments(Ref("Ravenchart.Health.Queue_Overflow")),
+        ),
         *note(system, "Fault", message.name, "message", _overflow_number()),
     ]
     full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))

@@ -80,7 +80,9 @@ class Site:
         return note(self.system, kind, self._element(name), element_kind, item)
 
     def _fault(self, kind: str) -> Stmt:
-        return Do("Health_Counts.Record_Fault", arguments(Ref(f"Ravenchart.Health.{kind}")))
+        return Do(
+            "Health_Counts.Counters.Record_Fault", arguments(Ref(f"Ravenchart.Health.{kind}"))
+        )
 
     def _fault_number(self, kind: str) -> Expr:
         return Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref(f"Ravenchart.Health.{kind}")))

@@ -47,7 +47,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     bodies += [_report(system, p) for p in system.processors]
     steps: list[Stmt] = [Do(f"Report_{ada_case(p.name)}") for p in system.processors]
-    steps.append(Do("Health_Counts.Read", arguments(Ref("Faults"))))
+    steps.append(Do("Health_Counts.Counters.Read", arguments(Ref("Faults"))))
     steps.append(
         Loop(
             "for Kind in Ravenchart.Health.Fault_Kind",
@@ -57,7 +57,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
-        steps.append(Assign("Lost", Ref("Trace.Lost")))
+        steps.append(Assign("Lost", Ref("Trace.Buffer.Lost")))
         steps.append(Do("Ravenchart.Hosts.Put_Lost", arguments(Ref('"trace"'), Ref("Lost"))))
     for bus in system.buses:
         counters = f"{ada_case(bus.name)}_Counters"
@@ -70,7 +70,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
             )
     if any(n.probe for n in system.nodes):
         declarations.append(Object("Late", "Ravenchart.Nanoseconds"))
-        steps.append(Do("Host_Probe.Read", arguments(Ref("Late"))))
+        steps.append(Do("Host_Probe.Probe.Read", arguments(Ref("Late"))))
         steps.append(Do("Ravenchart.Hosts.Put_Host_Latency", arguments(Ref("Late"))))
     bodies.append(Subprogram("Put_All", declarations=tuple(declarations), body=tuple(steps)))
     context = {"Ravenchart.Hosts", "Ravenchart.Health", f"{root}.Health_Counts", f"{root}.Elements"}
@@ -101,7 +101,7 @@ def _drain() -> Subprogram:
             Loop(
                 "",
                 (
-                    Do("Trace.Take", arguments(Ref("Item"), Ref("Status"))),
+                    Do("Trace.Buffer.Take", arguments(Ref("Item"), Ref("Status"))),
                     If(((empty, (Say("exit"),)),)),
                     Do("Ravenchart.Hosts.Put_Trace", arguments(Ref("Item"))),
                 ),

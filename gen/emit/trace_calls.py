@@ -23,7 +23,7 @@ def note(
         Ref(f"Elements.{element_constant(element, element_kind)}"),
         value or number(0),
     )
-    return (Do("Trace.Note", args),)
+    return (Do("Trace.Buffer.Note", args),)
 
 
 def element_constant(element: str, kind: str) -> str:

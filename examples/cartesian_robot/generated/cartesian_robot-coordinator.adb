@@ -101,13 +101,14 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Command_Mailbox.Put (Item, Status);
-      Trace.Note
+      Trace.Buffer.Note
         (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Command,
          0);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Coordinator_Command,
             Ravenchart.Health.Fault_Kind'Pos
@@ -119,7 +120,7 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Report_X_Mailbox.Put (Item, Status);
-      Trace.Note
+      Trace.Buffer.Note
         (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Report_X,
          0);
@@ -129,7 +130,7 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Report_Y_Mailbox.Put (Item, Status);
-      Trace.Note
+      Trace.Buffer.Note
         (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Report_Y,
          0);
@@ -139,7 +140,7 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Report_Z_Mailbox.Put (Item, Status);
-      Trace.Note
+      Trace.Buffer.Note
         (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Report_Z,
          0);
@@ -153,45 +154,45 @@ is
          when Robot_Coordinator.Commanded =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Coordinator_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Coordinator_Commanded,
                0);
          when Robot_Coordinator.Joint_Lost =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Coordinator_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Coordinator_Joint_Lost,
                0);
          when Robot_Coordinator.Shutdown =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Coordinator_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Coordinator_Shutdown,
                0);
@@ -200,25 +201,37 @@ is
 
    procedure Send_Order_X (Item : Cartesian_Robot.Joint_Order) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Coordinator_Order_X, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Order_X,
+         0);
       Joint_X.Put_Order (Item);
    end Send_Order_X;
 
    procedure Send_Order_Y (Item : Cartesian_Robot.Joint_Order) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Coordinator_Order_Y, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Order_Y,
+         0);
       Joint_Y.Put_Order (Item);
    end Send_Order_Y;
 
    procedure Send_Order_Z (Item : Cartesian_Robot.Joint_Order) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Coordinator_Order_Z, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Order_Z,
+         0);
       Joint_Z.Put_Order (Item);
    end Send_Order_Z;
 
    procedure Send_Status (Item : Cartesian_Robot.Robot_Report) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Coordinator_Status, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Coordinator_Status,
+         0);
       Robot_Bus.Send_Robot_Status (Item);
    end Send_Status;
 
@@ -246,14 +259,15 @@ is
          when Robot_Coordinator.Command_Port.Nothing =>
             null;
          when Robot_Coordinator.Command_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Coordinator_Command,
                0);
             Offer (Robot_Coordinator.Commanded);
          when Robot_Coordinator.Command_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Coordinator_Command,
                Ravenchart.Health.Fault_Kind'Pos
@@ -271,13 +285,14 @@ is
          when Robot_Coordinator.Report_X_Port.Nothing =>
             null;
          when Robot_Coordinator.Report_X_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Coordinator_Report_X,
                0);
          when Robot_Coordinator.Report_X_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Coordinator_Report_X,
                Ravenchart.Health.Fault_Kind'Pos
@@ -296,13 +311,14 @@ is
          when Robot_Coordinator.Report_Y_Port.Nothing =>
             null;
          when Robot_Coordinator.Report_Y_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Coordinator_Report_Y,
                0);
          when Robot_Coordinator.Report_Y_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Coordinator_Report_Y,
                Ravenchart.Health.Fault_Kind'Pos
@@ -321,13 +337,14 @@ is
          when Robot_Coordinator.Report_Z_Port.Nothing =>
             null;
          when Robot_Coordinator.Report_Z_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Coordinator_Report_Z,
                0);
          when Robot_Coordinator.Report_Z_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Coordinator_Report_Z,
                Ravenchart.Health.Fault_Kind'Pos
@@ -356,14 +373,14 @@ is
       Robot_Coordinator.Mission.Step (Mission_Region, Now, Ins, Box, Fired);
       if Fired /= Robot_Coordinator.Mission.None then
          if Fired in Robot_Coordinator.Mission.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Coordinator_Mission,
                Robot_Coordinator.Mission.Selection'Pos (Fired)
                - Robot_Coordinator.Mission.Selection'Pos
                    (Robot_Coordinator.Mission.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Coordinator_Mission,
             Robot_Coordinator.Mission_States.Leaf'Pos (Mission_Region.Leaf));

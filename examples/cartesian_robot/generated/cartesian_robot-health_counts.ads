@@ -5,5 +5,9 @@
 with Ravenchart.Health_Counters;
 with System;
 
-package Cartesian_Robot.Health_Counts is new Ravenchart.Health_Counters
-  (Ceiling => System.Default_Priority + 4);
+package Cartesian_Robot.Health_Counts
+with SPARK_Mode
+is
+   package Counters is new Ravenchart.Health_Counters
+     (Ceiling => System.Default_Priority + 4);
+end Cartesian_Robot.Health_Counts;

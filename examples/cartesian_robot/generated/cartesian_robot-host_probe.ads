@@ -5,7 +5,11 @@
 with Ravenchart.Host_Probes;
 with System;
 
-package Cartesian_Robot.Host_Probe is new Ravenchart.Host_Probes
-  (Period => 1_000_000,
-   Probe_Priority => System.Default_Priority + 6,
-   Stack_Bytes => 16_384);
+package Cartesian_Robot.Host_Probe
+with SPARK_Mode
+is
+   package Probe is new Ravenchart.Host_Probes
+     (Period => 1_000_000,
+      Probe_Priority => System.Default_Priority + 6,
+      Stack_Bytes => 16_384);
+end Cartesian_Robot.Host_Probe;

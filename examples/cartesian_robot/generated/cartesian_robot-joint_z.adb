@@ -111,10 +111,14 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Joint_Z_Order, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Arrived,
+         Elements.Joint_Z_Order,
+         0);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Joint_Z_Order,
             Ravenchart.Health.Fault_Kind'Pos
@@ -126,7 +130,10 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Feedback_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Joint_Z_Feedback, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Arrived,
+         Elements.Joint_Z_Feedback,
+         0);
    end Put_Feedback;
 
    procedure Offer (Item : Joint.Event) is
@@ -137,75 +144,75 @@ is
          when Joint.Ordered =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Joint_Z_Ordered,
                0);
          when Joint.Feedback_Lost =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Joint_Z_Feedback_Lost,
                0);
          when Joint.Strayed =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Joint_Z_Strayed,
                0);
          when Joint.Limit_Hit =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Joint_Z_Limit_Hit,
                0);
          when Joint.Drive_Failed =>
             Motion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Joint_Z_Motion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Joint_Z_Drive_Failed,
                0);
@@ -214,13 +221,16 @@ is
 
    procedure Send_Drive (Item : Cartesian_Robot.Drive_Set_Point) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Joint_Z_Drive, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Joint_Z_Drive, 0);
       Robot_Bus.Send_Z_Set_Point (Item);
    end Send_Drive;
 
    procedure Send_Report (Item : Cartesian_Robot.Joint_Report) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Joint_Z_Report, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Joint_Z_Report,
+         0);
       Coordinator.Put_Report_Z (Item);
    end Send_Report;
 
@@ -260,14 +270,15 @@ is
          when Joint.Order_Port.Nothing =>
             null;
          when Joint.Order_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Joint_Z_Order,
                0);
             Offer (Joint.Ordered);
          when Joint.Order_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Joint_Z_Order,
                Ravenchart.Health.Fault_Kind'Pos
@@ -285,13 +296,14 @@ is
          when Joint.Feedback_Port.Nothing =>
             null;
          when Joint.Feedback_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Joint_Z_Feedback,
                0);
          when Joint.Feedback_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Joint_Z_Feedback,
                Ravenchart.Health.Fault_Kind'Pos
@@ -310,14 +322,14 @@ is
       Joint.Monitoring.Step (Monitoring_Region, Now, Ins, Box, Fired);
       if Fired /= Joint.Monitoring.None then
          if Fired in Joint.Monitoring.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Joint_Z_Monitoring,
                Joint.Monitoring.Selection'Pos (Fired)
                - Joint.Monitoring.Selection'Pos
                    (Joint.Monitoring.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Joint_Z_Monitoring,
             Joint.Monitoring_States.Leaf'Pos (Monitoring_Region.Leaf));
@@ -381,13 +393,13 @@ is
       Joint.Motion.Step (Motion_Region, Now, Ins, Fired);
       if Fired /= Joint.Motion.None then
          if Fired in Joint.Motion.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Joint_Z_Motion,
                Joint.Motion.Selection'Pos (Fired)
                - Joint.Motion.Selection'Pos (Joint.Motion.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Joint_Z_Motion,
             Joint.Motion_States.Leaf'Pos (Motion_Region.Leaf));

@@ -26,7 +26,7 @@ is
       Status : Ravenchart.Queueing.Take_Status;
    begin
       loop
-         Trace.Take (Item, Status);
+         Trace.Buffer.Take (Item, Status);
          if Status = Ravenchart.Queueing.Empty then
             exit;
          end if;
@@ -120,11 +120,11 @@ is
       Report_Trajectory;
       Report_Control;
       Report_Supervision;
-      Health_Counts.Read (Faults);
+      Health_Counts.Counters.Read (Faults);
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;
-      Lost := Trace.Lost;
+      Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
       Robot_Bus.Controller.Read_Counters (Robot_Bus_Counters);
       Ravenchart.Hosts.Put_Lost
@@ -136,7 +136,7 @@ is
       Ravenchart.Hosts.Put_Lost
         ("robot_bus.rejected_lines",
          Robot_Bus_Counters.Rejected_Lines);
-      Host_Probe.Read (Late);
+      Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);
    end Put_All;
 end Cartesian_Robot.Reports;

@@ -40,7 +40,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 8
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Robot_Command_Message,
                0);
@@ -56,7 +56,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 6
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.X_Feedback_Message,
                0);
@@ -72,7 +72,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 6
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Y_Feedback_Message,
                0);
@@ -88,7 +88,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 6
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Z_Feedback_Message,
                0);

@@ -23,10 +23,14 @@ is
             Length => 6,
             Payload => Codecs.Pack_Robot_Report (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Robot_Status_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Robot_Status_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Robot_Status_Message,
             Ravenchart.Health.Fault_Kind'Pos
@@ -45,10 +49,14 @@ is
             Length => 3,
             Payload => Codecs.Pack_Drive_Set_Point (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.X_Set_Point_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.X_Set_Point_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.X_Set_Point_Message,
             Ravenchart.Health.Fault_Kind'Pos
@@ -67,10 +75,14 @@ is
             Length => 3,
             Payload => Codecs.Pack_Drive_Set_Point (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Y_Set_Point_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Y_Set_Point_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Y_Set_Point_Message,
             Ravenchart.Health.Fault_Kind'Pos
@@ -89,10 +101,14 @@ is
             Length => 3,
             Payload => Codecs.Pack_Drive_Set_Point (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Z_Set_Point_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Z_Set_Point_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Z_Set_Point_Message,
             Ravenchart.Health.Fault_Kind'Pos

@@ -5,6 +5,10 @@
 with Ravenchart.Trace_Buffers;
 with System;
 
-package Cartesian_Robot.Trace is new Ravenchart.Trace_Buffers
-  (Capacity => 4_096,
-   Ceiling => System.Default_Priority + 4);
+package Cartesian_Robot.Trace
+with SPARK_Mode
+is
+   package Buffer is new Ravenchart.Trace_Buffers
+     (Capacity => 4_096,
+      Ceiling => System.Default_Priority + 4);
+end Cartesian_Robot.Trace;

@@ -40,7 +40,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 1
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Order_Message,
                0);
@@ -56,7 +56,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 1
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Button_Message,
                0);

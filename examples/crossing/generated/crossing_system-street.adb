@@ -28,10 +28,14 @@ is
             Length => 1,
             Payload => Codecs.Pack_Car_Light (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Car_Lamp_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Car_Lamp_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Car_Lamp_Message,
             Ravenchart.Health.Fault_Kind'Pos
@@ -50,10 +54,14 @@ is
             Length => 1,
             Payload => Codecs.Pack_Walk_Light (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Walk_Lamp_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Walk_Lamp_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Walk_Lamp_Message,
             Ravenchart.Health.Fault_Kind'Pos
@@ -72,10 +80,11 @@ is
             Length => 1,
             Payload => Codecs.Pack_Boolean (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Sign_Message, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Sign_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Sign_Message,
             Ravenchart.Health.Fault_Kind'Pos

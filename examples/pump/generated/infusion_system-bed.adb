@@ -134,7 +134,7 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Line_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Bed_Line, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Bed_Line, 0);
    end Put_Line;
 
    procedure Put_Panel (Item : Infusion_System.Press) is
@@ -142,10 +142,11 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Panel_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Bed_Panel, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Bed_Panel, 0);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Bed_Panel,
             Ravenchart.Health.Fault_Kind'Pos
@@ -161,105 +162,120 @@ is
          when Pump.Pressed =>
             Keys_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Keys,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Bed_Pressed, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Bed_Pressed,
+               0);
          when Pump.Sensor_Lost =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Bed_Sensor_Lost,
                0);
          when Pump.Start =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Bed_Start, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Bed_Start,
+               0);
          when Pump.Stop =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Bed_Stop, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Bed_Stop,
+               0);
          when Pump.Silence =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Bed_Silence, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Bed_Silence,
+               0);
          when Pump.Resume =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Bed_Resume, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Bed_Resume,
+               0);
          when Pump.New_Portion =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Bed_New_Portion,
                0);
          when Pump.New_Volume =>
             Infusion_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Bed_Infusion,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Bed_New_Volume,
                0);
@@ -268,13 +284,13 @@ is
 
    procedure Send_Motor (Item : Infusion_System.Portion) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Bed_Motor, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Bed_Motor, 0);
       Ward.Send_Motor (Item);
    end Send_Motor;
 
    procedure Send_Display (Item : Infusion_System.View) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Bed_Display, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Bed_Display, 0);
       Ward.Send_Display (Item);
    end Send_Display;
 
@@ -298,10 +314,14 @@ is
          when Pump.Line_Port.Nothing =>
             null;
          when Pump.Line_Port.Arrival =>
-            Trace.Note (Ravenchart.Traces.Handled, Elements.Bed_Line, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Handled,
+               Elements.Bed_Line,
+               0);
          when Pump.Line_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Bed_Line,
                Ravenchart.Health.Fault_Kind'Pos
@@ -319,14 +339,18 @@ is
          when Pump.Panel_Port.Nothing =>
             null;
          when Pump.Panel_Port.Arrival =>
-            Trace.Note (Ravenchart.Traces.Handled, Elements.Bed_Panel, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Handled,
+               Elements.Bed_Panel,
+               0);
             Offer
               (Pump.Event'(Name => Pump.Pressed,
                 Value_Press => Panel_Port.Value,
                 others => <>));
          when Pump.Panel_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Bed_Panel,
                Ravenchart.Health.Fault_Kind'Pos
@@ -354,13 +378,13 @@ is
       Pump.Keys.Step (Keys_Region, Now, Event, Box, Fired);
       if Fired /= Pump.Keys.None then
          if Fired in Pump.Keys.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Bed_Keys,
                Pump.Keys.Selection'Pos (Fired)
                - Pump.Keys.Selection'Pos (Pump.Keys.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Bed_Keys,
             Pump.Keys_States.Leaf'Pos (Keys_Region.Leaf));
@@ -396,7 +420,7 @@ is
       if Fired.Count > 0 then
          for I in 1 .. Fired.Count loop
             if Fired.Items (I) in Pump.Infusion.Transition then
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Transition,
                   Elements.Bed_Infusion,
                   Pump.Infusion.Selection'Pos (Fired.Items (I))
@@ -404,19 +428,19 @@ is
                       (Pump.Infusion.Transition'First));
             end if;
          end loop;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Bed_Infusion,
             Pump.Infusion_States.Leaf'Pos (Infusion_Region.Place.Top));
          if Infusion_Region.Place.Top = Pump.Infusion_States.Self_Test then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.State,
                Elements.Bed_Infusion_Sensor,
                Pump.Infusion_States.Sensor_Leaf'Pos
                  (Infusion_Region.Place.In_Sensor));
          end if;
          if Infusion_Region.Place.Top = Pump.Infusion_States.Self_Test then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.State,
                Elements.Bed_Infusion_Motor,
                Pump.Infusion_States.Motor_Leaf'Pos
@@ -424,8 +448,9 @@ is
          end if;
       end if;
       if Infusion_Region.Lost then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Bed_Infusion,
             Ravenchart.Health.Fault_Kind'Pos

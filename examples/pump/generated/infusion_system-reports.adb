@@ -28,7 +28,7 @@ is
       Status : Ravenchart.Queueing.Take_Status;
    begin
       loop
-         Trace.Take (Item, Status);
+         Trace.Buffer.Take (Item, Status);
          if Status = Ravenchart.Queueing.Empty then
             exit;
          end if;
@@ -81,11 +81,11 @@ is
    begin
       Report_Reception;
       Report_Control;
-      Health_Counts.Read (Faults);
+      Health_Counts.Counters.Read (Faults);
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;
-      Lost := Trace.Lost;
+      Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
       Ward.Controller.Read_Counters (Ward_Counters);
       Ravenchart.Hosts.Put_Lost ("ward.lost_out", Ward_Counters.Lost_Out);

@@ -28,10 +28,11 @@ is
             Length => 2,
             Payload => Codecs.Pack_Portion (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Motor_Message,
             Ravenchart.Health.Fault_Kind'Pos
@@ -50,10 +51,14 @@ is
             Length => 3,
             Payload => Codecs.Pack_View (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Display_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Display_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Display_Message,
             Ravenchart.Health.Fault_Kind'Pos

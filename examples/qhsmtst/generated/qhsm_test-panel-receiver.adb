@@ -39,7 +39,10 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 1
          then
-            Trace.Note (Ravenchart.Traces.Arrived, Elements.Key_Message, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Arrived,
+               Elements.Key_Message,
+               0);
             Test.Put_Key (Key_Item);
          end if;
       end if;

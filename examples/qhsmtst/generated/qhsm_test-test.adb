@@ -67,10 +67,11 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Key_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Test_Key, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Test_Key, 0);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Test_Key,
             Ravenchart.Health.Fault_Kind'Pos
@@ -86,123 +87,153 @@ is
          when Qhsm.Pressed =>
             Keys_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Keys,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_Pressed, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_Pressed,
+               0);
          when Qhsm.A =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_A, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_A,
+               0);
          when Qhsm.B =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_B, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_B,
+               0);
          when Qhsm.C =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_C, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_C,
+               0);
          when Qhsm.D =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_D, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_D,
+               0);
          when Qhsm.E =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_E, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_E,
+               0);
          when Qhsm.F =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_F, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_F,
+               0);
          when Qhsm.G =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_G, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_G,
+               0);
          when Qhsm.H =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_H, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_H,
+               0);
          when Qhsm.I =>
             Chart_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Test_Chart,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Test_I, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Test_I,
+               0);
       end case;
    end Offer;
 
@@ -223,13 +254,17 @@ is
          when Qhsm.Key_Port.Nothing =>
             null;
          when Qhsm.Key_Port.Arrival =>
-            Trace.Note (Ravenchart.Traces.Handled, Elements.Test_Key, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Handled,
+               Elements.Test_Key,
+               0);
             Offer
               (Qhsm.Event'(Name => Qhsm.Pressed,
                 Value_Key => Key_Port.Value));
          when Qhsm.Key_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Test_Key,
                Ravenchart.Health.Fault_Kind'Pos
@@ -257,13 +292,13 @@ is
       Qhsm.Keys.Step (Keys_Region, Now, Event, Box, Fired);
       if Fired /= Qhsm.Keys.None then
          if Fired in Qhsm.Keys.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Test_Keys,
                Qhsm.Keys.Selection'Pos (Fired)
                - Qhsm.Keys.Selection'Pos (Qhsm.Keys.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Test_Keys,
             Qhsm.Keys_States.Leaf'Pos (Keys_Region.Leaf));
@@ -298,14 +333,14 @@ is
       if Fired.Count > 0 then
          for I in 1 .. Fired.Count loop
             if Fired.Items (I) in Qhsm.Chart.Transition then
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Transition,
                   Elements.Test_Chart,
                   Qhsm.Chart.Selection'Pos (Fired.Items (I))
                   - Qhsm.Chart.Selection'Pos (Qhsm.Chart.Transition'First));
             end if;
          end loop;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Test_Chart,
             Qhsm.Chart_States.Leaf'Pos (Chart_Region.Leaf));

@@ -5,5 +5,9 @@
 with Ravenchart.Health_Counters;
 with System;
 
-package Surgical_Robot.Health_Counts is new Ravenchart.Health_Counters
-  (Ceiling => System.Default_Priority + 2);
+package Surgical_Robot.Health_Counts
+with SPARK_Mode
+is
+   package Counters is new Ravenchart.Health_Counters
+     (Ceiling => System.Default_Priority + 2);
+end Surgical_Robot.Health_Counts;

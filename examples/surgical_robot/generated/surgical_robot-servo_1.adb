@@ -63,8 +63,9 @@ is
    begin
       Motion_Queue.Put (Item, Status);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Servo_1_Motion,
             Ravenchart.Health.Fault_Kind'Pos

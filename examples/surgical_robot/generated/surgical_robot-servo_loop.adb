@@ -16,7 +16,7 @@ is
 
    procedure Execute (Item : Row) is
    begin
-      Trace.Note
+      Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
          Elements.Servo_Loop_Processor
          + 1
@@ -34,8 +34,8 @@ is
 
    procedure On_Deadline_Miss is
    begin
-      Health_Counts.Record_Fault (Ravenchart.Health.Deadline_Miss);
-      Trace.Note
+      Health_Counts.Counters.Record_Fault (Ravenchart.Health.Deadline_Miss);
+      Trace.Buffer.Note
         (Ravenchart.Traces.Fault,
          Elements.Servo_Loop_Processor,
          Ravenchart.Health.Fault_Kind'Pos (Ravenchart.Health.Deadline_Miss));

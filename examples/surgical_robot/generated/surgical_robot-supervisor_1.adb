@@ -59,14 +59,14 @@ is
          Fired);
       if Fired /= Supervisor.Task_Of_Arm.None then
          if Fired in Supervisor.Task_Of_Arm.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Supervisor_1_Task_Of_Arm,
                Supervisor.Task_Of_Arm.Selection'Pos (Fired)
                - Supervisor.Task_Of_Arm.Selection'Pos
                    (Supervisor.Task_Of_Arm.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Supervisor_1_Task_Of_Arm,
             Supervisor.Task_Of_Arm_States.Leaf'Pos (Task_Of_Arm_Region.Leaf));

@@ -5,6 +5,10 @@
 with Ravenchart.Trace_Buffers;
 with System;
 
-package Surgical_Robot.Trace is new Ravenchart.Trace_Buffers
-  (Capacity => 4_096,
-   Ceiling => System.Default_Priority + 2);
+package Surgical_Robot.Trace
+with SPARK_Mode
+is
+   package Buffer is new Ravenchart.Trace_Buffers
+     (Capacity => 4_096,
+      Ceiling => System.Default_Priority + 2);
+end Surgical_Robot.Trace;

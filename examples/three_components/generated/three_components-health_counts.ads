@@ -5,5 +5,9 @@
 with Ravenchart.Health_Counters;
 with System;
 
-package Three_Components.Health_Counts is new Ravenchart.Health_Counters
-  (Ceiling => System.Default_Priority + 3);
+package Three_Components.Health_Counts
+with SPARK_Mode
+is
+   package Counters is new Ravenchart.Health_Counters
+     (Ceiling => System.Default_Priority + 3);
+end Three_Components.Health_Counts;

@@ -68,10 +68,14 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.One_Token_In, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Arrived,
+         Elements.One_Token_In,
+         0);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.One_Token_In,
             Ravenchart.Health.Fault_Kind'Pos
@@ -87,9 +91,9 @@ is
          when Starter.Token_Came =>
             Starting_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.One_Starting,
                   Ravenchart.Health.Fault_Kind'Pos
@@ -97,15 +101,15 @@ is
             end if;
             Watching_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.One_Watching,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.One_Token_Came,
                0);
@@ -114,7 +118,7 @@ is
 
    procedure Send_Token_Out (Item : Three_Components.Token) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.One_Token_Out, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.One_Token_Out, 0);
       Two.Put_Token_In (Item);
    end Send_Token_Out;
 
@@ -136,14 +140,15 @@ is
          when Starter.Token_In_Port.Nothing =>
             null;
          when Starter.Token_In_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.One_Token_In,
                0);
             Offer (Starter.Token_Came);
          when Starter.Token_In_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.One_Token_In,
                Ravenchart.Health.Fault_Kind'Pos
@@ -171,14 +176,14 @@ is
       Starter.Starting.Step (Starting_Region, Now, Ins, Box, Fired);
       if Fired /= Starter.Starting.None then
          if Fired in Starter.Starting.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.One_Starting,
                Starter.Starting.Selection'Pos (Fired)
                - Starter.Starting.Selection'Pos
                    (Starter.Starting.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.One_Starting,
             Starter.Starting_States.Leaf'Pos (Starting_Region.Leaf));
@@ -216,14 +221,14 @@ is
       Starter.Watching.Step (Watching_Region, Now, Fired);
       if Fired /= Starter.Watching.None then
          if Fired in Starter.Watching.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.One_Watching,
                Starter.Watching.Selection'Pos (Fired)
                - Starter.Watching.Selection'Pos
                    (Starter.Watching.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.One_Watching,
             Starter.Watching_States.Leaf'Pos (Watching_Region.Leaf));

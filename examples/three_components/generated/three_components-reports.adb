@@ -22,7 +22,7 @@ is
       Status : Ravenchart.Queueing.Take_Status;
    begin
       loop
-         Trace.Take (Item, Status);
+         Trace.Buffer.Take (Item, Status);
          if Status = Ravenchart.Queueing.Empty then
             exit;
          end if;
@@ -94,11 +94,11 @@ is
       Report_Processor_1;
       Report_Processor_2;
       Report_Processor_3;
-      Health_Counts.Read (Faults);
+      Health_Counts.Counters.Read (Faults);
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;
-      Lost := Trace.Lost;
+      Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
    end Put_All;
 end Three_Components.Reports;

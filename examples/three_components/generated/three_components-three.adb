@@ -77,10 +77,14 @@ is
       use type Ravenchart.Queueing.Put_Status;
    begin
       Token_In_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Three_Token_In, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Arrived,
+         Elements.Three_Token_In,
+         0);
       if Status /= Ravenchart.Queueing.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Three_Token_In,
             Ravenchart.Health.Fault_Kind'Pos
@@ -96,9 +100,9 @@ is
          when Station.Token_Came =>
             Handling_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Three_Handling,
                   Ravenchart.Health.Fault_Kind'Pos
@@ -106,36 +110,42 @@ is
             end if;
             Watching_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Three_Watching,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Three_Token_Came,
                0);
          when Station.Worked =>
             Handling_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Three_Handling,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Three_Worked, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Three_Worked,
+               0);
       end case;
    end Offer;
 
    procedure Send_Token_Out (Item : Three_Components.Token) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Three_Token_Out, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Three_Token_Out,
+         0);
       One.Put_Token_In (Item);
    end Send_Token_Out;
 
@@ -158,14 +168,14 @@ is
       Station.Watching.Step (Watching_Region, Now, Fired);
       if Fired /= Station.Watching.None then
          if Fired in Station.Watching.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Three_Watching,
                Station.Watching.Selection'Pos (Fired)
                - Station.Watching.Selection'Pos
                    (Station.Watching.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Three_Watching,
             Station.Watching_States.Leaf'Pos (Watching_Region.Leaf));
@@ -197,14 +207,15 @@ is
          when Station.Token_In_Port.Nothing =>
             null;
          when Station.Token_In_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Three_Token_In,
                0);
             Offer (Station.Token_Came);
          when Station.Token_In_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Three_Token_In,
                Ravenchart.Health.Fault_Kind'Pos
@@ -232,14 +243,14 @@ is
       Station.Handling.Step (Handling_Region, Now, Ins, Box, Fired);
       if Fired /= Station.Handling.None then
          if Fired in Station.Handling.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Three_Handling,
                Station.Handling.Selection'Pos (Fired)
                - Station.Handling.Selection'Pos
                    (Station.Handling.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Three_Handling,
             Station.Handling_States.Leaf'Pos (Handling_Region.Leaf));

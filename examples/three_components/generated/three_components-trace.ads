@@ -5,6 +5,10 @@
 with Ravenchart.Trace_Buffers;
 with System;
 
-package Three_Components.Trace is new Ravenchart.Trace_Buffers
-  (Capacity => 1_024,
-   Ceiling => System.Default_Priority + 3);
+package Three_Components.Trace
+with SPARK_Mode
+is
+   package Buffer is new Ravenchart.Trace_Buffers
+     (Capacity => 1_024,
+      Ceiling => System.Default_Priority + 3);
+end Three_Components.Trace;

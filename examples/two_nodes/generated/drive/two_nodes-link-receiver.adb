@@ -39,7 +39,7 @@ is
             and then Frame.Kind = Ravenchart.Can.Data
             and then Frame.Length = 3
          then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Supervisor_Order_Message,
                0);

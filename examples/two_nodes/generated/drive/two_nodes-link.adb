@@ -28,10 +28,14 @@ is
             Length => 3,
             Payload => Codecs.Pack_Servo_Report (Item)),
          Status);
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Servo_Report_Message, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Servo_Report_Message,
+         0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Servo_Report_Message,
             Ravenchart.Health.Fault_Kind'Pos

@@ -65,7 +65,10 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Order_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Servo_Order, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Arrived,
+         Elements.Servo_Order,
+         0);
    end Put_Order;
 
    procedure Offer (Item : Linear_Servo.Event) is
@@ -76,27 +79,30 @@ is
          when Linear_Servo.Told =>
             Drive_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Servo_Drive,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note (Ravenchart.Traces.Raised, Elements.Servo_Told, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Servo_Told,
+               0);
          when Linear_Servo.Nobody_Tells =>
             Drive_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Servo_Drive,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Servo_Nobody_Tells,
                0);
@@ -105,7 +111,7 @@ is
 
    procedure Send_Report (Item : Two_Nodes.Servo_Report) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Servo_Report, 0);
+      Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Servo_Report, 0);
       Link.Send_Servo_Report (Item);
    end Send_Report;
 
@@ -127,11 +133,15 @@ is
          when Linear_Servo.Order_Port.Nothing =>
             null;
          when Linear_Servo.Order_Port.Arrival =>
-            Trace.Note (Ravenchart.Traces.Handled, Elements.Servo_Order, 0);
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Handled,
+               Elements.Servo_Order,
+               0);
             Offer (Linear_Servo.Told);
          when Linear_Servo.Order_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Servo_Order,
                Ravenchart.Health.Fault_Kind'Pos
@@ -159,14 +169,14 @@ is
       Linear_Servo.Drive.Step (Drive_Region, Now, Ins, Fired);
       if Fired /= Linear_Servo.Drive.None then
          if Fired in Linear_Servo.Drive.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Servo_Drive,
                Linear_Servo.Drive.Selection'Pos (Fired)
                - Linear_Servo.Drive.Selection'Pos
                    (Linear_Servo.Drive.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Servo_Drive,
             Linear_Servo.Drive_States.Leaf'Pos (Drive_Region.Leaf));

@@ -28,13 +28,14 @@ is
             Length => 3,
             Payload => Codecs.Pack_Servo_Order (Item)),
          Status);
-      Trace.Note
+      Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Supervisor_Order_Message,
          0);
       if Status /= Ravenchart.Can.Queued then
-         Health_Counts.Record_Fault (Ravenchart.Health.Queue_Overflow);
-         Trace.Note
+         Health_Counts.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+         Trace.Buffer.Note
            (Ravenchart.Traces.Fault,
             Elements.Supervisor_Order_Message,
             Ravenchart.Health.Fault_Kind'Pos

@@ -29,7 +29,7 @@ is
       Status : Ravenchart.Queueing.Take_Status;
    begin
       loop
-         Trace.Take (Item, Status);
+         Trace.Buffer.Take (Item, Status);
          if Status = Ravenchart.Queueing.Empty then
             exit;
          end if;
@@ -83,11 +83,11 @@ is
    begin
       Report_Reception_Panel;
       Report_Supervision;
-      Health_Counts.Read (Faults);
+      Health_Counts.Counters.Read (Faults);
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;
-      Lost := Trace.Lost;
+      Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
       Link.Controller.Read_Counters (Link_Counters);
       Ravenchart.Hosts.Put_Lost ("link.lost_out", Link_Counters.Lost_Out);
@@ -95,7 +95,7 @@ is
       Ravenchart.Hosts.Put_Lost
         ("link.rejected_lines",
          Link_Counters.Rejected_Lines);
-      Host_Probe.Read (Late);
+      Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);
    end Put_All;
 end Two_Nodes.Reports;

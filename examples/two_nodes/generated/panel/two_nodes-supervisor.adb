@@ -62,7 +62,10 @@ is
       Status : Ravenchart.Queueing.Put_Status;
    begin
       Report_Mailbox.Put (Item, Status);
-      Trace.Note (Ravenchart.Traces.Arrived, Elements.Supervisor_Report, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Arrived,
+         Elements.Supervisor_Report,
+         0);
    end Put_Report;
 
    procedure Offer (Item : Traveller.Event) is
@@ -73,15 +76,15 @@ is
          when Traveller.Servo_Lost =>
             Mission_Queue.Put (Item, Status);
             if Status /= Ravenchart.Queueing.Queued then
-               Health_Counts.Record_Fault
+               Health_Counts.Counters.Record_Fault
                  (Ravenchart.Health.Queue_Overflow);
-               Trace.Note
+               Trace.Buffer.Note
                  (Ravenchart.Traces.Fault,
                   Elements.Supervisor_Mission,
                   Ravenchart.Health.Fault_Kind'Pos
                     (Ravenchart.Health.Queue_Overflow));
             end if;
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.Supervisor_Servo_Lost,
                0);
@@ -90,7 +93,10 @@ is
 
    procedure Send_Order (Item : Two_Nodes.Servo_Order) is
    begin
-      Trace.Note (Ravenchart.Traces.Sent, Elements.Supervisor_Order, 0);
+      Trace.Buffer.Note
+        (Ravenchart.Traces.Sent,
+         Elements.Supervisor_Order,
+         0);
       Link.Send_Supervisor_Order (Item);
    end Send_Order;
 
@@ -112,13 +118,14 @@ is
          when Traveller.Report_Port.Nothing =>
             null;
          when Traveller.Report_Port.Arrival =>
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Handled,
                Elements.Supervisor_Report,
                0);
          when Traveller.Report_Port.Became_Stale =>
-            Health_Counts.Record_Fault (Ravenchart.Health.Stale_Input);
-            Trace.Note
+            Health_Counts.Counters.Record_Fault
+              (Ravenchart.Health.Stale_Input);
+            Trace.Buffer.Note
               (Ravenchart.Traces.Fault,
                Elements.Supervisor_Report,
                Ravenchart.Health.Fault_Kind'Pos
@@ -146,14 +153,14 @@ is
       Traveller.Mission.Step (Mission_Region, Now, Ins, Fired);
       if Fired /= Traveller.Mission.None then
          if Fired in Traveller.Mission.Transition then
-            Trace.Note
+            Trace.Buffer.Note
               (Ravenchart.Traces.Transition,
                Elements.Supervisor_Mission,
                Traveller.Mission.Selection'Pos (Fired)
                - Traveller.Mission.Selection'Pos
                    (Traveller.Mission.Transition'First));
          end if;
-         Trace.Note
+         Trace.Buffer.Note
            (Ravenchart.Traces.State,
             Elements.Supervisor_Mission,
             Traveller.Mission_States.Leaf'Pos (Mission_Region.Leaf));
