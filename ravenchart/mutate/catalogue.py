@@ -28,7 +28,7 @@ def _region_spec(name: str, text: str) -> bool:
 
 
 def _ceilings(name: str, text: str) -> bool:
-    return name.endswith(".adb") and "Ceiling => System" in text
+    return name.endswith((".ads", ".adb")) and "Ceiling => System" in text
 
 
 def _processor(name: str, text: str) -> bool:
