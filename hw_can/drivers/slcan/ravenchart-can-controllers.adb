@@ -357,11 +357,13 @@ is
       --  A client that came before the processors run would find nobody
       --  to take its frames.
       Tcp_Sockets.Ask_For_Device (Serial);
-      while not Serial loop
-         Tcp_Sockets.Open_Server (Server);
-         exit when Server /= Tcp_Sockets.No_Socket;
-         Pause (Milliseconds => 1_000);
-      end loop;
+      if not Serial then
+         loop
+            Tcp_Sockets.Open_Server (Server);
+            exit when Server /= Tcp_Sockets.No_Socket;
+            Pause (Milliseconds => 1_000);
+         end loop;
+      end if;
       loop
          if Serial then
             Tcp_Sockets.Open_Device (Client);
