@@ -205,7 +205,7 @@ def test_frames_take_part_and_their_senders_responses_are_their_jitter() -> None
 def test_frames_of_the_node_share_a_queue() -> None:
     found = analyse(system_of())
     queues = {frame.name: frame.queue for frame in found.network.frames["can_bus"]}
-    assert queues == {"can_bus.level_in": "", "can_bus.valve_out": "can_bus.transmit"}
+    assert queues == {"can_bus.level_in": "", "can_bus.valve_out": "board.can_bus"}
 
 
 def test_errors_of_a_bus_delay_its_frames_and_load_it() -> None:

@@ -21,7 +21,8 @@ def _files(name: str) -> dict[str, str]:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_generated_files_are_those_in_the_repository(name: str) -> None:
     folder = ROOT / "examples" / name / "generated"
-    there = {p.name: p.read_text() for p in folder.iterdir() if p.name != steps.MANIFEST}
+    files = [p for p in folder.rglob("*") if p.is_file() and p.name != steps.MANIFEST]
+    there = {p.relative_to(folder).as_posix(): p.read_text() for p in files}
     assert _files(name) == there
 
 
