@@ -62,7 +62,8 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
       say "pip failed (above); is the package index reachable?" >&2
       exit 2
    fi
-   # The entry points of pyproject.toml, by which python-can finds the bus backend.
+   # The checkout itself goes on the path, nothing of it is copied; with the entry
+   # points of pyproject.toml, by which python-can finds the bus backend.
    if ! .venv/bin/python -m pip install --quiet --disable-pip-version-check \
         --no-deps --no-build-isolation --editable .
    then
@@ -70,9 +71,6 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
       say "pip failed (above) on this checkout" >&2
       exit 2
    fi
-   # The checkout itself goes on the path; nothing of it is copied.
-   site=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
-   pwd > "$site/ravenchart-checkout.pth"
    printf '#!/bin/sh\nexec "%s/.venv/bin/python" -m ravenchart "$@"\n' "$(pwd)" > .venv/bin/ravenchart
    chmod +x .venv/bin/ravenchart
    printf '%s' "$wanted" > "$stamp"
