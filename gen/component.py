@@ -200,6 +200,10 @@ class Component:
         """The regions and activities that send on a port."""
         return tuple(item for item in self.runnables() if port in item.sends)
 
+    def send_period(self, port: str) -> Ns | None:
+        """The shortest time between two sendings on a port; None where nothing sends on it."""
+        return min((one.timing.period for one in self.senders(port)), default=None)
+
     def completing(self, region: str) -> tuple[tuple[Activity, str], ...]:
         """The do activities that complete a state of a region, each with that state."""
         all_of_them = ((a, a.completes) for a in self.activities)

@@ -271,14 +271,13 @@ def _message_period(
     parts = None if instance is None else site.parts.find(instance.component.name)
     if instance is None or parts is None:
         return None
-    senders = instance.component.runnables()
-    periods = [s.timing.period for s in senders if source[1].name in s.sends]
-    if not periods and not parts.is_damaged:
+    period = instance.component.send_period(source[1].name)
+    if period is None and not parts.is_damaged:
         message = f"the message {name} has no period: nothing sends on {source[0]}"
         notes = [(source[1].origin, f"`{source[1].name}` is declared here")]
         hint = "send on the port by an activity (`sends:`) or in a flow (`send:`)"
         findings.error("RV-0609", form.at("from"), message, notes=notes, hint=hint)
-    return min(periods, default=None)
+    return period
 
 
 # --- Processors --------------------------------------------------------------------

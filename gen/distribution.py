@@ -62,8 +62,8 @@ class Carrier:
         end = connection.source
         component = self.instances[end.instance].component
         name, type_ = f"{end.instance}_{end.port}", component.port(end.port).type
-        periods = [row.timing.period for row in component.senders(end.port)]
-        if self.bus is None or not periods or problem_of(name) is not None:
+        period = component.send_period(end.port)
+        if self.bus is None or period is None or problem_of(name) is not None:
             return None
         signals = signals_of(type_)
         return Message(
@@ -77,7 +77,7 @@ class Carrier:
             length=length_of(signals),
             source=end,
             targets=(connection.target,),
-            period=min(periods),
+            period=period,
         )
 
 

@@ -415,9 +415,10 @@ class System:
 
     def reception(self, message: Message, place: str) -> Reception | None:
         """That of the node of a target port, ``instance.port``; of any other place, the first."""
-        found = {one.node: one for one in reversed(self.receptions(message))}
-        at = next((self.home(end) for end in message.targets if str(end) == place), None)
-        return found.get(at) if at is not None else next(reversed(found.values()), None)
+        found = self.receptions(message)
+        homes = (self.home(end) for end in message.targets if str(end) == place)
+        at = next(homes, found[0].node if found else None)
+        return next((one for one in found if one.node == at), None)
 
     def home(self, end: End) -> str:
         """The node of an end's instance."""
