@@ -35,29 +35,39 @@ class Echo:
     ORDER = 0x7F0
     BURST = 0x102
 
-    def __init__(self, program: Path, environment: dict[str, str]) -> None:
-        """Start it; ``environment`` tells the driver where its bus is."""
+    def __init__(self, program: Path, environment: dict[str, str], number: int = 0) -> None:
+        """Start it under its ``number``; ``environment`` tells the driver where its bus is."""
         self._process = subprocess.Popen(
-            [program, "0"],
+            [program, str(number)],
             env={**os.environ, **environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
         )
-        self.now = Standing()
-        """How it stands, as it said last."""
+        self.standings = [Standing()]
+        """How it stood, each time it said so."""
         self.said: list[str] = []
         """Other lines of its output, and its errors."""
         for stream in (self._process.stdout, self._process.stderr):
             assert stream is not None
             threading.Thread(target=self._read, args=(stream,), daemon=True).start()
 
+    @property
+    def now(self) -> Standing:
+        """How it stands, as it said last."""
+        return self.standings[-1]
+
+    @property
+    def is_running(self) -> bool:
+        """Whether its process has not ended."""
+        return self._process.poll() is None
+
     def came(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Wait until ``condition`` holds, not longer than ``seconds``; whether it does."""
         end = time.monotonic() + seconds
         while not (held := condition()) and time.monotonic() < end:
-            if self._process.poll() is not None:
+            if not self.is_running:
                 return False
             time.sleep(0.005)
         return held
@@ -72,6 +82,6 @@ class Echo:
             state, _, counts = line.replace("= ", "=").strip().partition(" ")
             if "sent=" in counts:
                 pairs = (pair.split("=") for pair in counts.split())
-                self.now = Standing(state, **{name: int(count) for name, count in pairs})
+                self.standings.append(Standing(state, **{k: int(v) for k, v in pairs}))
             else:
                 self.said.append(line.strip())
