@@ -31,7 +31,7 @@ from . import (
     simulate,
     steps,
 )
-from .run import Controller, RunRequest, run_model
+from .run import RunRequest, controller, run_model
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
 
@@ -271,10 +271,8 @@ def _run(options: argparse.Namespace) -> int:
     _written(steps.write_program(checked))
     controllers = []
     for made in steps.programs_of(checked):
-        executable = made.build()
-        print(f"built {executable}")
-        trace_json = made.generated / "trace.json"
-        controllers.append(Controller(made.node, executable, trace_json))
+        controllers.append(controller(made))
+        print(f"built {controllers[-1].executable}")
     home = steps.build_home(checked, steps.default_driver(checked))
     folder = options.report or home / "report"
     request = RunRequest(

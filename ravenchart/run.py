@@ -31,6 +31,7 @@ from . import bus
 from .demo import judge, plots, result, summary
 from .demo.process import ControllerProcess, Ended, StartError, separate_cores
 from .demo.result import RunResult
+from .steps import Program
 
 DEFAULT_GRACE = 1.0
 """Grace of a controller whose model is not at hand, in s."""
@@ -45,6 +46,11 @@ class Controller:
     node: str
     executable: Path
     trace_json: Path
+
+
+def controller(made: Program) -> Controller:
+    """A program built, to be run. ToolFailed with the compiler's words."""
+    return Controller(made.node, made.build(), made.generated / "trace.json")
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,16 +62,11 @@ class ControllerProcess:
 
         ``environment`` is what it is told besides: by whom the bus is reached.
         """
-        environment = {
-            **os.environ,
-            "RAVENCHART_CAN_PORT": "0",
-            "RAVENCHART_TRACE": str(trace),
-            **environment,
-        }
+        told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         try:
             self._process = subprocess.Popen(
                 [executable.absolute()],
-                env=environment,
+                env={**os.environ, **told},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,

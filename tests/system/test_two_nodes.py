@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from ravenchart import simulate, steps
-from ravenchart.run import Controller, RunRequest, run_model
+from ravenchart.run import RunRequest, controller, run_model
 from ravenchart.toolchain import ROOT
 
 EXAMPLE = ROOT / "examples" / "two_nodes"
@@ -40,10 +40,7 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> steps.Checked:
 def test_both_nodes_do_what_the_scenario_expects(
     checked: steps.Checked, tmp_path: Path, scenario: str, *, chains: bool
 ) -> None:
-    controllers = tuple(
-        Controller(made.node, made.build(), made.generated / "trace.json")
-        for made in steps.programs_of(checked)
-    )
+    controllers = tuple(controller(made) for made in steps.programs_of(checked))
     shown = io.StringIO()
     request = RunRequest(
         checked.analysis,

@@ -2,55 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from analysis.claims import claims_of
 from analysis.timing import analyse
 from gen.derive import on_one_node, programs
-from gen.diagnostics import render
 from gen.generate import generate
-from gen.load import Loaded, load, read_file
 from gen.model import System
-from ravenchart.toolchain import ROOT
-
-MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
-BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"
-RECEPTION = (
-    "  reception: {released_by: link, period: 1 ms, stack: 32 KiB, activities: [link.receive]}\n"
-)
-TOGETHER = ("component: Linear_Servo, node: drive", "component: Linear_Servo, node: panel")
-
-
-def loaded(*replacements: tuple[str, str]) -> Loaded:
-    """The example with text replaced in its main file; each must be there once."""
-
-    def read(path: Path, most: int) -> bytes:
-        text = read_file(path, most).decode()
-        if path.name == MODEL.name:
-            for old, new in replacements:
-                assert text.count(old) == 1, old
-                text = text.replace(old, new)
-        return text.encode()
-
-    return load(MODEL, read)
-
-
-def system_of(*replacements: tuple[str, str]) -> System:
-    found = loaded(*replacements)
-    assert found.system is not None, _said(found)
-    return found.system
-
-
-def _said(found: Loaded) -> str:
-    return "\n".join(render(one, found.sources) for one in found.diagnostics)
+from tests.support.two_nodes import BUS, RECEPTION, TOGETHER, loaded, said, system_of
 
 
 def refusal(*replacements: tuple[str, str]) -> str:
     found = loaded(*replacements)
     assert found.system is None
-    return _said(found)
+    return said(found)
 
 
 def test_a_connection_between_nodes_is_a_message_with_the_period_of_its_sender() -> None:

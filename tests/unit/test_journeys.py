@@ -9,7 +9,7 @@ from analysis.observed import Observation, read_map, read_trace, together
 from analysis.timing import Analysis, analyse
 from gen.derive import programs
 from gen.trace import trace_json
-from tests.unit.test_distribution import system_of
+from tests.support.two_nodes import system_of
 
 MS = 1_000_000
 

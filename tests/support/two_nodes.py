@@ -1,0 +1,43 @@
+"""The example of two nodes, with text of its model replaced."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from gen.diagnostics import render
+from gen.load import Loaded, load, read_file
+from gen.model import System
+from ravenchart.toolchain import ROOT
+
+MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
+BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"
+RECEPTION = (
+    "  reception: {released_by: link, period: 1 ms, stack: 32 KiB, activities: [link.receive]}\n"
+)
+TOGETHER = ("component: Linear_Servo, node: drive", "component: Linear_Servo, node: panel")
+
+
+def loaded(*replacements: tuple[str, str]) -> Loaded:
+    """The example with text replaced in its main file; each must be there once."""
+
+    def read(path: Path, most: int) -> bytes:
+        text = read_file(path, most).decode()
+        if path.name == MODEL.name:
+            for old, new in replacements:
+                assert text.count(old) == 1, old
+                text = text.replace(old, new)
+        return text.encode()
+
+    return load(MODEL, read)
+
+
+def system_of(*replacements: tuple[str, str]) -> System:
+    """Its `System`, which must be there."""
+    found = loaded(*replacements)
+    assert found.system is not None, said(found)
+    return found.system
+
+
+def said(found: Loaded) -> str:
+    """Its diagnostics, as they are printed."""
+    return "\n".join(render(one, found.sources) for one in found.diagnostics)
