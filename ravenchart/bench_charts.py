@@ -25,7 +25,7 @@ CROSS_SWITCHES = (
     *("-O2", "-gnatp", "-fno-tree-switch-conversion", "-freorder-blocks-algorithm=simple"),
     *("-gnat2012", "-mthumb"),
 )
-"""Those of the release mode in ravenchart.gpr."""
+"""Those of the release mode in ravenchart.gpr, and the language of switches.gpr."""
 REGION = "chart_bench-unit-motion"
 _LINE = re.compile(r"(.*): generated +([\d.]+) ns, hand-written +([\d.]+) ns")
 

@@ -2,7 +2,8 @@
 
 check: generated/ is what the models give, and every Ada unit compiles without
 a warning, with contracts executed and without. prove: gnatprove on the runtime
-and the HAL with each driver, on the bus server and on the examples, and the records of it.
+and the HAL with each driver, on the bus server, on the compiled part of the analysis and on
+the examples, and the records of it.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ DRIVER_FOLDERS = {
 """What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
 DRIVERS = tuple(DRIVER_FOLDERS)
 BUS = "bus"
+KERNEL = "analysis-kernel"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +56,14 @@ class Target:
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
-    """Runtime with each driver, bus server, examples; only those named, where some are."""
+    """Runtime with each driver, bus server, analysis, examples; only those named, if some are."""
     for driver in DRIVERS:
         if not names or f"runtime-{driver}" in names:
             yield _runtime(driver)
     if not names or BUS in names:
         yield _bus()
+    if not names or KERNEL in names:
+        yield _kernel()
     for example in EXAMPLES:
         if not names or example in names:
             yield from _example(example)
@@ -82,6 +86,12 @@ def _bus() -> Target:
         (folder, ROOT / "hw_can" / "protocol"),
         whole=True,
     )
+
+
+def _kernel() -> Target:
+    folder = ROOT / "analysis" / "kernel"
+    results = (ROOT / "obj" / "kernel" / "objects" / "gnatprove",)
+    return Target(KERNEL, folder / "kernel.gpr", {}, results, (folder,), whole=True)
 
 
 def _runtime(driver: str) -> Target:

@@ -76,6 +76,12 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
    printf '%s' "$wanted" > "$stamp"
 fi
 
+# The compiled part of the analysis; nothing happens when it is up to date.
+if ! gprbuild -p -q -P analysis/kernel/kernel.gpr; then
+   say "analysis/kernel cannot be compiled (above)" >&2
+   exit 2
+fi
+
 if [ "${1:-}" = guest ] && [ -z "$(ls build/guest/boot/vmlinuz-* 2>/dev/null)" ]; then
    kernel=$(apt-cache depends linux-image-amd64 2>/dev/null |
       sed -n 's/^ *Depends: \(linux-image-[0-9].*\)$/\1/p' | head -n 1)

@@ -22,10 +22,10 @@ from fractions import Fraction
 from itertools import groupby
 from operator import attrgetter
 
-from .batch import WORTH_IT, busy_periods
 from .blocking import Section, blockers
 from .busy_period import Contender, response
 from .checks import distinct
+from .kernel import WORTH_IT, busy_periods
 from .platform import Platform
 from .responses import Level, Reason, Response, jitter_of, release_time, switch_time
 from .tasks import Task
@@ -95,22 +95,23 @@ def _cores(tasks: Sequence[Task]) -> dict[str, tuple[Task, ...]]:
 def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Platform) -> list[int]:
     """The bounds of plain tasks whose first job ends the busy period, 0 for others.
 
-    Nothing where arrays are of no use: for few tasks, or overheads that are no task's.
+    Nothing where the library is of no use: for few tasks, or overheads that are no task's.
     """
     if len(order) < WORTH_IT or platform.release or platform.tick_cost:
         return []
     for task in order:
         if task.jitter or task.rows or task.timed:
             return []
-    periods = [task.period for task in order]
+    costs = [task.cost for task in order]
+    if platform.context_switch:
+        costs = [task.cost + switch_time(task, platform) for task in order]
+    blocked = [0] * len(order)
+    if held:
+        blocked = [held[task.name].length if task.name in held else 0 for task in order]
     last = {task.priority: number for number, task in enumerate(order)}
-    lengths = busy_periods(
-        periods,
-        [task.cost + switch_time(task, platform) for task in order],
-        [last[task.priority] for task in order],
-        [held[task.name].length if task.name in held else 0 for task in order],
+    return busy_periods(
+        [task.period for task in order], costs, [last[task.priority] for task in order], blocked
     )
-    return [w if w <= period else 0 for w, period in zip(lengths, periods, strict=True)]
 
 
 def response_under(

@@ -67,7 +67,8 @@ class Workbench:
     def _copy(self, checked: steps.Checked, files: Mapping[str, str]) -> None:
         for name in ("spark_runtime", "hw_can"):
             shutil.copytree(ROOT / name, self.folder / name, dirs_exist_ok=True)
-        shutil.copy(ROOT / "ravenchart.gpr", self.folder)
+        for name in ("ravenchart.gpr", "switches.gpr"):
+            shutil.copy(ROOT / name, self.folder)
         self.source.mkdir(parents=True, exist_ok=True)
         if user_units(checked.system):
             user = self.source.parent / "user"

@@ -24,7 +24,8 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of what the three components' program is built from."""
     for name in ("spark_runtime", "hw_can"):
         shutil.copytree(ROOT / name, tmp_path / name)
-    shutil.copy(ROOT / "ravenchart.gpr", tmp_path)
+    for name in ("ravenchart.gpr", "switches.gpr"):
+        shutil.copy(ROOT / name, tmp_path)
     shutil.copytree(ROOT / "examples" / "three_components", tmp_path / "three")
     monkeypatch.setattr(toolchain, "ROOT", tmp_path)
     return tmp_path

@@ -13,6 +13,7 @@ from ravenchart.toolchain import ROOT
 NAMES = (
     *(f"runtime-{driver}" for driver in house.DRIVERS),
     house.BUS,
+    house.KERNEL,
     *(name for example in house.EXAMPLES for name in house.record_names(example)),
 )
 

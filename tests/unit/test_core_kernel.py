@@ -1,16 +1,17 @@
-"""The arrays give what the integers give: small sets one after another, large ones at random."""
+"""The library gives what the integers give: small sets one after another, large ones at random."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
 from itertools import product
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.core import batch, fixed_priority
+from analysis.core import fixed_priority, kernel
 from analysis.core.blocking import Section
 from analysis.core.fixed_priority import analyse, bounds
 from analysis.core.platform import Platform
@@ -23,7 +24,7 @@ NEVER = 10**9
 def found(
     tasks: Sequence[Task], sections: Sequence[Section], platform: Platform, worth_it: int
 ) -> tuple[Response, ...]:
-    """The responses where arrays are taken from so many tasks on."""
+    """The responses where the library is asked from so many tasks on."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fixed_priority, "WORTH_IT", worth_it)
         responses = analyse(tasks, sections, {"": platform})
@@ -82,10 +83,48 @@ def test_large_sets_agree(drawn: tuple[list[Task], list[Section], Platform]) -> 
     compare(*drawn)
 
 
-def test_more_tasks_than_a_block_holds_and_levels_across_its_edge() -> None:
-    count = 3 * batch.NARROWEST + 60
-    tasks = [Task(f"t{n}", -(n // 7), 10_000 + 61 * n, 10**6, 40) for n in range(count)]
+def test_the_library_is_built_and_asked() -> None:
+    assert kernel.busy_periods([4, 9], [1, 2], [0, 1], [0, 3]) == [1, 7]
+    assert kernel.busy_periods([4, 9], [1, 7], [0, 1], [0, 0]) == [1, 0]
+
+
+def test_where_it_is_not_built_the_integers_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    tasks = [Task(f"t{n}", 50 - n, 1_000 + n, 1_000, 10) for n in range(40)]
+    before = bounds(tasks)
+    monkeypatch.setattr(kernel, "LIBRARY", Path("/nowhere/libbusy_periods.so"))
+    kernel.library.cache_clear()
+    try:
+        assert kernel.busy_periods([4, 9], [1, 2], [0, 1], [0, 3]) == []
+        assert bounds(tasks) == before
+    finally:
+        kernel.library.cache_clear()
+
+
+def test_as_many_tasks_as_there_is_room_for_and_one_more() -> None:
+    for count in (kernel.MOST_TASKS, kernel.MOST_TASKS + 1):
+        fits = count <= kernel.MOST_TASKS
+        expected = [2 * n for n in range(1, count + 1)] if fits else []
+        given = [10**9] * count, [2] * count, list(range(count)), [0] * count
+        assert kernel.busy_periods(*given) == expected
+
+
+def test_levels_that_many_tasks_share() -> None:
+    tasks = [Task(f"t{n}", -(n // 7), 10_000 + 61 * n, 10**6, 40) for n in range(210)]
     compare(tasks, [Section("o", "t150", 39), Section("o", "t3", 1)])
+
+
+def test_any_levels_are_answered() -> None:
+    """The proof does not ask for levels that fit together."""
+    rng = random.Random(7)
+    for _ in range(300):
+        count = rng.randint(2, 9)
+        periods = [rng.randint(1, 40) for _ in range(count)]
+        costs = [rng.randint(1, period) for period in periods]
+        last = [rng.randint(n, count - 1) for n in range(count)]
+        blocked = [rng.randint(0, 9) for _ in range(count)]
+        for n, w in enumerate(kernel.busy_periods(periods, costs, last, blocked)):
+            level = range(last[n] + 1)
+            assert w == 0 or blocked[n] + sum(-(-w // periods[j]) * costs[j] for j in level) <= w
 
 
 def test_full_to_the_brim_and_a_tick_more() -> None:
@@ -95,7 +134,7 @@ def test_full_to_the_brim_and_a_tick_more() -> None:
     compare([*tasks, Task("more", 0, 10**12, 10**12, 1)])
 
 
-def test_what_doubles_cannot_hold_is_left_to_integers() -> None:
+def test_what_the_library_cannot_hold_is_left_to_integers() -> None:
     huge = 1 << 70
     tasks = [Task(f"t{n}", 50 - n, huge + n, huge, huge // 64) for n in range(40)]
     compare(tasks)
@@ -105,13 +144,13 @@ def test_what_doubles_cannot_hold_is_left_to_integers() -> None:
 
 
 def test_counts_are_exact_next_to_whole_numbers() -> None:
-    """One tick to either side of a release, with quotients that a double cannot tell apart."""
+    """One tick to either side of a release."""
     for period in (3, 7, 10**6 + 3, (1 << 40) - 1):
-        for times in (1, 2, batch.LIMIT // period // 2):
+        for times in (1, 2, kernel.LIMIT // period // 2):
             for away in (-1, 0, 1):
                 first = period * times + away
                 if first > 0:
-                    tasks = [Task("a", 2, batch.LIMIT - 1, 1, first), Task("b", 1, period, 1, 1)]
+                    tasks = [Task("a", 2, kernel.LIMIT - 1, 1, first), Task("b", 1, period, 1, 1)]
                     compare(tasks)
 
 
