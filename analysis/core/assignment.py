@@ -17,9 +17,10 @@ from typing import TypeVar
 from . import can
 from .blocking import Section
 from .bus import Bus, Frame
-from .can_response import FrameResponse
+from .can_response import FrameLevel, FrameResponse
 from .fixed_priority import NO_OVERHEAD, response_under
 from .platform import Platform
+from .responses import Reason
 from .tasks import Task
 
 Item = TypeVar("Item", Task, Frame)
@@ -108,6 +109,10 @@ def responses_in_place(
     def response(frame: Frame, above: Sequence[Frame], below: Sequence[Frame]) -> FrameResponse:
         if frame.queue:
             above, below = (*above, *below), ()
+        for other in above:
+            if other.queue != frame.queue and delays.get(other.name, 0) is None:
+                level = FrameLevel((*above, frame, *below), len(above) + 1, bus, known)
+                return FrameResponse(frame, level, None, reason=Reason.RIVAL)
         return can.response_under(frame, above, below, bus, known)
 
     return response

@@ -141,7 +141,11 @@ def _busiest(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> int | None:
         window.add(len(order), fixed_cost(bus.errors.period, 0, level.error_cost))
     if _overloaded(level, used):
         return None
-    return window.length if window.settle(fixed, effort) else None
+    allowed = Effort(min(FRAME_EFFORT, effort.left))
+    effort.left -= allowed.left
+    settled = window.settle(fixed, allowed)
+    effort.left += allowed.left
+    return window.length if settled else None
 
 
 def _of_bus(

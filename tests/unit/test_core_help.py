@@ -81,6 +81,25 @@ def test_audsley_finds_identifiers_exactly_when_there_are_some(
     assert not found.complete or good(found)
 
 
+def test_a_frame_that_fills_its_bus_is_placed_as_it_is_analysed() -> None:
+    """Its queue is never empty for good, and yet every frame is sent in time."""
+    bus, frame = Bus(1, unknown=1), Frame("m", 0, 4, 8, 4, queue="q", reloaded=True)
+    assert audsley_frames([frame], bus).complete
+    assert can.analyse([frame], bus)[0].bound == 5
+
+
+def test_no_frame_is_placed_below_a_queue_whose_delay_has_no_bound() -> None:
+    bus = Bus(1, unknown=1)
+    frames = [Frame("m", 0, 4, 120, 2), Frame("queued", 1, 4, 99, 2, queue="q", reloaded=True)]
+    bounds = [
+        [r.bound for r in can.analyse(with_ranks(frames, Order(order), range(2)), bus)]
+        for order in (("queued", "m"), ("m", "queued"))
+    ]
+    assert bounds[0][0] is None
+    assert None not in bounds[1]
+    assert audsley_frames(frames, bus).names == ("m", "queued")
+
+
 def test_deadline_monotonic_goes_by_deadline_less_jitter() -> None:
     tasks = [Task("a", 0, 20, 10, 1), Task("b", 0, 20, 12, 1, jitter=3), Task("c", 0, 20, 10, 1)]
     assert [t.name for t in deadline_monotonic(tasks)] == ["b", "a", "c"]
