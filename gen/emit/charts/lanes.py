@@ -82,7 +82,7 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
             "Has",
             (fired, Param("T", "in", "Selection")),
             "Boolean",
-            aspects=ghost,
+            aspects=() if shape.watched else ghost,
             expression=found,
         ),
         Subprogram(
@@ -247,7 +247,7 @@ def _step(
 
 def _lane(shape: RegionShape, lane: Lane) -> Stmt:
     """Fire the transition of a lane, unless an earlier one left its state, or it would leave
-    a state in which an earlier one moved."""
+    a state in which an earlier one fired: one that was dropped is no obstacle."""
     chosen = _choice(shape, lane)
     free: list[Expr] = [Chain("/=", (chosen, Ref("None")))]
     around = [s for s in shape.watched if lane in shape.lanes_in(s)]
@@ -257,7 +257,7 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
         if not earlier:
             continue
         name = ada_case(state)
-        still = [equal(_choice(shape, n), Ref("None")) for n in earlier]
+        still = [Prefix("not", call("Has", Ref("Fired"), _choice(shape, n))) for n in earlier]
         stays = Prefix("not", call(f"Leaves_{name}", chosen))
         free.append(Prefix("not", call(f"Has_Left_{name}", Ref("Fired"))))
         free.append(Chain("or else", (stays, chain("and then", still))))
