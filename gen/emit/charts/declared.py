@@ -180,7 +180,7 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
                 f"Has_Left_{ada_case(state)}",
                 (Param("Fired", "in", "Firing_List"),),
                 "Boolean",
-                expression=ForSome("I", "Fired.Items'Range", left),
+                expression=ForSome("I", "1 .. Fired.Count", left),
             )
         )
     return items

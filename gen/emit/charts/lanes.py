@@ -1,10 +1,13 @@
 """A step that can fire more than one: a transition in each lane, each with its segments.
 
 `Follows` is the contract: what a step fires is what was chosen for the lanes, in
-their order, and a choice is dropped only when an earlier lane has fired.
+their order, and a choice is dropped only when one that conflicts with it has fired. Where
+ways go on from choices and histories it says less: when an earlier lane has fired.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
 
 from ...statechart import Lane
 from ..ada import (
@@ -100,16 +103,20 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
             aspects=ghost,
             expression=_follows(shape),
         ),
-        Comment(_FOLLOWS),
+        Comment(_FOLLOWS + (_DROPPED if shape.watched and not shape.passes else _OVERTAKEN)),
     ]
 
+
+BEFORE = "Place_Before"
+"""The configuration before anything has fired."""
 
 _FIRED = "1 .. Fired.Count"
 _ITEM = "Fired.Items (I)"
 _FOLLOWS = (
     "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
-    "a lane inside a state that transitions leave may be overtaken by an earlier one."
 )
+_OVERTAKEN = "a lane inside a state that transitions leave may be overtaken by an earlier one."
+_DROPPED = "of two that conflict, as one leaves a state in which the other fires, the earlier one."
 
 
 def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
@@ -164,7 +171,7 @@ def _follows(shape: RegionShape) -> Expr:
     facts = [
         ForAll("I", _FIRED, _unless_segment(shape, chain("or else", chosen), "I")),
         call("Is_Ordered", Ref("Fired")),
-        *(_has(shape, lane) for lane in shape.busy_lanes),
+        *(fact for n in shape.busy_lanes for fact in (_has(shape, n), *_apart(shape, n))),
     ]
     deferrals = tuple(
         (
@@ -178,13 +185,54 @@ def _follows(shape: RegionShape) -> Expr:
 
 
 def _has(shape: RegionShape, lane: Lane) -> Expr:
-    """What is chosen for a lane is fired, unless an earlier lane may have come between."""
+    """What is chosen for a lane is fired, unless an earlier lane has come between."""
     none = Ref("None")
     asked: list[Expr] = [Chain("/=", (_choice(shape, lane), none))]
-    if _overtaken(shape, lane):
-        before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
+    before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
+    if shape.passes:
         asked += [equal(_choice(shape, n), none) for n in before]
-    return IfExpr(((both(*asked), call("Has", Ref("Fired"), _choice(shape, lane))),), None)
+    else:
+        asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
+    return IfExpr(((both(*asked), _fired(shape, lane)),), None)
+
+
+def _fired(shape: RegionShape, lane: Lane) -> Expr:
+    return call("Has", Ref("Fired"), _choice(shape, lane))
+
+
+def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator[Expr]:
+    """For each of the others: it has fired, and one of both leaves a state around the other."""
+    for other in others:
+        leaving = [
+            call(f"Leaves_{ada_case(state)}", _choice(shape, one))
+            for state in shape.watched
+            if {lane, other} <= set(shape.lanes_in(state))
+            for one in (other, lane)
+        ]
+        if leaving:
+            yield both(_fired(shape, other), chain("or else", leaving))
+
+
+def _apart(shape: RegionShape, lane: Lane) -> Iterator[Expr]:
+    """What is fired for a lane conflicts with nothing that is fired for an earlier one."""
+    before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
+    for clash in () if shape.passes else _clashes(shape, lane, before):
+        yield Prefix("not", both(_fired(shape, lane), clash))
+
+
+def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
+    """Where something is chosen for a lane still to come, and no state around it has been
+    left, it is as it was."""
+    for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
+        around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
+        if around:
+            stays = [Prefix("not", call(f"Has_Left_{s}", Ref("Fired"))) for s in around]
+            asked = [Chain("/=", (_choice(shape, lane), Ref("None"))), *stays]
+            same = [
+                equal(Ref(shape.at(f"Self.{shape.place}", n)), Ref(shape.at(BEFORE, n)))
+                for n in shape.lanes_around(lane)
+            ]
+            yield IfExpr(((both(*asked), both(*same)),), None)
 
 
 def _overtaken(shape: RegionShape, lane: Lane) -> bool:
@@ -214,7 +262,11 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
         rows = [(call("Is_Deferral", Ref(f)), (do("Fire_Whole", Ref(f)),)) for f in fields]
         work = (If(tuple(rows), work),)
     choose = Assign("C", Call("Choose", shape.choice_args()))
-    return _step(shape, moves, profile, Object("C", "Choice"), (choose, *work))
+    declared: list[Decl] = [Object("C", "Choice")]
+    if shape.watched and not shape.passes:
+        held, ghost = Ref(f"Self.{shape.place}"), (Aspect("Ghost"),)
+        declared.append(Object(BEFORE, shape.place_type, held, constant=True, aspects=ghost))
+    return _step(shape, moves, profile, declared, (choose, *work))
 
 
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
@@ -222,22 +274,22 @@ def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -
     pick = Assign("Chosen", Call("Select_Transition", shape.choice_args()))
     some = Chain("/=", (Ref("Chosen"), Ref("None")))
     work = (pick, If(((some, (do("Fire_Whole", Ref("Chosen")),)),)))
-    return _step(shape, moves, profile, Object("Chosen", "Selection"), work)
+    return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)
 
 
 def _step(
     shape: RegionShape,
     moves: Moves,
     profile: tuple[Param, ...],
-    choice: Object,
+    declared: Sequence[Decl],
     work: tuple[Stmt, ...],
 ) -> Subprogram:
-    """At the start of the region its initial entry; later ``work``, with a variable for it."""
+    """At the start of the region its initial entry; later ``work``, with what it declares."""
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     return Subprogram(
         "Step",
         profile,
-        declarations=(choice, _fire_whole(shape, moves)),
+        declarations=(*declared, _fire_whole(shape, moves)),
         body=(
             Assign("Fired", _nothing()),
             If(((begun, (do("Fire_Whole", Ref(START)),)),), work),
@@ -279,7 +331,8 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
         *few,
         ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
         call("Is_Ordered", Ref("Fired")),
-        *(_has(shape, n) for n in done),
+        *(fact for n in done for fact in (_has(shape, n), *_apart(shape, n))),
+        *_unmoved(shape, done),
     )
     return Pragma("Assert", (both(*facts),))
 

@@ -143,9 +143,10 @@ class RegionShape(Places):
 
     def inner_lanes(self, lane: Lane) -> tuple[Lane, ...]:
         """The busy lanes inside a lane."""
-        return tuple(n for n in self.busy_lanes if n != lane and lane in self._around(n))
+        return tuple(n for n in self.busy_lanes if n != lane and lane in self.lanes_around(n))
 
-    def _around(self, lane: Lane) -> list[Lane]:
+    def lanes_around(self, lane: Lane) -> list[Lane]:
+        """The lane, the one that it is inside, and so on to the top."""
         found = [lane]
         while found[-1].owner is not None:
             found.append(self.region.lane(found[-1].owner))
@@ -153,8 +154,8 @@ class RegionShape(Places):
 
     def common_owner(self, one: Lane, other: Lane) -> str | None:
         """The orthogonal state in whose different regions two lanes stand; None: one is inside."""
-        mine = [n for n in self._around(one) if n.owner is not None]
-        theirs = [n for n in self._around(other) if n.owner is not None]
+        mine = [n for n in self.lanes_around(one) if n.owner is not None]
+        theirs = [n for n in self.lanes_around(other) if n.owner is not None]
         for lane in mine:
             if lane not in theirs and any(n.owner == lane.owner for n in theirs):
                 return lane.owner
