@@ -109,8 +109,8 @@ def responses_in_place(
     def response(frame: Frame, above: Sequence[Frame], below: Sequence[Frame]) -> FrameResponse:
         if frame.queue:
             above, below = (*above, *below), ()
-        for other in above:
-            if other.queue != frame.queue and delays.get(other.name, 0) is None:
+        for other in (frame, *above):
+            if delays.get(other.name, 0) is None:
                 level = FrameLevel((*above, frame, *below), len(above) + 1, bus, known)
                 return FrameResponse(frame, level, None, reason=Reason.RIVAL)
         return can.response_under(frame, above, below, bus, known)

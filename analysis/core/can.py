@@ -105,7 +105,8 @@ def _queue_delays(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> Delays:
 
     The delays of different queues depend on each other: from zero up, until none grows.
     None is longer than the busiest time of the whole bus: a bus that is never idle
-    while a frame waits has sent it by then, whatever the order.
+    while a frame waits has sent it by then, whatever the order. On a bus that may never
+    be idle again, as it is full, no queue has a bound: it is not empty for good.
     """
     queued = [frame for frame in order if frame.queue]
     busiest = _busiest(order, bus, effort) if queued else None
@@ -203,6 +204,8 @@ def _in_queue(
     reach = len(order) if frame.reloaded else reach
     known = {name: delay for name, delay in delays.items() if delay is not None}
     level = FrameLevel(order, reach, bus, known)
+    if delays[frame.name] is None:
+        return FrameResponse(frame, level, None, reason=Reason.EFFORT)
     for other in order[:reach]:
         if other.queue != frame.queue and delays.get(other.name, 0) is None:
             return FrameResponse(frame, level, None, reason=Reason.RIVAL)

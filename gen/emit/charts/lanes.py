@@ -227,7 +227,7 @@ def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
         around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
         if around:
             stays = [Prefix("not", call(f"Has_Left_{s}", Ref("Fired"))) for s in around]
-            asked = [Chain("/=", (_choice(shape, lane), Ref("None"))), *stays]
+            asked: list[Expr] = [Chain("/=", (_choice(shape, lane), Ref("None"))), *stays]
             same = [
                 equal(Ref(shape.at(f"Self.{shape.place}", n)), Ref(shape.at(BEFORE, n)))
                 for n in shape.lanes_around(lane)
