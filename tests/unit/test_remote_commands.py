@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -161,6 +162,31 @@ def test_each_node_has_its_program_and_the_objects_of_its_side() -> None:
     assert not drive.has_object("boss_1.Home.call")
 
 
+OTHERS = (
+    ("  drive: {", "  desk: {context_switch: 10 us, critical_section: 5 us}\n  drive: {"),
+    ("  mover_1: {", "  boss_2: {component: Boss, node: drive}\n"
+     "  boss_3: {component: Boss, node: desk}\n  mover_1: {"),
+    ("  - {from: boss_1", "  - {from: boss_2.Motion, to: mover_1.Motion}\n"
+     "  - {from: boss_3.Motion, to: mover_1.Motion, time_limit: 60 ms}\n  - {from: boss_1"),
+    ("  planning:", "  planning_2: {stack: 32 KiB, activities: [boss_2.Plan]}\n"
+     "  planning_3: {stack: 32 KiB, activities: [boss_3.Plan]}\n  planning:"),
+    ("queue: 4\n        served", "queue: 16\n        served"),
+)  # fmt: skip
+
+
+def test_a_reply_goes_to_whoever_called_from_whichever_node() -> None:
+    system = _system(*OTHERS)
+    assert [part.nodes[0].name for part in programs(system)] == ["panel", "desk", "drive"]
+    text = _sources(system, "drive", "mover_1.adb")["remote_requests-mover_1.adb"]
+    for test, then in (
+        ("= 1", "Boss_2.Take_Home (Home_Reply)"),
+        ("= 2", "Boss_2.Take_Get_Limit (Get_Limit_Reply)"),
+        ("in 259 .. 514", "Link.Send_Boss_1_Home_Reply\n"),
+        ("in 1_027 .. 1_282", "Link.Send_Boss_3_Home_Reply\n"),
+    ):
+        assert re.search(rf"if Asked.Caller {test} then\n +{re.escape(then)}", text), then
+
+
 def test_in_a_simulation_the_server_is_local() -> None:
     one = on_one_node(_system())
     assert isinstance(one.bound["boss_1", "Home"].provider, Server)
@@ -168,6 +194,16 @@ def test_in_a_simulation_the_server_is_local() -> None:
 
 LONG = "Boss_that_lives_in_the_house_on_the_hill_beside_the_sea_1"
 WIDE = "[-1000000000000000000, 1000000000000000000]"
+
+
+PROVIDED = """    provides:
+      Orders: {queue: 2, served_by: Obey, commands: [Home]}
+    requires:
+"""
+OBEY = """    activities:
+      Obey: {period: 20 ms, wcet: 100 us, calls: [Set_Goal], body: user}
+    regions:
+"""
 
 
 @pytest.mark.parametrize(
@@ -197,6 +233,14 @@ WIDE = "[-1000000000000000000, 1000000000000000000]"
         (
             [("queue: 4\n        initial", "queue: 4\n        steps: 2\n        initial")],
             "so boss_1_Home may be sent more often than once in its period",
+        ),
+        (
+            [
+                ("    requires:\n", PROVIDED),
+                ("    regions:\n", OBEY),
+                ("[boss_1.Plan]", "[boss_1.Plan, boss_1.Obey]"),
+            ],
+            "Obey serves up to 2 requests in one execution, so boss_1_Set_Goal may be sent more",
         ),
         (
             [("on_full: Hasty, on_timeout: Alone", "on_full: Hasty, on_timeout: Homed")],
