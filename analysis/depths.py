@@ -20,6 +20,7 @@ from gen.model import Connection, Instance
 from gen.statechart import Overflow
 from gen.terms import Origin
 
+from .commands import from_release
 from .latencies import Hop
 
 if TYPE_CHECKING:
@@ -131,10 +132,7 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
         for row in component.senders(binding.need.name):
             serves = component.served_by(row.name)
             once = serves.depth if serves else getattr(row, "steps_per_execution", 1)
-            hops = analysis.latency((f"{binding.instance}.{row.name}", served)).hops
-            parts = [hops[0].response, *(part for h in hops[1:] for part in (h.wait, h.response))]
-            known = [part for part in parts if part is not None]
-            within = sum(known) if len(known) == len(parts) else None
+            within = from_release(analysis, (f"{binding.instance}.{row.name}", served))
             times += [(within, row.timing.period)] * once
     together = _together(times)
     needed = None if together is None else together + len(afar) - len(ways)

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from analysis.claims import claims_of
+from analysis.commands import costs
 from analysis.depths import depths
 from analysis.findings import findings
+from analysis.report import render as render_report
 from analysis.timing import analyse
 from gen.commands import Remote, Server
 from gen.derive import on_one_node, programs
@@ -19,6 +21,7 @@ from gen.load import Loaded, load
 from gen.model import System
 from ravenchart.toolchain import ROOT
 
+REQUESTS = ROOT / "tests" / "feature" / "requests" / "model.yaml"
 MODEL = (ROOT / "tests" / "nodes" / "commands" / "model.yaml").read_text()
 BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"
 RECEPTION = (
@@ -142,6 +145,29 @@ def test_requests_from_other_nodes_are_counted_in_the_queue_of_their_server() ->
     assert (one.given, one.needed) == (4, 3)
     short = analyse(_system(("queue: 4\n        served_by", "queue: 2\n        served_by")))
     assert [d.needed for d in depths(short) if not d.holds] == [3]
+
+
+def test_the_report_says_of_each_command_how_it_is_provided_and_when_it_is_done() -> None:
+    found = analyse(_system(*OTHERS))
+    told = {(one.caller, one.command): one for one in costs(found)}
+    assert [told[f"boss_{n}.Plan", "Home"].how for n in (1, 2, 3)] == [
+        "over link",
+        "queued",
+        "over link",
+    ]
+    near, far = told["boss_2.Plan", "Home"], told["boss_1.Plan", "Home"]
+    assert (near.answered, near.limit, far.limit) == (None, None, 60_000_000)
+    assert near.executed is not None
+    assert far.executed is not None
+    assert far.answered is not None
+    #  the server's period, then the frames of both ways besides
+    assert 10_000_000 < near.executed < far.executed < far.answered < 60_000_000
+    assert "<td>boss_1.Plan</td><td>Home</td>" in render_report(found)
+    local = load(REQUESTS)
+    assert local.system is not None
+    direct = {one.command: one for one in costs(analyse(local.system))}
+    assert (direct["Reset"].how, direct["Reset"].budget) == ("direct", 4_000)
+    assert (direct["Get_Place"].how, direct["Get_Place"].provider) == ("copied", "mover_1.Now")
 
 
 def test_one_line_puts_both_on_one_node_and_no_component_changes() -> None:
