@@ -13,11 +13,14 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
+from gen.calls import callers_of, calls_from_afar
+from gen.commands import Provided
 from gen.component import Port, PortKind
 from gen.model import Connection, Instance
 from gen.statechart import Overflow
 from gen.terms import Origin
 
+from .commands import from_release
 from .latencies import Hop
 
 if TYPE_CHECKING:
@@ -77,6 +80,8 @@ def depths(analysis: Analysis) -> Iterator[Depth]:
         for port in instance.component.inputs():
             if port.kind is PortKind.QUEUED:
                 yield from _of_port(instance, port, analysis)
+        for provided in instance.component.provides:
+            yield from _of_requests(instance, provided, analysis)
 
 
 def _together(times: Sequence[tuple[int | None, int]]) -> int | None:
@@ -107,6 +112,32 @@ def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Dep
     relied_on = any(place in chain.way for chain in system.chains)
     if ways and (relied_on or not expected):
         yield Depth(f"values may wait in {place}", "depth", port.origin, port.depth, needed)
+
+
+def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> Iterator[Depth]:
+    """The requests of an interface that other nodes call; its server takes all that wait.
+
+    Of a command with a reply one call waits at most.
+    """
+    system = analysis.system
+    afar = calls_from_afar(system, instance.name, provided)
+    near = callers_of(system, instance.name, provided)
+    if not afar or any(binding.need.on_full for binding in near):
+        return
+    served = f"{instance.name}.{provided.server}"
+    ways = [(f"message {m.name}", m.period) for m in afar if m.call and m.call.reply is None]
+    times = [(analysis.latency((way, served)).reaction, period) for way, period in ways]
+    for binding in near:
+        component = system.instance(binding.instance).component
+        for row in component.senders(binding.need.name):
+            serves = component.served_by(row.name)
+            once = serves.depth if serves else getattr(row, "steps_per_execution", 1)
+            within = from_release(analysis, (f"{binding.instance}.{row.name}", served))
+            times += [(within, row.timing.period)] * once
+    together = _together(times)
+    needed = None if together is None else together + len(afar) - len(ways)
+    what = f"requests may wait in {instance.name}.{provided.name}"
+    yield Depth(what, "queue", provided.origin, provided.depth, needed)
 
 
 def _senders(connection: Connection, analysis: Analysis) -> list[str]:

@@ -114,8 +114,10 @@ class Latencies:
                 item = _item(row.name, task.period * row.every, row.cost)
                 items.append((item, bounds.get(row.name)))
         released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
+        periods = {task.name: task.period for task in network.tasks}  # others where those are tried
         for element, one in delivered.items():
-            items.append((_item(handed(element), one.message.period, 1), one.bound))
+            period = periods[one.reception.driver]
+            items.append((_item(handed(element), period, 1), one.bound))
             released[handed(element)] = one.reception.driver
         tasks = [task for task in network.tasks if not task.rows]
         tasks += [item for item, _ in items]

@@ -14,6 +14,7 @@ from gen.model import Bus
 from gen.terms import Ns
 
 from . import advice, plots, units
+from .commands import costs
 from .core.responses import Response
 from .core.tasks import plain
 from .critical import schedule
@@ -218,6 +219,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "advice": advice.lines(analysis.advice),
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
+        "commands": tuple(costs(analysis)),
         "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],
         "chains": [
             (_hops(found), found, way)

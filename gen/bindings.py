@@ -25,6 +25,7 @@ from .devices import (
 )
 from .model import Instance, Processor, Slot, System
 from .names import Findings, Scope, meant
+from .quantities import LONGEST
 from .schema_devices import BindingForm
 from .statechart import Region
 from .terms import Ns
@@ -78,7 +79,7 @@ def bindings_of(
                 if provider is not None:
                     made.append(_bound(instance, need, form, provider, findings))
             elif need.optional:
-                made.append(Binding(instance.name, need, None))
+                made.append(Binding(instance.name, need.origin, need, None))
             elif need.interface not in unbound:
                 unbound.add(need.interface)
                 wanted = f"{instance.name}.{need.interface}"
@@ -120,7 +121,9 @@ def _bound(
                 f"on {need.axes}"
             )
             report("RV-1205", message, "join devices by `array`, or change `axes`")
-    return Binding(instance.name, need, found)
+    limit = LONGEST if form.lost("time_limit") else form.time_limit
+    limit = None if limit is None else Ns(limit)
+    return Binding(instance.name, form.origin, need, found, limit)
 
 
 def _axes(count: int) -> str:

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from .commands import Binding, Device, DeviceType, DriverCommand, Provided, Server
+from .commands import (
+    Binding,
+    Device,
+    DeviceType,
+    DriverCommand,
+    Need,
+    Provided,
+    Remote,
+    Server,
+)
 from .component import Component
-from .model import System
+from .model import Message, System
 
 
 def rows_of(system: System, binding: Binding) -> tuple[str, ...]:
@@ -81,10 +90,45 @@ def callers_of(system: System, instance: str, provided: Provided) -> tuple[Bindi
 
 
 def repliers(system: System, binding: Binding) -> tuple[str, ...]:
-    """The rows that deliver the replies to a call: whoever makes it, or who serves it."""
+    """The rows that deliver the replies to a call: whoever makes it, serves or receives it."""
     if isinstance(binding.provider, Server):
         return (f"{binding.provider.instance}.{binding.provider.interface.server}",)
+    if isinstance(binding.provider, Remote):
+        return receivers(system, binding.provider.reply)
     return rows_of(system, binding) if binding.provider is not None else ()
+
+
+def receivers(system: System, name: str | None) -> tuple[str, ...]:
+    """The rows that receive the message of that name."""
+    return tuple(
+        processor.slots[0].element
+        for message in system.messages
+        if message.name == name
+        for one in system.receptions(message)
+        for processor in system.processors
+        if (processor.released_by, processor.node) == (message.bus, one.node)
+    )
+
+
+def calls_from_afar(system: System, instance: str, provided: Provided) -> tuple[Message, ...]:
+    """The messages whose calls are requests of a provided interface."""
+    return tuple(
+        message
+        for message in system.messages
+        if message.call is not None
+        and message.name == message.call.request
+        and (message.call.server.instance, message.call.server.interface) == (instance, provided)
+    )
+
+
+def awaited(component: Component, need: Need) -> bool:
+    """Whether anybody waits for the replies to a call, or for the time-out of one."""
+    return need.on_timeout is not None or delivered(component, need)
+
+
+def delivered(component: Component, need: Need) -> bool:
+    """Whether anybody takes the replies to a call."""
+    return need.on_reply is not None or need.reply_item in replies_read(component)
 
 
 def replies_read(component: Component) -> tuple[str, ...]:

@@ -67,6 +67,7 @@ class Need:
     stand_in: StandIn | None = None
     on_reply: str | None = None
     on_full: str | None = None
+    on_timeout: str | None = None
 
     @property
     def is_read(self) -> bool:
@@ -179,9 +180,38 @@ class Server:
 
 
 @dataclass(frozen=True, slots=True)
+class Remote:
+    """A queued command of an instance on another node: the messages that carry its calls.
+
+    At most one call waits for its reply. ``executions`` of its caller after the call that
+    is given up; both are numbered, so that no frame is taken for another.
+    """
+
+    caller: str
+    """The instance that calls."""
+    need: Need
+    server: Server
+    request: str
+    """The message of the calls."""
+    reply: str | None
+    """The message of the replies; None: nobody waits for any."""
+    time_limit: Ns
+    """From the release of the caller until the reply has arrived; 0 without replies."""
+    executions: int
+
+    @property
+    def served(self) -> str:
+        """The row that executes the command."""
+        return f"{self.server.instance}.{self.server.interface.server}"
+
+
+@dataclass(frozen=True, slots=True)
 class Binding:
     """What provides a required command of an instance; None: what stands in for it."""
 
     instance: str
+    origin: Origin
     need: Need
-    provider: Device | Server | None
+    provider: Device | Server | Remote | None
+    time_limit: Ns | None = None
+    """Of a reply from another node."""

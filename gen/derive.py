@@ -9,7 +9,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from .calls import callers, callers_of, readers_through, repliers, replies_read, rows_of
+from .calls import (
+    callers,
+    callers_of,
+    calls_from_afar,
+    readers_through,
+    receivers,
+    repliers,
+    replies_read,
+    rows_of,
+)
+from .commands import Remote
 from .component import Activity
 from .distribution import as_one, part_of
 from .model import Bus, Instance, Message, Node, Processor, SharedObject, Slot, System, Task
@@ -173,6 +183,8 @@ def sending_rows(system: System, message: Message) -> tuple[str, ...]:
     if message.source is None:
         return ()
     source = system.instance(message.source.instance)
+    if message.call is not None and message.is_reply:
+        return (message.call.served,)
     return tuple(
         f"{source.name}.{item.name}"
         for item in source.component.runnables()
@@ -248,8 +260,16 @@ class _Sharing:
                     for b in callers_of(self.system, instance.name, provided)
                     for row in rows_of(self.system, b)
                 ]
+                for message in calls_from_afar(self.system, instance.name, provided):
+                    rows += receivers(self.system, message.name)
                 users = [self.system.processor_of(row).name for row in rows]
                 yield self.made(f"{instance.name}.{provided.name}.queue", [*users, server])
+        for binding in self.system.bindings:
+            remote = binding.provider
+            if binding.instance == instance.name and isinstance(remote, Remote) and remote.reply:
+                rows = [*rows_of(self.system, binding), *receivers(self.system, remote.reply)]
+                users = [self.system.processor_of(row).name for row in rows]
+                yield self.made(f"{instance.name}.{binding.need.name}.call", users)
         for item in replies_read(instance.component):
             binding = next(
                 b
@@ -295,7 +315,8 @@ class _Sharing:
                     yield from self.raisers_once(instance, item)
         for need in component.needs:
             binding = self.system.bound[instance.name, need.name]
-            if need.on_full in named:
+            is_remote = isinstance(binding.provider, Remote)
+            if need.on_full in named or (is_remote and need.on_timeout in named):
                 rows = rows_of(self.system, binding)
                 yield from (self.system.processor_of(row).name for row in rows)
             if need.on_reply in named:

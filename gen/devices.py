@@ -16,6 +16,7 @@ from .commands import (
     DriverCommand,
     Provided,
     Published,
+    Remote,
     Server,
 )
 from .interfaces import at_axes
@@ -276,7 +277,7 @@ def provided_axes(provider: Device | Server, command: str) -> int:
     return provider.axes if isinstance(provider, Device) else provider.interface.axes
 
 
-def wcet_of(provider: Device | Server | None, command: str) -> Ns:
+def wcet_of(provider: Device | Server | Remote | None, command: str) -> Ns:
     """What a call adds to the budget of its caller; only a driver's work is counted apart."""
     return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from .calls import called
+from .commands import Remote
 from .identifiers import OPEN
 from .model import Bus, Connection, Instance, Message, Node, Processor, Shutdown, System
 from .names import problem_of
@@ -151,12 +152,17 @@ def as_one(system: System) -> System:
     wires = tuple(
         Connection(message.origin, message.source, target)
         for message in system.messages
-        if message.source is not None
+        if message.source is not None and message.call is None
         for target in message.targets
+    )
+    bindings = (
+        replace(b, provider=b.provider.server) if isinstance(b.provider, Remote) else b
+        for b in system.bindings
     )
     return replace(
         system,
         nodes=(node,),
+        bindings=tuple(bindings),
         instances=tuple(replace(instance, node=node.name) for instance in system.instances),
         connections=(*system.connections, *wires),
         processors=tuple(replace(processor, node=node.name) for processor in system.processors),

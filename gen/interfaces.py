@@ -141,18 +141,23 @@ def _need(
     if form.else_ is not None:
         stand_in = _stand_in(command, form, reply, members, space.findings)
     events: dict[str, Event | None] = {}
-    for key, text in (("on_reply", form.on_reply), ("on_full", form.on_full)):
+    for key, text in (
+        ("on_reply", form.on_reply),
+        ("on_full", form.on_full),
+        ("on_timeout", form.on_timeout),
+    ):
         at = form.at(key)
         events[key] = None if text is None else members.events.look_up(text, at, space.findings)
-        if text is not None and (is_read or (key == "on_reply" and reply is None)):
+        if text is not None and (is_read or (key != "on_full" and reply is None)):
             why = "is read" if is_read else "gives no reply"
             message = f"`{key}` has no meaning for {command.name}, which {why}"
             space.findings.error("RV-1208", form.at_key(key), message, hint=f"remove `{key}`")
     _check_carried("on_reply", events["on_reply"], reply, command, form, space.findings)
-    _check_carried("on_full", events["on_full"], None, command, form, space.findings)
+    for key in ("on_full", "on_timeout"):
+        _check_carried(key, events[key], None, command, form, space.findings)
     if space.findings.count() > before or form.damaged:
         return None
-    replied, full = events["on_reply"], events["on_full"]
+    raised = {key: None if event is None else event.name for key, event in events.items()}
     return Need(
         command.name,
         origin,
@@ -163,8 +168,9 @@ def _need(
         reply,
         optional=form.else_ is not None,
         stand_in=stand_in,
-        on_reply=None if replied is None else replied.name,
-        on_full=None if full is None else full.name,
+        on_reply=raised["on_reply"],
+        on_full=raised["on_full"],
+        on_timeout=raised["on_timeout"],
     )
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
-from .commands import Binding, Device
+from .commands import Binding, Device, Remote
 from .component import Component
 from .signals import Signal
 from .statechart import Timing
@@ -158,11 +158,18 @@ class Message:
     """A CAN FD frame, which switches to the bus's data rate where there is one."""
     given: bool = True
     """The model gives the identifier."""
+    call: Remote | None = None
+    """Of a command between nodes: it carries the calls or the replies. None: a port's value."""
 
     @property
     def element(self) -> str:
         """Stable id of the frame: ``bus.message``."""
         return f"{self.bus}.{self.name}"
+
+    @property
+    def is_reply(self) -> bool:
+        """It carries the replies to a command between nodes."""
+        return self.call is not None and self.name == self.call.reply
 
     @property
     def is_foreign(self) -> bool:

@@ -7,7 +7,7 @@ that its uses are not reported as well.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 from .bindings import bindings_of, given_bindings, with_bindings
@@ -30,6 +30,7 @@ from .identifiers import identified
 from .interfaces import command_of, declare_vectors
 from .model import Connection, Instance, Shutdown, System
 from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
+from .remote import calling
 from .schema import ModelFile
 from .schema_devices import DeviceForm
 from .terms import BOOLEAN, EnumerationType, Origin, Type
@@ -298,7 +299,6 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
     carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
     connections, carried = carrier.carried(connections, messages.sound())
-    frames = identified(carried)
     system = System(
         name=name,
         origin=model.files[0].at_key("system"),
@@ -309,13 +309,20 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         buses=buses.sound(),
         instances=instances.sound(),
         connections=connections,
-        messages=tuple(m for m in frames if not m.is_foreign),
-        traffic=tuple(m for m in frames if m.is_foreign),
+        messages=tuple(m for m in carried if not m.is_foreign),
+        traffic=tuple(m for m in carried if m.is_foreign),
         processors=processors.sound(),
         shutdown=stop,
         chains=chains.sound(),
     )
-    system = placed(with_bindings(system, bindings))
+    system = calling(with_bindings(system, bindings))
+    frames = identified(system.frames)
+    system = replace(
+        system,
+        messages=tuple(m for m in frames if not m.is_foreign),
+        traffic=tuple(m for m in frames if m.is_foreign),
+    )
+    system = placed(system)
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
 
 

@@ -89,7 +89,9 @@ def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iter
         return
     raised = {e for item in component.runnables() for e in item.raises}
     raised |= {e for p in component.ports for e in (p.on_arrival, p.on_stale, p.on_overflow) if e}
-    raised |= {e for need in component.needs for e in (need.on_reply, need.on_full) if e}
+    raised |= {
+        e for need in component.needs for e in (need.on_reply, need.on_full, need.on_timeout) if e
+    }
     raised |= {region.on_overflow for region in component.regions if region.on_overflow}
     outside = [pair for processor in system.processors for pair in processor.raises]
     raised |= {e for owner, e in (*outside, *system.shutdown.raises) if owner in instances}

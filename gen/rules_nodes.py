@@ -5,28 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from .calls import callers
-from .commands import Server
+from .commands import Remote
 from .diagnostics import Diagnostic, error
+from .remote import is_across, obstacle
 from .resolve import Resolved
+from .terms import Origin
 
 ABSENT = "RV-0802"
 """What cannot reach from one node to another yet."""
 
 
-def calls_stay_on_their_node(resolved: Resolved) -> Iterator[Diagnostic]:
-    """Who provides a command is on the node of whoever requires it; a device is on one."""
+def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A command of another node is one that messages can carry; a device is on one node."""
     system = resolved.system
+    told: set[tuple[str, Origin]] = set()
     for binding in system.bindings:
-        home = system.instance(binding.instance)
-        provider = binding.provider
-        if isinstance(provider, Server) and system.instance(provider.instance).node != home.node:
-            there = system.instance(provider.instance).node
-            text = (
-                f"{binding.instance}.{binding.need.name} is on {home.node}, and "
-                f"{provider.instance}, which provides it, on {there}"
-            )
-            hint = "between nodes, values travel over ports"
-            yield error(ABSENT, binding.need.origin, text, hint=hint)
+        problem = obstacle(system, binding) if is_across(system, binding) else None
+        if problem is not None and problem[:2] not in told:
+            code, origin, text, hint = problem
+            told.add((code, origin))
+            yield error(code, origin, text, hint=hint)
     for device in system.devices:
         homes = {
             system.instance(row.partition(".")[0]).node: row for row in callers(system, device)
@@ -35,6 +33,23 @@ def calls_stay_on_their_node(resolved: Resolved) -> Iterator[Diagnostic]:
             ends = " and ".join(f"{row} on {node}" for node, row in homes.items())
             text = f"the device {device.name} is called by {ends}"
             yield error(ABSENT, device.origin, text, hint="let one node call it")
+
+
+def servers_call_once(resolved: Resolved) -> Iterator[Diagnostic]:
+    """What serves several requests in one execution may call as often: no message does."""
+    system = resolved.system
+    for binding in system.bindings:
+        component = system.instance(binding.instance).component
+        for row in component.senders(binding.need.name):
+            served = component.served_by(row.name)
+            if isinstance(binding.provider, Remote) and served is not None and served.depth > 1:
+                text = (
+                    f"{row.name} serves up to {served.depth} requests in one execution, so "
+                    f"{binding.provider.request} may be sent more often than once in its period"
+                )
+                notes = [(row.origin, f"{row.name} is declared here")]
+                hint = f"give {served.name} `queue: 1`, or call from another activity"
+                yield error("RV-0611", binding.origin, text, notes=notes, hint=hint)
 
 
 def cores_exist(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -64,7 +79,8 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 NODE_RULES = (
-    calls_stay_on_their_node,
+    calls_can_be_carried,
+    servers_call_once,
     cores_exist,
     raised_events_are_near,
 )

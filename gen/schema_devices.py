@@ -44,6 +44,9 @@ class NeedForm(Element):
     )
     on_reply: Reference | None = optional("Event raised with the reply of a call.")
     on_full: Reference | None = optional("Event raised when a call met a full queue.")
+    on_timeout: Reference | None = optional(
+        "Event raised when no reply came from another node within the binding's `time_limit`."
+    )
 
 
 class RequiredForm(Element):
@@ -109,3 +112,7 @@ class BindingForm(Element):
 
     from_: OwnedReference = key("`instance.interface`, a required one.", alias="from")
     to: str = key("A device, or `instance.interface`, a provided one.")
+    time_limit: PositiveSpan | None = optional(
+        "Longest time from the caller's release until a reply from another node has arrived; "
+        "needed for replies between nodes, without effect inside one."
+    )

@@ -52,6 +52,10 @@ def flow_of(system: System) -> Flow:
         if message.source is not None:
             flow[str(message.source)].append(f"message {message.name}")
         flow[f"message {message.name}"] += map(str, message.targets)
+        if message.call is not None:
+            served = message.call.served
+            way = (served, message.source) if message.is_reply else (message.targets[0], served)
+            flow[str(way[0])].append(str(way[1]))
     return flow
 
 

@@ -70,7 +70,9 @@ def external_events(component: Component, system: System) -> Iterator[tuple[str,
                 named = done_of(component, activity.name) if event == DONE else event
                 yield named, activity.name
     yield from ((r.on_overflow, None) for r in component.regions if r.on_overflow)
-    yield from ((e, None) for n in component.needs for e in (n.on_reply, n.on_full) if e)
+    for need in component.needs:
+        told = (need.on_reply, need.on_full, need.on_timeout)
+        yield from ((event, None) for event in told if event)
     outside = [pair for processor in system.processors for pair in processor.raises]
     yield from ((e, None) for owner, e in (*outside, *system.shutdown.raises) if owner in instances)
     raised = {e for item in component.runnables() for e in item.raises}

@@ -150,7 +150,10 @@ class _Drawing:
             yield Edge(target.instance, name, ports | _BACKWARD)
 
     def _port(self, end: End) -> str:
-        return f"{end.port}:{'e' if self.on_right[end.instance, end.port] else 'w'}"
+        """The side of a port; of the instance where a call or reply ends at none."""
+        side = "e" if self.on_right[end.instance, end.port] else "w"
+        ports = {port.name for port in self.system.instance(end.instance).component.ports}
+        return f"{end.port}:{side}" if end.port in ports else side
 
 
 _HIDDEN: Attributes = {"style": "invis"}

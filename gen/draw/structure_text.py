@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..component import Direction
-from ..model import Instance, Message, System
+from ..model import End, Instance, Message, System
 
 
 def plantuml(system: System) -> str:
@@ -23,14 +23,19 @@ def plantuml(system: System) -> str:
         lines.append(f"{source.instance}_{source.port} --> {target.instance}_{target.port}")
     for message in system.messages:
         if message.source is not None:
-            source = message.source
-            lines.append(f"{source.instance}_{source.port} --> {message.bus} : {_carried(message)}")
+            lines.append(f"{_end(system, message.source)} --> {message.bus} : {_carried(message)}")
         for target in message.targets:
-            lines.append(f"{message.bus} --> {target.instance}_{target.port} : {_carried(message)}")
+            lines.append(f"{message.bus} --> {_end(system, target)} : {_carried(message)}")
     for processor in system.processors:
         lines += [f"note as {processor.name}_table", f"  processor {processor.name}"]
         lines += [*(f"  {slot.element}" for slot in processor.slots), "end note"]
     return "".join(f"{line}\n" for line in (*lines, "@enduml"))
+
+
+def _end(system: System, end: End) -> str:
+    """A port, or the instance where a call or reply ends at none."""
+    ports = {port.name for port in system.instance(end.instance).component.ports}
+    return f"{end.instance}_{end.port}" if end.port in ports else end.instance
 
 
 def _component(instance: Instance) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..model import Bus, Message, System
+from ..model import Bus, End, Message, System
 from .ada import (
     SPARK,
     Call,
@@ -30,6 +30,7 @@ from .ada import (
 )
 from .codecs import codec_name
 from .naming import ada_case, priority, root_package, type_name
+from .remote_calls import received_as
 from .trace_calls import note, traced
 
 DRIVER_STACK = 65_536
@@ -42,6 +43,11 @@ def _sent(system: System, bus: Bus) -> tuple[Message, ...]:
 
 def _received(system: System, bus: Bus) -> tuple[Message, ...]:
     return tuple(m for m in system.messages if m.bus == bus.name and m.targets)
+
+
+def _taker(message: Message, target: End) -> str:
+    """The procedure of a receiver."""
+    return f"Put_{ada_case(target.port)}" if message.call is None else received_as(message)
 
 
 def _format(message: Message) -> Ref:
@@ -176,7 +182,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             ),
         )
         puts = tuple(
-            Do(f"{ada_case(t.instance)}.Put_{ada_case(t.port)}", arguments(Ref(item)))
+            Do(f"{ada_case(t.instance)}.{_taker(message, t)}", arguments(Ref(item)))
             for t in message.targets
         )
         unpack = Do(

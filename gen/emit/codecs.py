@@ -33,6 +33,7 @@ from .ada import (
     Prefix,
     Ref,
     Return,
+    Stmt,
     Subprogram,
     Unit,
     UseType,
@@ -178,10 +179,12 @@ class _Codec:
             items.append(Comment(f"[{self.label}.{s.name}] {_place(s)}"))
         packed = all_of(*self._carries())
         valid = all_of(*(self._is_valid(s, self.frame) for s in self.signals))
-        taken = IfExpr(
-            ((Ref("Valid"), all_of(*self._taken())),),
-            equal(Ref("Item"), default_value(self.system, self.type)),
-        )
+        taken: Expr = all_of(*self._taken())
+        unpacked = all_of(Ref("Valid"), taken)
+        if valid != TRUE:
+            other = equal(Ref("Item"), default_value(self.system, self.type))
+            taken = IfExpr(((Ref("Valid"), taken),), other)
+            unpacked = all_of(equal(Ref("Valid"), valid), taken)
         items += [
             Subprogram(
                 f"Pack_{self.name}",
@@ -194,10 +197,7 @@ class _Codec:
                 (frame, Param("Item", "out", self.ada_type), Param("Valid", "out", "Boolean")),
                 aspects=(
                     *self._by_reference(),
-                    Aspect(
-                        "Post",
-                        all_of(equal(Ref("Valid"), valid), taken),
-                    ),
+                    Aspect("Post", unpacked),
                 ),
             ),
             Comment("Valid when all bits stand for values."),
@@ -315,10 +315,15 @@ class _Codec:
             coding, local = self.codings[s.name], Ref(self._local(s))
             good.append(self._when(s, coding.valid(local), selected, raw=True))
             values[ada_case(s.name)] = self._decoded(s, local, selected)
+        is_valid = all_of(*good)
         if isinstance(self.type, RecordType):
             built: Expr = Aggregate(tuple(Arg(name, value) for name, value in values.items()))
         else:
             (built,) = values.values()
+        item: Stmt = Assign("Item", built)
+        if is_valid != TRUE:  # all bits may stand for values
+            absent = Assign("Item", default_value(self.system, self.type))
+            item = If(((Ref("Valid"), (item,)),), (absent,))
         return Subprogram(
             f"Unpack_{self.name}",
             (
@@ -327,13 +332,7 @@ class _Codec:
                 Param("Valid", "out", "Boolean"),
             ),
             declarations=declarations,
-            body=(
-                Assign("Valid", all_of(*good)),
-                If(
-                    ((Ref("Valid"), (Assign("Item", built),)),),
-                    (Assign("Item", default_value(self.system, self.type)),),
-                ),
-            ),
+            body=(Assign("Valid", is_valid), item),
         )
 
     def _lemma(self) -> Subprogram:

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..calls import callers_of, published_by, repliers, replies_read
-from ..commands import Binding, Device, Need, Provided, Server
+from ..calls import (
+    callers_of,
+    calls_from_afar,
+    delivered,
+    published_by,
+    repliers,
+    replies_read,
+)
+from ..commands import Binding, Device, Need, Provided, Remote, Server
 from ..component import Component, Port
 from ..model import Instance, System
 from ..terms import Type, named
@@ -16,6 +23,7 @@ from .ada import (
     Decl,
     Do,
     EnumType,
+    Expr,
     If,
     Object,
     Package,
@@ -35,6 +43,15 @@ from .ada import Component as Field
 from .ada import Instance as Instantiation
 from .events import event_value
 from .naming import ada_case, default_value, priority, type_name
+from .remote_calls import (
+    answers,
+    asked_from_afar,
+    caller_number,
+    heard,
+    replies,
+    sent_call,
+    value_of,
+)
 
 STATUS = "Ravenchart.Queueing.Put_Status"
 
@@ -53,7 +70,7 @@ def providers(system: System, instance: Instance) -> tuple[str, ...]:
                 found[ada_case(owner.name)] = found[ada_case(owner.component.name)] = None
             elif owner.name == instance.name and delivers(system, binding):
                 found[ada_case(binding.instance)] = None
-        elif provider is not None and binding.instance == instance.name:
+        elif isinstance(provider, Device) and binding.instance == instance.name:
             found[ada_case(provider.name)] = None
     found.pop(ada_case(instance.name), None)
     return tuple(found)
@@ -61,17 +78,24 @@ def providers(system: System, instance: Instance) -> tuple[str, ...]:
 
 def delivers(system: System, binding: Binding) -> bool:
     """Whether anybody takes the replies to a call."""
-    need = binding.need
-    component = system.instance(binding.instance).component
-    return need.on_reply is not None or need.reply_item in replies_read(component)
+    return delivered(system.instance(binding.instance).component, binding.need)
 
 
-def call_body(system: System, instance: Instance, port: Port) -> Subprogram:
-    """A required command as the instance calls it, whatever provides it."""
+def call_body(system: System, instance: Instance, port: Port, lost: tuple[Stmt, ...]) -> Subprogram:
+    """A required command as the instance calls it, whatever provides it.
+
+    ``lost`` counts a call to another node that is refused, since one is under way.
+    """
     binding = system.bound[instance.name, port.name]
     params = () if port.is_void else (Param("Item", "in", type_name(system, port.type)),)
     if isinstance(binding.provider, Server):
         declarations, body = _queued(system, instance, binding, binding.provider)
+    elif isinstance(binding.provider, Remote):
+        full: tuple[Stmt, ...] = lost
+        if binding.need.on_full is not None:
+            event = event_value(instance.component, binding.need.on_full)
+            full = (*lost, Do("Offer", arguments(event)))
+        declarations, body = sent_call(system, binding.provider, full)
     else:
         assert isinstance(binding.provider, Device)
         declarations, body = _direct(system, instance, binding, binding.provider)
@@ -97,23 +121,15 @@ def _direct(
 def _queued(
     system: System, instance: Instance, binding: Binding, server: Server
 ) -> tuple[list[Decl], list[Stmt]]:
-    need, owner = binding.need, system.instance(server.instance)
-    package = f"{ada_case(owner.component.name)}.{requests_package(server.interface)}"
-    rows = [Arg("Name", Ref(f"{package}.{ada_case(need.name)}_Asked"))]
-    if numbered(server.interface):
-        asking = callers_of(system, server.instance, server.interface)
-        rows.append(Arg("Caller", number(asking.index(binding))))
-    if need.argument is not None:
-        rows.append(Arg(ada_case(need.name), Ref("Item")))
-    if len(rows) < len(_fields(system, server.interface)):
-        rows.append(Arg("others", Ref("<>")))
+    need = binding.need
+    asking = callers_of(system, server.instance, server.interface)
+    caller = number(asking.index(binding))
+    request = _request(system, server, need, caller, Ref("Item"))
     status = "Status" if need.on_full is not None else "Unused_Status"
     put = f"Put_{ada_case(server.interface.name)}"
     if server.instance != instance.name:
         put = f"{ada_case(server.instance)}.{put}"
-    body: list[Stmt] = [
-        Do(put, arguments(Aggregate(tuple(rows), f"{package}.Request"), Ref(status)))
-    ]
+    body: list[Stmt] = [Do(put, arguments(request, Ref(status)))]
     declarations: list[Decl] = [Object(status, STATUS)]
     if need.on_full is not None:
         declarations.append(UseType(STATUS))
@@ -121,6 +137,35 @@ def _queued(
         event = event_value(instance.component, need.on_full)
         body.append(If(((full, (Do("Offer", arguments(event)),)),)))
     return declarations, body
+
+
+def _request(system: System, server: Server, need: Need, caller: Expr, item: Expr) -> Aggregate:
+    """What waits in the queue of an interface: the command, who asks, and the argument."""
+    owner = ada_case(system.instance(server.instance).component.name)
+    package = f"{owner}.{requests_package(server.interface)}"
+    rows = [Arg("Name", Ref(f"{package}.{ada_case(need.name)}_Asked"))]
+    if numbered(server.interface):
+        rows.append(Arg("Caller", caller))
+    if need.argument is not None:
+        rows.append(Arg(ada_case(need.name), item))
+    if len(rows) < len(_fields(system, server.interface)):
+        rows.append(Arg("others", Ref("<>")))
+    return Aggregate(tuple(rows), f"{package}.Request")
+
+
+def from_afar(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
+    """For each call and reply from another node, spec and body of what takes it."""
+    for provided, message in heard(system, instance):
+        assert message.call is not None
+        need = message.call.need
+        local = len(callers_of(system, instance.name, provided))
+        place = calls_from_afar(system, instance.name, provided).index(message)
+        caller = caller_number(local, place, message)
+        item = Ref("") if need.argument is None else value_of(system, message, need.argument)
+        request = _request(system, message.call.server, need, caller, item)
+        put = f"Put_{ada_case(provided.name)}"
+        yield asked_from_afar(system, message, request, put)
+    yield from answers(system, instance)
 
 
 # --- Replies -----------------------------------------------------------------------
@@ -275,20 +320,22 @@ def served(
     system: System, instance: Instance, provided: Provided, work: tuple[Stmt, ...]
 ) -> tuple[Stmt, ...]:
     """One request: taken, executed by ``work``, and its reply delivered."""
-    delivered: list[Stmt] = []
-    for index, binding in enumerate(callers_of(system, instance.name, provided)):
+    replied: list[Stmt] = []
+    asking = callers_of(system, instance.name, provided)
+    for index, binding in enumerate(asking):
         if delivers(system, binding):
             is_own = binding.instance == instance.name
             take = f"Take_{ada_case(binding.need.name)}"
             take = take if is_own else f"{ada_case(binding.instance)}.{take}"
             asks = Operation("=", (Ref("Asked.Caller"), number(index)))
             reply = Ref(reply_param(binding.need.name))
-            delivered.append(If(((asks, (Do(take, arguments(reply)),)),)))
+            replied.append(If(((asks, (Do(take, arguments(reply)),)),)))
+    replied += replies(system, instance, provided, len(asking), reply_param)
     return (
         Do(f"{ada_case(provided.name)}_Queue.Take", arguments(Ref("Asked"), Ref("Taken"))),
         Say("exit when Taken = Ravenchart.Queueing.Empty"),
         *work,
-        *delivered,
+        *replied,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..commands import Binding, Server
+from ..commands import Binding, Device, Server
 from ..component import Activity, Port
 from ..statechart import DONE, Region
 from .ada import (
@@ -49,6 +49,7 @@ from .naming import (
     scalar,
     type_name,
 )
+from .remote_calls import watched
 
 
 class Rows(Site):
@@ -129,7 +130,7 @@ class Rows(Site):
         package = f"{self.component}.{name}"
         step = self._step_region(shape, package)
         declarations: list[Decl] = []
-        body: list[Stmt] = []
+        body: list[Stmt] = [*watched(self.system, self.instance, region.sends)]
         step_args: tuple[Arg, ...] = ()
         if shape.inputs:
             declarations.append(Object("Ins", f"{package}.Inputs"))
@@ -186,7 +187,7 @@ class Rows(Site):
         need, provider = binding.need, binding.provider
         if need.stand_in is not None and provider is None:
             return self._copy_in(need.stand_in.item, target)
-        assert provider is not None
+        assert isinstance(provider, Device | Server)
         owner = provider.instance if isinstance(provider, Server) else provider.name
         return Do(f"{ada_case(owner)}.{ada_case(need.name)}", arguments(Ref(target)))
 
@@ -344,6 +345,7 @@ class Rows(Site):
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = Do(f"{region_name}_Board.Read", arguments(Ref(f"{region_name}_Now")))
             body = (read, If(((guard, body),)))
+        body = (*watched(self.system, self.instance, activity.sends), *body)
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )

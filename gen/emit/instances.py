@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..commands import Provided
+from ..commands import Need, Provided
 from ..component import Activity, Event, Port, PortKind
 from ..model import System, Work
 from ..statechart import Overflow, Region
@@ -40,6 +40,7 @@ from .charts.places import Places
 from .components import activity_package, leaf_type
 from .device_calls import (
     call_body,
+    from_afar,
     providers,
     published,
     put_body,
@@ -60,6 +61,7 @@ from .naming import (
     type_name,
     value,
 )
+from .remote_calls import call_objects, heard_objects, remotes, units_of, watch_body
 
 
 class Glue(Site):
@@ -96,6 +98,7 @@ class Glue(Site):
             names.add("Ravenchart.Queues")
         if any(b.instance == self.instance.name for b in self.system.bindings):
             names.add("Ravenchart.Queueing")
+        names |= set(units_of(self.system, self.instance))
         names.add("Ravenchart.Blackboards")
         if self.noted:
             names.add("Ravenchart.Steps")
@@ -154,6 +157,9 @@ class Glue(Site):
         for binding in taken_replies(self.system, self.instance):
             yield take_spec(self.system, binding.need)
             yield Comment(f"[{self._element(binding.need.name)}] its reply.")
+        for spec, _ in from_afar(self.system, self.instance):
+            yield spec
+            yield Comment(f"[{self.instance.name}] from another node; never blocks.")
 
     def _served(self) -> tuple[Provided, ...]:
         return tuple(one for one in self.instance.component.provides if one.server is not None)
@@ -161,11 +167,7 @@ class Glue(Site):
     def _command_bodies(self) -> Iterator[Decl]:
         system, instance = self.system, self.instance
         for provided in self._served():
-            lost = (
-                self._fault("Queue_Overflow"),
-                *self._note("Fault", provided.name, "port", self._fault_number("Queue_Overflow")),
-            )
-            yield put_body(instance, provided, lost)
+            yield put_body(instance, provided, self._lost(provided.name))
         for spec, item in published(system, instance):
             read: Stmt = Do(f"{ada_case(item)}_Board.Read", arguments(Ref("Reply")))
             if not self._has_object(item):
@@ -173,6 +175,21 @@ class Glue(Site):
             yield Subprogram(spec.name, spec.params, body=(read,))
         for binding in taken_replies(system, instance):
             yield take_body(system, instance, binding.need)
+        yield from (body for _, body in from_afar(system, instance))
+        for remote in remotes(system, instance):
+            if remote.reply is not None:
+                yield watch_body(remote.need, self._passed(remote.need))
+
+    def _lost(self, name: str) -> tuple[Stmt, ...]:
+        """Count a call that found no place."""
+        number_ = self._fault_number("Queue_Overflow")
+        return (self._fault("Queue_Overflow"), *self._note("Fault", name, "port", number_))
+
+    def _passed(self, need: Need) -> tuple[Stmt, ...]:
+        """Count a reply that did not come in time, and tell of it."""
+        noted = self._note("Fault", need.name, "port", self._fault_number("Stale_Input"))
+        told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
+        return (self._fault("Stale_Input"), *noted, *told)
 
     # --- body: objects
 
@@ -180,6 +197,8 @@ class Glue(Site):
         items: list[Decl] = [*self._port_objects(), *self._data_objects(), *self._region_objects()]
         items += [request_queue(self.system, self.instance, one) for one in self._served()]
         items += reply_boards(self.system, self.instance)
+        items += call_objects(self.system, self.instance)
+        items += heard_objects(self.system, self.instance)
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]
         if component.events:
@@ -380,7 +399,7 @@ class Glue(Site):
 
     def _send_body(self, port: Port) -> Subprogram:
         if port.is_command:
-            return call_body(self.system, self.instance, port)
+            return call_body(self.system, self.instance, port, self._lost(port.name))
         ends, messages = self._targets(port.name)
         body: list[Stmt] = [*self._note("Sent", port.name, "port")]
         for end in ends:

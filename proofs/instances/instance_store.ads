@@ -10,6 +10,7 @@ with Ravenchart.Monitors;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
+with Ravenchart.Remote_Calls;
 with Ravenchart.Trace_Buffers;
 
 package Instance_Store
@@ -66,6 +67,10 @@ is
 
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);
+
+   package Calling is new Ravenchart.Remote_Calls
+     (Limit   => 3,
+      Ceiling => Ceiling);
 
    package Trace is new Ravenchart.Trace_Buffers
      (Capacity => 64,

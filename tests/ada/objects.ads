@@ -9,6 +9,7 @@ with Ravenchart.Monitors;
 with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
+with Ravenchart.Remote_Calls;
 with Ravenchart.Trace_Buffers;
 
 package Objects is
@@ -53,6 +54,13 @@ package Objects is
 
    package Counters is new Ravenchart.Health_Counters
      (Ceiling => Ceiling);
+
+   Call_Limit : constant := 3;
+   --  Executions that a call of another node waits.
+
+   package Calling is new Ravenchart.Remote_Calls
+     (Limit   => Call_Limit,
+      Ceiling => Ceiling);
 
    package Trace is new Ravenchart.Trace_Buffers
      (Capacity => 4,

@@ -12,6 +12,7 @@ from ravenchart.toolchain import ROOT
 
 MAINS = (
     "test_store",
+    "test_calls",
     "test_regions",
     "test_records",
     "test_frames",

@@ -135,6 +135,12 @@ def test_each_node_has_its_program_and_sees_the_other_as_outside() -> None:
         assert {task.node for task in part.tasks} == {part.nodes[0].name}
 
 
+def test_advice_is_given_where_a_chain_between_nodes_is_late() -> None:
+    found = analyse(system_of(("reaction: 60 ms, age: 50 ms", "reaction: 10 ms")))
+    assert not found.schedulable
+    assert found.advice is not None
+
+
 def test_objects_of_the_same_name_on_two_nodes_are_told_apart() -> None:
     names = [item.element for item in system_of().objects]
     assert len(set(names)) == len(names)

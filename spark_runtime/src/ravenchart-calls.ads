@@ -1,0 +1,105 @@
+--  Calls of a command on another node, told apart by their numbers: of its
+--  caller the one that waits for a reply, of its provider the last one heard.
+--
+--  Guarantees   at most one call waits; a reply is awaited only while the call
+--               of its number waits, and a call is heard once
+--  Tasking      none of its own
+--  Timing       constant
+
+with Ravenchart.Queueing;
+
+package Ravenchart.Calls
+  with SPARK_Mode, Pure
+is
+   use type Queueing.Put_Status;
+
+   subtype Call_Number is Number range 0 .. 255;
+   --  One byte of a frame.
+
+   function Following (Item : Call_Number) return Call_Number
+   is (if Item = Call_Number'Last then 0 else Item + 1)
+   with Global => null;
+   --  The number of the next call.
+
+   --  The caller
+
+   subtype Execution_Limit is Execution_Count range 1 .. Execution_Count'Last;
+   --  Executions of its caller after which a call is given up.
+
+   type Call is record
+      Last : Call_Number     := Call_Number'Last;
+      Left : Execution_Count := 0;
+   end record;
+   --  The number of the last call, and the executions that it has left to
+   --  wait; with none, no call waits.
+
+   type Reply_Status is (Awaited, Late);
+   --  Late: its call was given up, or another frame brought its reply.
+
+   type Wait_Status is (Within_Limit, Timed_Out);
+   --  Timed_Out: no reply has come, and nobody waits for it any more.
+
+   function Waits (Item : Call) return Boolean
+   is (Item.Left > 0)
+   with Global => null;
+   --  Is there a call without a reply?
+
+   procedure Start
+     (Item   : in out Call;
+      Limit  : Execution_Limit;
+      Status : out Queueing.Put_Status)
+   with
+     Global => null,
+     Post   =>
+       (if Waits (Item'Old)
+        then Status = Queueing.Rejected_Full and then Item = Item'Old
+        else Status = Queueing.Queued
+             and then Item = (Following (Item'Old.Last), Limit));
+   --  Begin a call, unless one waits.
+
+   procedure Finish
+     (Item   : in out Call;
+      Number : Call_Number;
+      Status : out Reply_Status)
+   with
+     Global => null,
+     Post   =>
+       (if Waits (Item'Old) and then Number = Item'Old.Last
+        then Status = Awaited and then Item = (Item'Old.Last, 0)
+        else Status = Late and then Item = Item'Old);
+   --  A reply has come to the call of that number.
+
+   procedure Tick (Item : in out Call; Status : out Wait_Status)
+   with
+     Global => null,
+     Post   =>
+       Item.Last = Item'Old.Last
+       and then (if Waits (Item'Old)
+                 then Item.Left = Item'Old.Left - 1
+                      and then (Status = Timed_Out) = not Waits (Item)
+                 else not Waits (Item) and then Status = Within_Limit);
+   --  One more execution of the caller has begun.
+
+   --  The provider
+
+   type Heard is record
+      Any  : Boolean     := False;
+      Last : Call_Number := 0;
+   end record;
+   --  Whether a call has come from a caller, and the number of the last.
+
+   type Hearing is (Heard_First, Repeated);
+   --  Repeated: the frame of a call has come before, and is left alone.
+
+   procedure Hear
+     (Item   : in out Heard;
+      Number : Call_Number;
+      Status : out Hearing)
+   with
+     Global => null,
+     Post   =>
+       Item = (True, Number)
+       and then (Status = Repeated) = (Item'Old = (True, Number));
+   --  A call of that number has come.
+
+end Ravenchart.Calls;

@@ -1,0 +1,24 @@
+package body Remote_Requests.Mover.Activities
+with SPARK_Mode
+is
+   procedure Serve
+     (Motion_Request  : Mover.Motion_Requests.Request;
+      Home_Reply      : in out Outcome;
+      Get_Limit_Reply : in out Place;
+      Goal            : in out Place) is
+   begin
+      case Motion_Request.Name is
+         when Motion_Requests.Set_Goal_Asked =>
+            Goal := Motion_Request.Set_Goal;
+
+         when Motion_Requests.Home_Asked =>
+            Home_Reply := Well;
+
+         when Motion_Requests.Get_Limit_Asked =>
+            Get_Limit_Reply :=
+              (case Motion_Request.Get_Limit is
+                 when Low  => Goal,
+                 when High => 1_000);
+      end case;
+   end Serve;
+end Remote_Requests.Mover.Activities;

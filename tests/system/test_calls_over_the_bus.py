@@ -1,0 +1,65 @@
+"""Commands of another node: two programs on one bus, with it and without."""
+
+from __future__ import annotations
+
+import io
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from analysis.observed import read_map, read_trace
+from ravenchart import steps, toolchain
+from ravenchart.__main__ import main
+from ravenchart.run import RunRequest, controller, run_model
+from ravenchart.toolchain import ROOT
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A copy of the model."""
+    copy: Path = tmp_path / "commands"
+    shutil.copytree(ROOT / "tests" / "nodes" / "commands", copy)
+    return copy
+
+
+def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder: Path) -> None:
+    checked = steps.check(folder / "model.yaml")
+    assert not checked.warnings
+    steps.write_program(checked)
+    controllers = tuple(controller(made) for made in steps.programs_of(checked))
+    shown = io.StringIO()
+    request = RunRequest(
+        checked.analysis,
+        controllers,
+        folder / "generated",
+        folder / "cut_bus.yaml",
+        0.0,
+        folder / "report",
+    )
+    assert run_model(request, Console(file=shown, width=80)), shown.getvalue()
+    names = read_map((folder / "generated" / "panel" / "trace.json").read_text())
+    trace = (folder / "report" / "trace-panel.txt").read_text()
+    seen = read_trace(trace.splitlines(), names)
+    fired = [record.text for record in seen.of("transition", "boss_1.Plan")]
+    #  a reply by event, one by polling, and what the other node was told, read back
+    assert " ".join(["homed", "known", "check", "there"]) in " ".join(fired)
+    #  the bus is cut: a second call finds the first under way, which is given up in time
+    times = [(r.time / 1e6, r.text) for r in seen.of("transition", "boss_1.Plan")]
+    cut = [time for time, name in times if name == "back" and time > 1500]
+    after = [(time - cut[0], name) for time, name in times if cut[0] < time <= cut[0] + 90]
+    assert [name for _, name in after] == ["insist", "hasty", "alone"]
+    #  three executions of 20 ms, and one that takes the event behind the other
+    assert 70 <= after[-1][0] <= 90
+    assert seen.faults["Stale_Input"] >= 2
+    #  it is mended: calls are answered again
+    assert "homed" in fired[len(fired) - fired[::-1].index("alone") :]
+
+
+@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
+def test_both_programs_are_proved(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["prove", str(folder / "model.yaml")]) == 0
+    found = re.findall(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)
+    assert len(found) == 2

@@ -1,0 +1,284 @@
+"""Commands of tasks on other nodes: the messages that carry them, their chains and errors."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from analysis.claims import claims_of
+from analysis.commands import costs
+from analysis.depths import depths
+from analysis.findings import findings
+from analysis.report import render as render_report
+from analysis.timing import analyse
+from gen.commands import Remote, Server
+from gen.derive import on_one_node, programs
+from gen.diagnostics import render
+from gen.generate import generate
+from gen.load import Loaded, load
+from gen.model import System
+from ravenchart.toolchain import ROOT
+
+REQUESTS = ROOT / "tests" / "feature" / "requests" / "model.yaml"
+MODEL = (ROOT / "tests" / "nodes" / "commands" / "model.yaml").read_text()
+BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"
+RECEPTION = (
+    "  reception: {released_by: link, period: 1 ms, stack: 32 KiB, activities: [link.receive]}\n"
+)
+TOGETHER = ("component: Mover, node: drive", "component: Mover, node: panel")
+
+
+def _loaded(*replacements: tuple[str, str]) -> Loaded:
+    text = MODEL
+    for old, new in replacements:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return load(Path("model.yaml"), lambda path, limit: text.encode())
+
+
+def _said(found: Loaded) -> str:
+    return "\n".join(render(one, found.sources) for one in found.diagnostics)
+
+
+def _system(*replacements: tuple[str, str]) -> System:
+    found = _loaded(*replacements)
+    assert found.system is not None, _said(found)
+    return found.system
+
+
+def _sources(system: System, node: str, unit: str) -> dict[str, str]:
+    """The generated files of a unit and its children, without the folder of the node."""
+    prefix = f"{node}/" if len(system.nodes) > 1 else ""
+    files = generate(system, claims_of(analyse(system)))
+    return {
+        name.removeprefix(prefix): text
+        for name, text in files.items()
+        if name.startswith(f"{prefix}remote_requests-{unit}")
+    }
+
+
+def test_calls_are_messages_with_the_period_of_their_caller_and_replies_of_the_server() -> None:
+    system = _system()
+    assert [
+        (m.name, str(m.source), [str(t) for t in m.targets], m.period) for m in system.messages
+    ] == [
+        ("boss_1_Set_Goal", "boss_1.Set_Goal", ["mover_1.Motion"], 20_000_000),
+        ("boss_1_Home", "boss_1.Home", ["mover_1.Motion"], 20_000_000),
+        ("boss_1_Home_Reply", "mover_1.boss_1_Home_Reply", ["boss_1.Home_Reply"], 10_000_000),
+        ("boss_1_Get_Limit", "boss_1.Get_Limit", ["mover_1.Motion"], 20_000_000),
+        (
+            "boss_1_Get_Limit_Reply",
+            "mover_1.boss_1_Get_Limit_Reply",
+            ["boss_1.Get_Limit_Reply"],
+            10_000_000,
+        ),
+    ]
+    fields = {m.name: [(s.name, s.width) for s in m.signals] for m in system.messages}
+    assert fields["boss_1_Home"] == [("number", 8)]
+    assert fields["boss_1_Set_Goal"] == [("number", 8), ("value", 11)]
+
+
+def test_a_reply_that_nobody_takes_does_not_travel_and_needs_no_limit() -> None:
+    calm = (
+        ("Get_Limit: {on_timeout: Alone}", "Get_Limit: {}"),
+        ("when: Get_Limit_Reply = 1000", "after: 40 ms"),
+        ("when: Get_Limit_Reply = 900", "after: 40 ms"),
+        ('"min(Get_Limit_Reply, 900)"', "900"),
+    )
+    system = _system(*calm)
+    assert "boss_1_Get_Limit_Reply" not in [m.name for m in system.messages]
+    remote = system.bound["boss_1", "Get_Limit"].provider
+    assert isinstance(remote, Remote)
+    assert (remote.reply, remote.time_limit) == (None, 0)
+
+
+def test_the_way_of_a_call_and_its_reply_is_a_chain_within_the_time_limit() -> None:
+    system = _system()
+    chain = next(chain for chain in system.chains if chain.name == "boss_1_Home")
+    assert chain.reaction == 60_000_000
+    assert chain.way == (
+        "message boss_1_Home",
+        "mover_1.Motion",
+        "mover_1.Serve",
+        "mover_1.boss_1_Home_Reply",
+        "message boss_1_Home_Reply",
+    )
+    found = analyse(system)
+    assert found.schedulable
+    ((_, latency),) = [pair for pair in found.limited if pair[0].name == "boss_1_Home"]
+    assert [hop.step.name for hop in latency.hops] == [
+        "link.driver_tx.boss_1_Home",
+        "link.boss_1_Home",
+        "link.driver_rx.boss_1_Home",
+        "link.boss_1_Home.reception",
+        "mover_1.Serve",
+        "link.driver_tx.boss_1_Home_Reply",
+        "link.boss_1_Home_Reply",
+        "link.driver_rx.boss_1_Home_Reply",
+        "link.boss_1_Home_Reply.reception",
+    ]
+    #  at least the server's period, and it has to come before the caller gives up
+    assert latency.reaction is not None
+    assert 10_000_000 < latency.reaction <= 60_000_000
+
+
+def test_a_time_limit_below_the_bound_is_an_error_with_both_figures() -> None:
+    system = _system(("time_limit: 60 ms", "time_limit: 15 ms"))
+    told = [one.message for one in findings(analyse(system))]
+    assert "the reaction of boss_1_Home may take 18710 us, and its limit is 15 ms" in told
+
+
+@pytest.mark.parametrize(("limit", "executions"), [("60 ms", 3), ("61 ms", 4), ("20 ms", 1)])
+def test_the_limit_is_counted_in_whole_executions_of_the_caller(
+    limit: str, executions: int
+) -> None:
+    provider = _system(("time_limit: 60 ms", f"time_limit: {limit}")).bound["boss_1", "Home"]
+    assert isinstance(provider.provider, Remote)
+    assert provider.provider.executions == executions
+
+
+def test_requests_from_other_nodes_are_counted_in_the_queue_of_their_server() -> None:
+    (one,) = [d for d in depths(analyse(_system())) if "mover_1.Motion" in d.what]
+    #  one call each of the two with a reply, and of the third what comes in 14 ms
+    assert (one.given, one.needed) == (4, 3)
+    short = analyse(_system(("queue: 4\n        served_by", "queue: 2\n        served_by")))
+    assert [d.needed for d in depths(short) if not d.holds] == [3]
+
+
+def test_the_report_says_of_each_command_how_it_is_provided_and_when_it_is_done() -> None:
+    found = analyse(_system(*OTHERS))
+    told = {(one.caller, one.command): one for one in costs(found)}
+    assert [told[f"boss_{n}.Plan", "Home"].how for n in (1, 2, 3)] == [
+        "over link",
+        "queued",
+        "over link",
+    ]
+    near, far = told["boss_2.Plan", "Home"], told["boss_1.Plan", "Home"]
+    assert (near.answered, near.limit, far.limit) == (None, None, 60_000_000)
+    assert near.executed is not None
+    assert far.executed is not None
+    assert far.answered is not None
+    #  the server's period, then the frames of both ways besides
+    assert 10_000_000 < near.executed < far.executed < far.answered < 60_000_000
+    assert "<td>boss_1.Plan</td><td>Home</td>" in render_report(found)
+    local = load(REQUESTS)
+    assert local.system is not None
+    direct = {one.command: one for one in costs(analyse(local.system))}
+    assert (direct["Reset"].how, direct["Reset"].budget) == ("direct", 4_000)
+    assert (direct["Get_Place"].how, direct["Get_Place"].provider) == ("copied", "mover_1.Now")
+
+
+def test_one_line_puts_both_on_one_node_and_no_component_changes() -> None:
+    apart, together = _system(), _system(TOGETHER)
+    assert not together.messages
+    assert isinstance(together.bound["boss_1", "Home"].provider, Server)
+    home = {"boss-": "panel", "boss.": "panel", "mover-": "drive", "mover.": "drive"}
+    for unit, node in home.items():
+        found = _sources(apart, node, unit)
+        assert found
+        assert found == _sources(together, "panel", unit)
+
+
+def test_each_node_has_its_program_and_the_objects_of_its_side() -> None:
+    panel, drive = programs(_system())
+    assert panel.object("boss_1.Home.call").users == ("planning", "reception_panel")
+    assert drive.object("mover_1.Motion.queue").users == ("reception_drive", "moving")
+    assert not drive.has_object("boss_1.Home.call")
+
+
+OTHERS = (
+    ("  drive: {", "  desk: {context_switch: 10 us, critical_section: 5 us}\n  drive: {"),
+    ("  mover_1: {", "  boss_2: {component: Boss, node: drive}\n"
+     "  boss_3: {component: Boss, node: desk}\n  mover_1: {"),
+    ("  - {from: boss_1", "  - {from: boss_2.Motion, to: mover_1.Motion}\n"
+     "  - {from: boss_3.Motion, to: mover_1.Motion, time_limit: 60 ms}\n  - {from: boss_1"),
+    ("  planning:", "  planning_2: {stack: 32 KiB, activities: [boss_2.Plan]}\n"
+     "  planning_3: {stack: 32 KiB, activities: [boss_3.Plan]}\n  planning:"),
+    ("queue: 4\n        served", "queue: 16\n        served"),
+)  # fmt: skip
+
+
+def test_a_reply_goes_to_whoever_called_from_whichever_node() -> None:
+    system = _system(*OTHERS)
+    assert [part.nodes[0].name for part in programs(system)] == ["panel", "desk", "drive"]
+    text = _sources(system, "drive", "mover_1.adb")["remote_requests-mover_1.adb"]
+    for test, then in (
+        ("= 1", "Boss_2.Take_Home (Home_Reply)"),
+        ("= 2", "Boss_2.Take_Get_Limit (Get_Limit_Reply)"),
+        ("in 259 .. 514", "Link.Send_Boss_1_Home_Reply\n"),
+        ("in 1_027 .. 1_282", "Link.Send_Boss_3_Home_Reply\n"),
+    ):
+        assert re.search(rf"if Asked.Caller {test} then\n +{re.escape(then)}", text), then
+
+
+def test_in_a_simulation_the_server_is_local() -> None:
+    one = on_one_node(_system())
+    assert isinstance(one.bound["boss_1", "Home"].provider, Server)
+
+
+LONG = "Boss_that_lives_in_the_house_on_the_hill_beside_the_sea_1"
+WIDE = "[-1000000000000000000, 1000000000000000000]"
+
+
+PROVIDED = """    provides:
+      Orders: {queue: 2, served_by: Obey, commands: [Home]}
+    requires:
+"""
+OBEY = """    activities:
+      Obey: {period: 20 ms, wcet: 100 us, calls: [Set_Goal], body: user}
+    regions:
+"""
+
+
+@pytest.mark.parametrize(
+    ("replacements", "message"),
+    [
+        ([(", time_limit: 60 ms", "")], "boss_1.Home has its replies from drive"),
+        (
+            [(f"buses:\n{BUS}", ""), (RECEPTION, "")],
+            "declare a bus: between nodes, calls travel as its messages",
+        ),
+        (
+            [("range: [-1000, 1000]", f"range: {WIDE}")],
+            "boss_1_Set_Goal needs 69 bits for boss_1_Set_Goal_Call, and a frame has 64",
+        ),
+        (
+            [("types:\n", "types:\n  boss_1_Home_Call: {range: [0, 1]}\n")],
+            "boss_1.Home is carried as `boss_1_Home_Call`, and the model has that name",
+        ),
+        (
+            [
+                ("  boss_1: {comp", f"  {LONG}: {{comp"),
+                ("from: boss_1", f"from: {LONG}"),
+                ("boss_1.Plan", f"{LONG}.Plan"),
+            ],
+            "a name has at most 60 characters",
+        ),
+        (
+            [("queue: 4\n        initial", "queue: 4\n        steps: 2\n        initial")],
+            "so boss_1_Home may be sent more often than once in its period",
+        ),
+        (
+            [
+                ("    requires:\n", PROVIDED),
+                ("    regions:\n", OBEY),
+                ("[boss_1.Plan]", "[boss_1.Plan, boss_1.Obey]"),
+            ],
+            "Obey serves up to 2 requests in one execution, so boss_1_Set_Goal may be sent more",
+        ),
+        (
+            [("on_full: Hasty, on_timeout: Alone", "on_full: Hasty, on_timeout: Homed")],
+            "`on_timeout` of Home gives no value",
+        ),
+        (
+            [("Set_Goal: {}", "Set_Goal: {on_timeout: Alone}")],
+            "`on_timeout` has no meaning for Set_Goal",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused(replacements: list[tuple[str, str]], message: str) -> None:
+    found = _loaded(*replacements)
+    assert found.system is None
+    assert message in _said(found)
