@@ -43,7 +43,8 @@ class Network:
     task or frame that is released by the completion of another, by which; its own
     jitter then comes on top. Its period is that of what releases it, or a multiple where
     not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
-    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`.
+    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`. Only what
+    an event releases has an offset, and those of one core count from a common epoch.
     """
 
     tasks: tuple[Task, ...]
@@ -68,6 +69,9 @@ class Network:
                 )
             if name in self.releasers(name):
                 raise ValueError(f"{name} is released by itself")
+            item = items[name]
+            if isinstance(item, Task) and item.offset is not None:
+                raise ValueError(f"offset of {name} has no meaning: {by} releases it")
         for bus in self.frames:
             if bus not in self.buses:
                 raise ValueError(f"there are messages on {bus}, but no such bus")
