@@ -6,8 +6,12 @@ of the busy period, and of a message the busy period itself.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from gen.claims import ChainClaim, Claim, Claims
+from gen.diagnostics import Diagnostic, error
 from gen.terms import Ns
+from gen.unready import UNREADY
 
 from . import latencies
 from .core import can
@@ -16,6 +20,7 @@ from .core.can_response import ERRORS, FrameResponse
 from .core.chains import Hop
 from .core.responses import Response, demand_of, jitter_of, release_time
 from .core.window import Effort, Window, fixed_cost, source
+from .findings import findings
 from .latencies import Latency, reception_frames
 from .timing import Analysis
 
@@ -32,10 +37,11 @@ class Unclaimed(Exception):  # noqa: N818
 
 
 def claims_of(analysis: Analysis) -> Claims:
-    """What the certificate of a system whose deadlines are met claims.
+    """What the certificate of a system whose deadlines are met claims, for all offsets.
 
     Unclaimed where a processor or bus is loaded to exactly its whole time.
     """
+    analysis = analysis.for_all_offsets
     items = {}
     for name, response in analysis.found.responses.items():
         items[name] = _of_task(response) if isinstance(response, Response) else _of(response)
@@ -45,6 +51,17 @@ def claims_of(analysis: Analysis) -> Claims:
     handed = {element for element in analysis.deliveries if latencies.handed(element) in steps}
     waits, busiest = _capped(analysis)
     return Claims(items, rows, waits, busiest, _turns(analysis, handed), chains)
+
+
+def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
+    """An error for each deadline or limit that is kept by offsets only: no certificate has them."""
+    if analysis.for_all_offsets is analysis:
+        return
+    for one in findings(analysis.for_all_offsets):
+        if one.is_error:
+            text = f"{one.message} but for offsets, which no certificate counts yet"
+            hint = "choose times or priorities that do without offsets"
+            yield error(UNREADY, one.origin, text, notes=one.notes, hint=hint)
 
 
 def _of_task(response: Response) -> Claim:

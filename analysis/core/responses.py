@@ -205,6 +205,19 @@ class Response:
             return stream_of(task, platform).count(*self._span(task))
         return releases(self.window, task.period, jitter_of(task, platform))
 
+    def released(self, task: Task) -> list[tuple[int, int]]:
+        """When jobs of ``task`` are released in the window, at the soonest, with their frames."""
+        platform = self.level.platform
+        count, jitter = self._releases(task), jitter_of(task, platform)
+        demand = demand_of(task, platform)
+        first, since = demand.first(count), -jitter
+        if self.alignment is not None and self.uses_offset_of(task):
+            stream = stream_of(task, platform)
+            first = stream.number(self.alignment.start - jitter)
+            since = stream.offset + first * task.period - self.alignment.start
+        frames = len(demand.costs)
+        return [(max(0, since + n * task.period), (first + n) % frames) for n in range(count)]
+
     def uses_offset_of(self, task: Task) -> bool:
         """The jobs of ``task`` count as its offset places them."""
         return self.alignment is not None and task.name in self.alignment.tasks
