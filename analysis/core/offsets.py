@@ -109,7 +109,7 @@ def closer(
             yield plain
         else:
             tasks = aligned(plain)
-            yield _Search(plain, tasks, effort).found() if tasks else plain
+            yield Search(plain, tasks, effort).found() if tasks else plain
 
 
 def _together(tasks: Sequence[Task], platform: Platform) -> bool:
@@ -118,7 +118,7 @@ def _together(tasks: Sequence[Task], platform: Platform) -> bool:
     return len(begins) < 2 and not any(row.phase for task in tasks for row in task.rows)
 
 
-class _Search:
+class Search:
     """The instants of one task, tried from those on that can lead to the longest response."""
 
     def __init__(self, plain: Response, tasks: Sequence[Task], effort: Effort) -> None:
@@ -173,6 +173,20 @@ class _Search:
             window=whole.window, rows=rows,
             alignment=Alignment(whole.start, whole.window - whole.bound, self.names),
         )  # fmt: skip
+
+    def window(self, start: int) -> int | None:
+        """From ``start`` until the task's first job is done that arrives then, less its jitter.
+
+        It counts from ``start`` on, even where all is done before it arrives. None without
+        an offset of the task, or without effort.
+        """
+        if self.stream is None:
+            return None
+        first = self.stream.number(start - self.own.jitter)
+        cost = self.own.demand.costs[first % len(self.own.demand.costs)]
+        counted = self.rivals.late(start) - self.rivals.before(start)
+        found = self._settled(self.plain.blocked + cost, start, counted, 1)
+        return found if self.effort.left > 0 else None
 
     def _attained(self, less: int) -> bool:
         """Nothing longer can be found where the bounds for all offsets are so much less."""

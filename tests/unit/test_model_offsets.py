@@ -4,20 +4,33 @@ from __future__ import annotations
 
 import io
 import json
+import random
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from rich.console import Console
 
-from analysis.claims import claims_of, uncertified
+from analysis.claims import by_offsets, claims_of, uncertified
 from analysis.critical import schedule
 from analysis.figures import figures
 from analysis.findings import findings
 from analysis.report import render
 from analysis.table import show
-from analysis.timing import Analysis
+from analysis.timing import Analysis, analyse
+from gen import instants
+from gen.emit.ada_text import print_unit
+from gen.emit.certificate import emit_certificate
+from gen.model import System
+from gen.terms import Ns
 from ravenchart import steps
-from tests.support.certificates import certificate, compiled
+from tests.support.certificates import (
+    certificate,
+    changed,
+    compiled,
+    numbers,
+    random_system,
+)
 from tests.support.timing_models import HEAD, analysed
 
 LOOPS = (
@@ -100,17 +113,94 @@ def test_the_certificate_claims_responses_for_any_offsets(tmp_path: Path) -> Non
     assert compiled(certificate(apart), tmp_path) == ""
 
 
-def test_a_deadline_that_only_offsets_keep_is_met_and_not_generated(
-    tmp_path: Path,
+def test_a_deadline_that_only_offsets_keep_is_certified_by_them(tmp_path: Path) -> None:
+    """1137 us from the only instant that matters: its own release, a tick late."""
+    tight = analysed(LOOPS, TIGHT)
+    assert list(findings(tight)) == list(uncertified(tight)) == []
+    claims = claims_of(tight)
+    assert claims.of("seldom").since == (bound(tight, "seldom") - 100_000,)
+    assert claims.of("seldom").response == bound(analysed(LOOPS, TOGETHER), "seldom")
+    text = certificate(tight)
+    assert compiled(text, tmp_path) == ""
+    for name in ("Seldom_W_At_1", "Seldom_Reach"):
+        assert "seldom can" in compiled(changed(text, name, -1), tmp_path)
+    for name, late in (("Often_O", 5_000_000), ("Seldom_O", -5_000_000), ("Cpu_Tick_C", 100_000)):
+        assert "seldom can" in compiled(changed(text, name, late), tmp_path)
+    none = {**claims.items, "seldom": replace(claims.of("seldom"), since=(Ns(1),))}
+    hostile = emit_certificate(tight.system, replace(claims, items=none), "")
+    assert "seldom can take longer" in compiled(print_unit(hostile), tmp_path)
+
+
+def test_what_the_certificate_cannot_show_is_not_generated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tight = analysed(LOOPS, TIGHT)
-    assert list(findings(tight)) == []
+    monkeypatch.setattr(instants, "MOST", 0)
     (gap,) = uncertified(tight)
     assert gap.code == "RV-0804"
     assert "seldom needs over 3 ms: it may take" in gap.message
-    assert gap.message.endswith("us but for offsets, which no certificate counts yet")
+    assert gap.message.endswith("us but for offsets, and the certificate cannot show that yet")
     model = tmp_path / "model.yaml"
     model.write_text(LOOPS.replace(*TIGHT))
     with pytest.raises(steps.Refused, match=r"seldom needs over 3 ms.*RV-0804"):
         steps.write_program(steps.check(model))
     assert list(uncertified(analysed(LOOPS, TOGETHER))) == []
+
+
+def phased_system(seed: int) -> System:
+    """A random system with offsets, and deadlines as short as these allow."""
+    draw = random.Random(seed)
+    plain = random_system(seed)
+    processors = tuple(
+        replace(one, offset=Ns(draw.randrange(0, one.period, 100_000)))
+        if one.released_by is None
+        else one
+        for one in plain.processors
+    )
+    offsets = {one.name: one.offset for one in processors}
+    tasks = tuple(
+        replace(task, offset=offsets.get(task.element, task.offset)) for task in plain.tasks
+    )
+    whole = replace(plain, processors=processors, tasks=tasks)
+    found = analyse(whole)
+    least = {r.task.name: r.bound for r in found.responses if r.alignment is not None}
+    short = tuple(
+        replace(task, deadline=Ns(min(task.period, least.get(task.element) or task.deadline)))
+        if task.element in offsets
+        else task
+        for task in whole.tasks
+    )
+    return replace(whole, tasks=short)
+
+
+def shorter(whole: System, names: list[str]) -> System:
+    """These deadlines a nanosecond shorter: no instant is left out that then is too late."""
+    tasks = (
+        replace(task, deadline=Ns(task.deadline - 1)) if task.element in names else task
+        for task in whole.tasks
+    )
+    return replace(whole, tasks=tuple(tasks))
+
+
+def test_certificates_of_random_systems_hold_by_their_offsets(tmp_path: Path) -> None:
+    """What they claim is exact: a nanosecond less of a window, or to the deadline, is refused."""
+    shown = 0
+    for seed in range(300):
+        found = analyse(phased_system(seed))
+        if not found.schedulable or list(uncertified(found)):
+            continue
+        claims = claims_of(found)
+        since = [name for name, claim in claims.items.items() if claim.since]
+        if not since:
+            continue
+        text = certificate(found)
+        assert compiled(text, tmp_path) == "", seed
+        windows = numbers(text, r"_W_At_\d+")
+        assert windows, seed
+        one = windows[seed % len(windows)]
+        assert "can take longer than its claimed" in compiled(changed(text, one, -1), tmp_path)
+        assert not set(since) & set(by_offsets(analyse(shorter(found.system, since))))
+        shown += 1
+        if shown == 12:
+            break
+    assert shown == 12
