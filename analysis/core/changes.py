@@ -67,11 +67,6 @@ Met = Callable[[Network], bool]
 """Whether all that is asked of a network holds."""
 
 
-def met(network: Network) -> bool:
-    """Every task and frame meets its deadline."""
-    return holistic.analyse(network).met
-
-
 def ranked(changes: Sequence[Change]) -> tuple[Change, ...]:
     """What suffices first: orders, then the smallest share of a time."""
     return tuple(sorted(changes, key=lambda one: (not one.enough, one.amount)))

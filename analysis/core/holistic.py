@@ -13,7 +13,7 @@ A best case is the sum of the best cases (`best`) along the chain, 0 unless give
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from . import can, fixed_priority
@@ -155,6 +155,24 @@ def analyse(network: Network) -> Holistic:
         responses = _responses(network, late)
     known = {name: jitter for name, jitter in late.items() if jitter is not None}
     return Holistic(responses, known, best, rounds)
+
+
+def analyses(network: Network) -> Iterator[Holistic]:
+    """The responses for any offsets and then, where these could make them shorter, by them.
+
+    For searches, which are done with the first if it meets what they look for.
+    """
+    blind = tuple(replace(task, offset=None) for task in network.tasks)
+    known = blind != network.tasks
+    found = analyse(replace(network, tasks=blind) if known else network)
+    yield found
+    if known and not any(r.reason is Reason.OVERLOAD for r in found.responses.values()):
+        yield analyse(network)
+
+
+def met(network: Network) -> bool:
+    """Every task and frame has a bound and meets its deadline."""
+    return any(found.met for found in analyses(network))
 
 
 def _responses(

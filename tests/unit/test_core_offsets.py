@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from analysis.core import fixed_priority, offsets
+from analysis.core import fixed_priority, holistic, offsets
 from analysis.core.assignment import audsley_tasks, with_priorities
 from analysis.core.blocking import Section
 from analysis.core.changes import stretched
@@ -16,6 +16,7 @@ from analysis.core.fixed_priority import analyse
 from analysis.core.holistic import Network
 from analysis.core.platform import Platform
 from analysis.core.responses import Response
+from analysis.core.sensitivity import network_scaling
 from analysis.core.tasks import Row, Task, plain
 
 
@@ -164,3 +165,18 @@ def test_what_cannot_have_an_offset_is_refused() -> None:
     a, b = task("a", 2, 4, 10, 0), task("b", 1, 3, 10, 5)
     with pytest.raises(ValueError, match="offset of b has no meaning: a releases it"):
         Network((a, b), released_by={"b": "a"})
+
+
+def test_searches_look_at_offsets_only_where_they_can_help() -> None:
+    network = Network((task("a", 2, 4, 10, 0), task("b", 1, 3, 10, 5)))
+    tight = replace(network, tasks=(network.tasks[0], replace(network.tasks[1], deadline=4)))
+    assert len(list(holistic.analyses(tight))) == 2
+    assert holistic.met(tight)
+    blind = replace(tight, tasks=tuple(replace(t, offset=None) for t in tight.tasks))
+    assert len(list(holistic.analyses(blind))) == 1
+    assert not holistic.met(blind)
+    over = replace(tight, tasks=(*tight.tasks, task("c", 3, 5, 10, 0)))
+    assert len(list(holistic.analyses(over))) == 1
+    scaling = network_scaling(tight, None, 4)
+    assert scaling is not None
+    assert (scaling.factor, scaling.binding) == (Fraction(5, 4), "b")
