@@ -54,9 +54,12 @@ def lateness(system: System, task: Task) -> Ns:
 def instants(system: System, task: Task, reach: int) -> tuple[Instant, ...] | None:
     """The instants that are followed by a release of ``task`` in less than ``reach`` ns.
 
-    All are late enough for what may be released at them. None where there are too many.
+    All are late enough for what may be released at them. None where there are too many, or
+    ``task`` has no offset.
     """
     tasks = phased(system, task)
+    if not tasks:
+        return None
     cycle = math.lcm(*(slot.divisor * one.period for one in tasks for slot in one.slots))
     if sum(cycle // one.period for one in tasks) > TRIED:
         return None

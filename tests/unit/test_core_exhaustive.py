@@ -316,6 +316,26 @@ def test_offsets_beside_tasks_of_unknown_phase_are_exact(
     assert compared == number
 
 
+@pytest.mark.parametrize(("count", "longest", "number"), [(2, 4, 133), (3, 4, 630)])
+def test_offsets_beside_sections_and_equal_priorities_are_safe(
+    count: int, longest: int, number: int
+) -> None:
+    compared = 0
+    for chosen in sets(plain_shapes(longest), count):
+        for known in phased(chosen):
+            tasks, simulated = both(known)
+            equal = [replace(task, priority=1) for task in tasks]
+            seen = observed([replace(toy, priority=1) for toy in simulated])
+            assert at_least(bounds(equal), seen), known
+            for high, low, start, length in sharings(chosen):
+                compared += 1
+                held = list(simulated)
+                held[low] = replace(held[low], hold=(start, length, 9 - high))
+                sections = Section("o", f"t{low}", length), Section("o", f"t{high}", 1)
+                assert at_least(bounds(tasks, sections), observed(held)), (known, high, low)
+    assert compared == number
+
+
 @pytest.mark.parametrize(
     ("longest", "frames", "others", "number"),
     [(3, 2, 2, 2_136), long(2, 3, 3, 4_602), long(4, 2, 4, 12_276)],
