@@ -85,12 +85,13 @@ def aligned(response: Response) -> tuple[Task, ...]:
     known = [t for t in response.level.order[: response.level.reach] if t.offset is not None]
     known.sort(key=lambda task: (task.period * task.frame_count, task.period, task.name))
     found: list[Task] = []
-    cycle = 1
+    cycle, count = 1, 0
     for task in known:
         longer = math.lcm(cycle, task.period * task.frame_count)
-        if sum(longer // other.period for other in (*found, task)) <= INSTANTS:
+        more = count * (longer // cycle) + longer // task.period
+        if more <= INSTANTS:
             found.append(task)
-            cycle = longer
+            cycle, count = longer, more
     return tuple(found) if len(found) > 1 else ()
 
 
@@ -246,13 +247,16 @@ class Search:
                 yield demand.before(job, frame) + cost, frame, number
 
     def _settled(self, fixed: int, start: int, counted: int, length: int) -> int:
-        """The least window from ``length`` on that holds ``fixed`` and all that comes with it."""
+        """The least window from ``length`` on that holds ``fixed`` and all that comes with it.
+
+        No more than what was reached where the effort does not do.
+        """
         rivals, others = self.rivals, self.others
         while True:
             self.effort.left -= 1 + len(others) // 4
             needed = fixed + counted + rivals.before(start + length)
             for item in others:
                 needed += cost_of(item, -(-(length + item[1]) // item[0]))
-            if needed <= length:
+            if needed <= length or self.effort.left <= 0:
                 return length
             length = needed

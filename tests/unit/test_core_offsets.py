@@ -129,6 +129,21 @@ def test_many_tasks_with_random_offsets_end_soon() -> None:
     assert any(s.alignment is not None for s in some)
 
 
+@pytest.mark.parametrize("spare", [1, 10**6])
+def test_a_core_just_under_full_load_ends(spare: int) -> None:
+    """A section, and all but one part in 10^12 of the time: no window settles soon."""
+    period = 10**12
+    tasks = [task(f"t{n}", 9 - n, 10 - n, 40, n) for n in range(4)]
+    tasks.append(task("low", 1, 6 * period // 40 - spare, period, 7))
+    sections = Section("o", "low", 5), Section("o", "t0", 1)
+    some = {r.task.name: r for r in analyse(tasks, sections)}
+    blind = {r.task.name: r for r in analyse([replace(t, offset=None) for t in tasks], sections)}
+    for name, response in some.items():
+        bound, other = response.bound, blind[name].bound
+        assert (bound is None) == (other is None)
+        assert bound is None or other is None or bound <= other
+
+
 def test_an_order_is_found_that_only_offsets_allow() -> None:
     tight = Task("tight", 1, 10, 3, 3, offset=5), Task("late", 2, 10, 4, 4, offset=0)
     order = audsley_tasks(tight)
