@@ -83,8 +83,10 @@ def of_model(analysis: Analysis) -> Advice | None:
     order = [*(task.element for task in free), *(m.element for m in system.messages)]
 
     def holds(other: Network) -> bool:
-        found = holistic.analyse(other)
-        return found.met and replace(analysis, network=other, found=found, plain=found).schedulable
+        return any(
+            found.met and replace(analysis, network=other, found=found, plain=found).schedulable
+            for found in holistic.analyses(other)
+        )
 
     choices = Choices(costs, periods, order)
     return advice(network, choices, analysis.scaling, analysis.schedulable, holds)
@@ -100,7 +102,7 @@ def of_network(network: Network, scaling: NetworkScaling | None, *, met: bool) -
     }
     items = list(network.items())
     periods = [name for name in items if name not in network.released_by]
-    return advice(network, Choices(costs, periods, items), scaling, met, changes.met)
+    return advice(network, Choices(costs, periods, items), scaling, met, holistic.met)
 
 
 def advice(

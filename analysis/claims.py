@@ -6,16 +6,24 @@ of the busy period, and of a message the busy period itself.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
 from gen.claims import ChainClaim, Claim, Claims
+from gen.diagnostics import Diagnostic, error
+from gen.instants import instants, phased
 from gen.terms import Ns
+from gen.unready import UNREADY
 
 from . import latencies
 from .core import can
 from .core.bus import Bus
 from .core.can_response import ERRORS, FrameResponse
 from .core.chains import Hop
+from .core.offsets import Search, aligned
 from .core.responses import Response, demand_of, jitter_of, release_time
 from .core.window import Effort, Window, fixed_cost, source
+from .findings import findings
 from .latencies import Latency, reception_frames
 from .timing import Analysis
 
@@ -34,17 +42,75 @@ class Unclaimed(Exception):  # noqa: N818
 def claims_of(analysis: Analysis) -> Claims:
     """What the certificate of a system whose deadlines are met claims.
 
-    Unclaimed where a processor or bus is loaded to exactly its whole time.
+    Responses are those for all offsets; a processor that is late with some, not with its
+    own, has the instants that show it besides. Unclaimed where a processor or bus is loaded
+    to exactly its whole time.
     """
+    since = by_offsets(analysis)
+    analysis = analysis.for_all_offsets
     items = {}
     for name, response in analysis.found.responses.items():
         items[name] = _of_task(response) if isinstance(response, Response) else _of(response)
+    for name, windows in since.items():
+        items[name] = replace(items[name], since=windows)
     chains = {chain.name: _of_chain(latency) for chain, latency in analysis.limited}
     steps = {hop.step.name for _, latency in analysis.limited for hop in latency.hops}
     rows = {r.row.name: Ns(r.bound) for _, r in analysis.rows() if r.row.name in steps}
     handed = {element for element in analysis.deliveries if latencies.handed(element) in steps}
     waits, busiest = _capped(analysis)
     return Claims(items, rows, waits, busiest, _turns(analysis, handed), chains)
+
+
+def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
+    """An error for each deadline or limit that offsets keep in a way that no certificate shows."""
+    if analysis.for_all_offsets is analysis:
+        return
+    for one in findings(analysis.for_all_offsets, but=by_offsets(analysis)):
+        if one.is_error:
+            text = f"{one.message} but for offsets, and the certificate cannot show that yet"
+            hint = "choose times or priorities that do without offsets"
+            yield error(UNREADY, one.origin, text, notes=one.notes, hint=hint)
+
+
+def by_offsets(analysis: Analysis) -> dict[str, tuple[Ns, ...]]:
+    """The processors that only their offsets keep from being late, with `Claim.since`."""
+    blind = analysis.for_all_offsets
+    if blind is analysis:
+        return {}
+    offsets = {task.name: task.offset for task in analysis.network.tasks}
+    found = {}
+    for name in blind.failed():
+        response = blind.found.responses[name]
+        if isinstance(response, Response) and response.bound is not None:
+            windows = _since(response, offsets, analysis)
+            if windows is not None:
+                found[name] = windows
+    return found
+
+
+def _since(
+    response: Response, offsets: Mapping[str, int | None], analysis: Analysis
+) -> tuple[Ns, ...] | None:
+    """The windows from all instants, with what others inherit for any offsets; None if too late."""
+    level, task = response.level, analysis.tasks[response.task.name]
+    order = tuple(replace(one, offset=offsets[one.name]) for one in level.order)
+    own = next(one for one in order if one.name == task.element)
+    known = replace(response, task=own, level=replace(level, order=order))
+    tasks = aligned(known)
+    everyone = {one.element for one in phased(analysis.system, task)}
+    assert response.bound is not None
+    reach = response.bound - response.jitter - task.deadline
+    starts = instants(analysis.system, task, reach)
+    if {one.name for one in tasks} != everyone or starts is None or task.deadline > task.period:
+        return None
+    search, found = Search(known, tasks, Effort(EFFORT)), []
+    for start in starts:
+        window = search.window(start.time)
+        due = task.offset + start.release * task.period
+        if window is None or start.time + window > due + task.deadline:
+            return None
+        found.append(Ns(window))
+    return tuple(found)
 
 
 def _of_task(response: Response) -> Claim:

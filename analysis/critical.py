@@ -1,8 +1,9 @@
 """The critical instant of a task as a schedule: the worst that its bound stands for.
 
 Everything that can delay the task is released when its busy period begins, each with
-its whole jitter, and again as soon as it may be; the longest section below has just
-begun. What the schedule needs until the worst job is done is the response's window.
+its whole jitter, and again as soon as it may be, or as its offset places it; the longest
+section below has just begun. What the schedule needs until the worst job is done is the
+response's window.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
-from .core.responses import Response, demand_of, jitter_of, release_time
+from .core.responses import Response, demand_of, release_time
 from .core.tasks import Task
 from .core.window import releases
 
@@ -81,9 +82,11 @@ def _jobs(response: Response) -> list[Job]:
         jobs += _released(other, response, place, "interference")
     own = demand_of(response.task, platform)
     count = response.worst_job + 1
+    first = response.lead - response.worst_job * response.task.period
     for job in range(count):
         frame = (response.frame - response.worst_job + job) % len(own.costs)
-        jobs.append((0, len(others) + 1 + job, own.costs[frame], response.task.name, "own"))
+        time = max(0, first + job * response.task.period)
+        jobs.append((time, len(others) + 1 + job, own.costs[frame], response.task.name, "own"))
     if platform.tick_cost:
         ticks = releases(window, platform.tick_period, 0)
         times = [n * platform.tick_period for n in range(ticks)]
@@ -96,18 +99,10 @@ def _jobs(response: Response) -> list[Job]:
 
 def _times(task: Task, response: Response) -> list[int]:
     """When a task is released, at the soonest, within the window."""
-    jitter = jitter_of(task, response.level.platform)
-    count = releases(response.window, task.period, jitter)
-    return [max(0, n * task.period - jitter) for n in range(count)]
+    return [time for time, _ in response.released(task)]
 
 
 def _released(task: Task, response: Response, place: int, kind: str) -> list[Job]:
-    """The jobs of a rival, from the frames in which they cost most."""
-    times = _times(task, response)
-    demand = demand_of(task, response.level.platform)
-    first = demand.first(len(times))
-    frames = len(demand.costs)
-    return [
-        (time, place, demand.costs[(first + n) % frames], task.name, kind)
-        for n, time in enumerate(times)
-    ]
+    """The jobs of a rival, in known frames or those in which they cost most."""
+    costs = demand_of(task, response.level.platform).costs
+    return [(time, place, costs[frame], task.name, kind) for time, frame in response.released(task)]

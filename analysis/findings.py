@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 
 from gen.diagnostics import Diagnostic, error, warning
@@ -34,10 +34,13 @@ LARGEST = 3
 """How many interferers a diagnostic names."""
 
 
-def findings(analysis: Analysis) -> tuple[Diagnostic, ...]:
-    """One error for each deadline that may be missed, each overload, and each limit of a chain."""
+def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic, ...]:
+    """One error for each deadline that may be missed, each overload, and each limit of a chain.
+
+    Deadlines of tasks and messages in ``but`` are left out.
+    """
     found: list[Diagnostic] = []
-    for name in analysis.failed():
+    for name in (one for one in analysis.failed() if one not in but):
         response = analysis.found.responses[name]
         if isinstance(response, Response):
             found.append(_of_task(response, analysis))

@@ -5,7 +5,9 @@ and the timer come from the node's platform figures. The driver's work on a mess
 follows the job that sends it, or the frame that arrived; the frame follows the
 driver. Every user of a protected object has a section of its own. A node's frames
 leave in the order sent, by the contract of the controller, so they share a queue; the
-driver may hand them over one by one.
+driver may hand them over one by one. Periodic processors have their offsets: release k
+is due at the node's epoch + offset + k periods, however late the one before was. Nothing
+ties the probe, or the clock of another node, to that epoch.
 """
 
 from __future__ import annotations
@@ -67,6 +69,7 @@ def _task(task: model.Task, system: System) -> Task:
         timed=task.timed and system.node(task.node).tick is not None,
         sporadic=task.sporadic,
         suspensions=task.suspensions,
+        offset=task.offset if task.slots and not task.sporadic else None,
     )
 
 

@@ -31,6 +31,7 @@ from .words import (
     binding_lines,
     families,
     growth_line,
+    offset_lines,
     verdict_line,
     window_parts,
 )
@@ -226,6 +227,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
             for found, way in zip(analysis.chains, analysis.ways.between_messages(), strict=True)
         ][:SHOWN_CHAINS],
         "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
+        "by_offsets": offset_lines(analysis.responses),
         "factors": factors,
         "room": Markup(plots.svg(plots.room(factors, _whole(analysis)))) if factors else None,
         "instants": _instants(analysis),
@@ -345,8 +347,7 @@ def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
         response = analysis.response(name)
         slices = schedule(response)
         if slices:
-            period = response.worst_job * response.task.period
-            deadline = response.task.deadline - response.jitter + period
+            deadline = response.task.deadline + response.lead
             found.append((name, response.window, Markup(plots.svg(plots.gantt(slices, deadline)))))
     return found
 

@@ -13,7 +13,7 @@ from rich.text import Text
 from . import advice
 from .timing import Analysis, Verdict
 from .units import microseconds
-from .words import WORDS, load_lines, verdict_line
+from .words import WORDS, load_lines, offset_lines, verdict_line
 
 WIDTH = 80
 """Columns of a printed table."""
@@ -40,6 +40,8 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
     if analysis.limited:
         out.print(_chains(analysis))
     out.print(Text(LEGEND, style="dim"))
+    for line in offset_lines(analysis.responses):
+        out.print(Text(line))
     for line in advice.lines(analysis.advice):
         out.print(Text(line))
 

@@ -41,8 +41,9 @@ class Verdict(Enum):
 class Analysis:
     """What the analysis found for a system; names are those of its elements.
 
-    ``found`` counts the rows of a table in the jobs that run them; ``plain`` has the
-    bounds with every row in every job, as one reckons by hand.
+    ``found`` counts the rows of a table in the jobs that run them, and these where offsets
+    place them; ``plain`` has the bounds with every row in every job at any time, as one
+    reckons by hand.
     """
 
     system: System
@@ -63,6 +64,15 @@ class Analysis:
     def origin(self, name: str) -> Origin:
         """Where a task or message stands in the model."""
         return (self.tasks.get(name) or self.messages[name]).origin
+
+    @cached_property
+    def for_all_offsets(self) -> Analysis:
+        """The same where offsets are unknown: itself where none made a response shorter."""
+        if not any(response.alignment for response in self.responses):
+            return self
+        tasks = tuple(replace(task, offset=None) for task in self.network.tasks)
+        network = replace(self.network, tasks=tasks)
+        return replace(self, network=network, found=holistic.analyse(network))
 
     @cached_property
     def responses(self) -> tuple[Response, ...]:

@@ -111,12 +111,20 @@ def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:
     if response.bound is None:
         return ()
     parts = _task_parts(response) if isinstance(response, Response) else _frame_parts(response)
-    jitter = response.jitter if isinstance(response, Response) else response.frame.jitter
+    jitter = response.late if isinstance(response, Response) else response.frame.jitter
     if jitter:
         releaser = analysis.network.released_by.get(name)
         source = f"what leads to it, {releaser}" if releaser else "its late release"
         parts.insert(0, Part("jitter", source, "", jitter))
     return tuple(part for part in parts if part.time)
+
+
+def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
+    """Which responses come of offsets, in one sentence; none where all hold for any."""
+    names = [r.task.name for r in found if isinstance(r, Response) and r.alignment is not None]
+    if not names:
+        return ()
+    return (f"By their offsets: R of {', '.join(names)}. All others hold for any offsets.",)
 
 
 def _task_parts(response: Response) -> list[Part]:

@@ -16,12 +16,14 @@ class Claim:
 
     ``windows`` holds, for each job or instance of the busy period, the time from its
     start in which that one is done (a frame: can begin); ``busy`` is how long a bus is
-    busy at a message's level.
+    busy at a message's level. A processor whose response is longer than its deadline keeps
+    that by its offset: ``since`` each of its `instants.instants` its job is done that much later.
     """
 
     response: Ns = NOTHING
     windows: tuple[Ns, ...] = (NOTHING,)
     busy: Ns = NOTHING
+    since: tuple[Ns, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

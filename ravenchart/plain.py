@@ -18,6 +18,7 @@ from analysis.plain.observed import budgets, observed
 from analysis.plain.results import PlainResult, analyse, everything, loads
 from analysis.report import Execution
 from analysis.units import duration, percent
+from analysis.words import offset_lines
 
 from .observed import tell
 from .steps import Refused
@@ -110,6 +111,8 @@ def show(result: PlainResult, out: Console) -> None:
     out.print(_table(result))
     if len(found.responses) > SHOWN:
         out.print(f"and {len(found.responses) - SHOWN} more with more slack", markup=False)
+    for line in offset_lines(found.responses.values()):
+        out.print(line, markup=False)
     for latency in result.latencies:
         out.print(
             f"chain {latency.chain.name}: reaction {_shown(latency.reaction)}, "

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import behaviour.rules
-from analysis.claims import Unclaimed, claims_of
+from analysis.claims import Unclaimed, claims_of, uncertified
 from analysis.findings import findings
 from analysis.identifiers import order_of
 from analysis.timing import Analysis, analyse
@@ -110,6 +110,9 @@ def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
 
 def claims(checked: Checked) -> Claims:
     """What the program's certificate claims, in ns. Refused when something cannot be shown."""
+    gaps = [render(diagnostic, {}) for diagnostic in uncertified(checked.analysis)]
+    if gaps:
+        raise Refused("\n".join(gaps))
     try:
         return claims_of(checked.analysis)
     except Unclaimed as problem:

@@ -61,18 +61,20 @@ def _row_goals(task: Task, before: int) -> list[Goal]:
 
 
 @dataclass(slots=True)
-class _Worst:
+class Worst:
     """The longest response found so far to one completion."""
 
     bound: int = -1
     job: int = 0
     frame: int = 0
     window: int = 0
+    start: int = 0
 
-    def note(self, bound: int, job: int, frame: int, window: int) -> None:
+    def note(self, bound: int, job: int, frame: int, window: int, start: int = 0) -> None:
         """Keep the first of the longest."""
         if bound > self.bound:
-            self.bound, self.job, self.frame, self.window = bound, job, frame, window
+            self.bound, self.job, self.frame = bound, job, frame
+            self.window, self.start = window, start
 
 
 def response(
@@ -84,10 +86,10 @@ def response(
     of all tasks repeat: as the load is at most 1, later ones are no worse.
     """
     task = own.task
-    worst = {number: _Worst() for number in range(WHOLE, len(task.rows))}
+    worst = {number: Worst() for number in range(WHOLE, len(task.rows))}
     blocked = blocking.length if blocking else 0
     several = len(own.goals) > 1
-    pattern = math.inf
+    repeat = math.inf
     job = 0
     while True:
         effort.left -= 1
@@ -108,8 +110,8 @@ def response(
             return Response(task, level, blocking, None, reason=Reason.EFFORT)
         job += 1
         if job == 1 and not over:
-            pattern = _pattern(level, task.period, effort.left)
-        if over or job >= pattern:
+            repeat = pattern(level, task.period, effort.left)
+        if over or job >= repeat:
             return _found(own, level, blocking, worst, job)
 
 
@@ -122,7 +124,7 @@ def _goals_of(own: Contender, job: int, blocked: int) -> list[Goal]:
     return sorted((before[frame] + cost, frame, number) for cost, frame, number in own.goals)
 
 
-def _pattern(level: Level, period: int, limit: int) -> float:
+def pattern(level: Level, period: int, limit: int) -> float:
     """Jobs after which the releases at a level repeat; infinity when above ``limit``."""
     platform = level.platform
     length = math.lcm(period, platform.tick_period or 1)
@@ -135,7 +137,7 @@ def _pattern(level: Level, period: int, limit: int) -> float:
 
 
 def _found(
-    own: Contender, level: Level, blocking: Section | None, worst: dict[int, _Worst], jobs: int
+    own: Contender, level: Level, blocking: Section | None, worst: dict[int, Worst], jobs: int
 ) -> Response:
     """The response of the job and of its rows."""
     task, whole = own.task, worst[WHOLE]

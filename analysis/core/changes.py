@@ -67,11 +67,6 @@ Met = Callable[[Network], bool]
 """Whether all that is asked of a network holds."""
 
 
-def met(network: Network) -> bool:
-    """Every task and frame meets its deadline."""
-    return holistic.analyse(network).met
-
-
 def ranked(changes: Sequence[Change]) -> tuple[Change, ...]:
     """What suffices first: orders, then the smallest share of a time."""
     return tuple(sorted(changes, key=lambda one: (not one.enough, one.amount)))
@@ -125,7 +120,8 @@ def shrunk(network: Network, chosen: Collection[Part], factor: Fraction) -> Netw
 def slower(network: Network, roots: Sequence[str], holds: Met) -> Iterator[Change]:
     """For each item that an event releases: how much longer its period must be.
 
-    What follows it has its period lengthened with it; deadlines stay.
+    What follows it has its period lengthened with it; deadlines stay. Its releases then come
+    at other times between those of others, so no offset of it counts.
     """
     least, most = STEPS + 1, LONGEST * STEPS
     for root in roots:
@@ -149,7 +145,10 @@ def stretched(network: Network, root: str, factor: Fraction) -> Network:
 
     return replace(
         network,
-        tasks=tuple(replace(task, period=changed(task)) for task in network.tasks),
+        tasks=tuple(
+            replace(task, period=changed(task), offset=None if task.name == root else task.offset)
+            for task in network.tasks
+        ),
         frames={
             bus: tuple(replace(frame, period=changed(frame)) for frame in frames)
             for bus, frames in network.frames.items()

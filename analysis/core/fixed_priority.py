@@ -10,9 +10,9 @@ cost of the job and of the q before it. Joseph and Pandya 1986; Audsley et al.
 1993; Lehoczky 1990 for deadlines beyond the period; Tindell, Burns, Wellings 1994
 for jitter. With one cost per task, no sections and no equal priorities the bound
 is attained by some phasing. It is safe, and may not be attained, for equal
-priorities (each counts in full), for tasks with several frames (each is at its
-worst in every window) and for offsets, which are not used. R counts from the
-arrival and includes the task's own jitter.
+priorities (each counts in full) and for tasks with several frames (each is at its
+worst in every window). R counts from the arrival and includes the task's own jitter.
+It holds for all offsets; where they are known, `offsets` finds what they make shorter.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from .blocking import Section, blockers
 from .busy_period import Contender, response
 from .checks import distinct
 from .kernel import WORTH_IT, busy_periods
+from .offsets import closer
 from .platform import Platform
 from .responses import Level, Reason, Response, jitter_of, release_time, switch_time
 from .tasks import Task
@@ -36,6 +37,9 @@ TASK_EFFORT = 200_000
 
 WHOLE_EFFORT = 5_000_000
 """The same for one call: what comes after has no bound either."""
+
+OFFSETS_EFFORT = 500_000
+"""Steps of windows from chosen instants in one call: what comes after holds for all offsets."""
 
 NO_OVERHEAD = Platform()
 
@@ -55,13 +59,13 @@ def analyse(
     core by its name, ``ceilings`` those of resources that are not just the highest
     priority of the users. ValueError for a name given twice, and as `blockers`.
     """
-    effort = Effort(WHOLE_EFFORT)
+    effort, steps = Effort(WHOLE_EFFORT), Effort(OFFSETS_EFFORT)
     held = blockers(tasks, sections, ceilings)
-    found = {
-        one.task.name: one
-        for core, order in _cores(tasks).items()
-        for one in _core(order, held, (platforms or {}).get(core, NO_OVERHEAD), effort)
-    }
+    found: dict[str, Response] = {}
+    for core, order in _cores(tasks).items():
+        platform = (platforms or {}).get(core, NO_OVERHEAD)
+        responses = closer(_core(order, held, platform, effort), order, platform, steps)
+        found |= {one.task.name: one for one in responses}
     return tuple(found[task.name] for task in tasks)
 
 
@@ -100,7 +104,7 @@ def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Pla
     if len(order) < WORTH_IT or platform.release or platform.tick_cost:
         return []
     for task in order:
-        if task.jitter or task.rows or task.timed:
+        if task.jitter or task.rows or task.timed or task.offset is not None:
             return []
     costs = [task.cost for task in order]
     if platform.context_switch:
@@ -135,7 +139,8 @@ def response_under(
         return Response(task, level, blocking, None, reason=Reason.OVERLOAD)
     for item in others:
         window.add(item.serial, item.source)
-    return response(own, level, blocking, window, Effort(TASK_EFFORT))
+    found = response(own, level, blocking, window, Effort(TASK_EFFORT))
+    return next(closer([found], level.order, platform, Effort(OFFSETS_EFFORT)))
 
 
 def _beginning(tasks: Sequence[Task], platform: Platform) -> tuple[Window, Load]:

@@ -13,7 +13,7 @@ A best case is the sum of the best cases (`best`) along the chain, 0 unless give
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from . import can, fixed_priority
@@ -43,7 +43,8 @@ class Network:
     task or frame that is released by the completion of another, by which; its own
     jitter then comes on top. Its period is that of what releases it, or a multiple where
     not every job does. Names are distinct over tasks and frames. ``platforms`` goes by
-    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`.
+    the name of a core, ``ceilings`` by resource, as in `fixed_priority.analyse`. Only what
+    an event releases has an offset, and those of one core count from a common epoch.
     """
 
     tasks: tuple[Task, ...]
@@ -68,6 +69,9 @@ class Network:
                 )
             if name in self.releasers(name):
                 raise ValueError(f"{name} is released by itself")
+            item = items[name]
+            if isinstance(item, Task) and item.offset is not None:
+                raise ValueError(f"offset of {name} has no meaning: {by} releases it")
         for bus in self.frames:
             if bus not in self.buses:
                 raise ValueError(f"there are messages on {bus}, but no such bus")
@@ -151,6 +155,24 @@ def analyse(network: Network) -> Holistic:
         responses = _responses(network, late)
     known = {name: jitter for name, jitter in late.items() if jitter is not None}
     return Holistic(responses, known, best, rounds)
+
+
+def analyses(network: Network) -> Iterator[Holistic]:
+    """The responses for any offsets and then, where these could make them shorter, by them.
+
+    For searches, which are done with the first if it meets what they look for.
+    """
+    blind = tuple(replace(task, offset=None) for task in network.tasks)
+    known = blind != network.tasks
+    found = analyse(replace(network, tasks=blind) if known else network)
+    yield found
+    if known and not any(r.reason is Reason.OVERLOAD for r in found.responses.values()):
+        yield analyse(network)
+
+
+def met(network: Network) -> bool:
+    """Every task and frame has a bound and meets its deadline."""
+    return any(found.met for found in analyses(network))
 
 
 def _responses(

@@ -9,6 +9,7 @@ from fractions import Fraction
 from .blocking import Section
 from .multiframe import Demand
 from .platform import Platform
+from .streams import Stream
 from .tasks import Row, Task
 from .window import cost_of, releases, source
 
@@ -70,6 +71,20 @@ class Level:
 
 
 @dataclass(frozen=True, slots=True)
+class Alignment:
+    """Where in the pattern of known offsets a response is at its longest.
+
+    The busy period begins at ``start`` (ticks from the epoch of all offsets, or so many
+    cycles later), and the worst job arrives ``lead`` later, or before, by its jitter. ``tasks``
+    are those whose offsets were used.
+    """
+
+    start: int
+    lead: int
+    tasks: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
 class RowResponse:
     """The longest time from the arrival of a job to the completion of one of its rows.
 
@@ -92,8 +107,12 @@ class Response:
     table. ``jobs`` were looked at: all of the busy period, or those after which the
     releases of all tasks repeat. The bound is made of
 
-        jitter + window - worst_job * period = bound
+        window - lead = bound
         blocked + own + interference + overheads = window
+
+    with ``lead`` from the beginning of the busy period to the arrival of the worst job:
+    worst_job * period - jitter, unless offsets make it shorter. These have then an
+    ``alignment``; without one the bound holds for all offsets.
     """
 
     task: Task
@@ -106,6 +125,7 @@ class Response:
     window: int = 0
     rows: tuple[RowResponse, ...] = ()
     reason: Reason | None = None
+    alignment: Alignment | None = None
 
     @property
     def met(self) -> bool:
@@ -123,6 +143,18 @@ class Response:
         return jitter_of(self.task, self.level.platform)
 
     @property
+    def lead(self) -> int:
+        """From the beginning of the busy period to the arrival of the worst job."""
+        if self.alignment is not None:
+            return self.alignment.lead
+        return self.worst_job * self.task.period - self.jitter
+
+    @property
+    def late(self) -> int:
+        """How long after its arrival the busy period's first job is released."""
+        return max(0, self.worst_job * self.task.period - self.lead)
+
+    @property
     def blocked(self) -> int:
         """The longest section of a less urgent task, suffered once."""
         return 0 if self.blocking is None else self.blocking.length
@@ -135,10 +167,11 @@ class Response:
 
     @property
     def interference(self) -> tuple[Interference, ...]:
-        """What each other task of the level executes in the window, most first."""
+        """What each other task of the level that runs executes in the window, most first."""
         if self.bound is None:
             return ()
         found = [self._taken_by(other) for other in self._others()]
+        found = [share for share in found if share.releases]
         return tuple(sorted(found, key=lambda share: -share.time))
 
     @property
@@ -167,14 +200,43 @@ class Response:
         return [task for task in order if task.name != self.task.name]
 
     def _releases(self, task: Task) -> int:
-        return releases(self.window, task.period, jitter_of(task, self.level.platform))
+        platform = self.level.platform
+        if self.uses_offset_of(task):
+            return stream_of(task, platform).count(*self._span(task))
+        return releases(self.window, task.period, jitter_of(task, platform))
+
+    def released(self, task: Task) -> list[tuple[int, int]]:
+        """When jobs of ``task`` are released in the window, at the soonest, with their frames."""
+        platform = self.level.platform
+        count, jitter = self._releases(task), jitter_of(task, platform)
+        demand = demand_of(task, platform)
+        first, since = demand.first(count), -jitter
+        if self.alignment is not None and self.uses_offset_of(task):
+            stream = stream_of(task, platform)
+            first = stream.number(self.alignment.start - jitter)
+            since = stream.offset + first * task.period - self.alignment.start
+        frames = len(demand.costs)
+        return [(max(0, since + n * task.period), (first + n) % frames) for n in range(count)]
+
+    def uses_offset_of(self, task: Task) -> bool:
+        """The jobs of ``task`` count as its offset places them."""
+        return self.alignment is not None and task.name in self.alignment.tasks
+
+    def _span(self, task: Task) -> tuple[int, int]:
+        """When jobs of the window arrive, of a task whose offset is used."""
+        start = self.alignment.start if self.alignment else 0
+        return start - jitter_of(task, self.level.platform), start + self.window
 
     def _taken_by(self, other: Task) -> Interference:
-        """Execution of ``other``, in the frames where it and its switches cost most."""
-        count = self._releases(other)
-        demand = demand_of(other, self.level.platform)
+        """Execution of ``other``, in its known frames or those where it costs most."""
+        count, platform = self._releases(other), self.level.platform
+        demand = demand_of(other, platform)
+        switches = count * switch_time(other, platform)
+        if self.uses_offset_of(other):
+            stream, span = stream_of(other, platform), self._span(other)
+            frame = stream.number(span[0]) % len(demand.costs)
+            return Interference(other, count, frame, stream.cost(*span) - switches)
         item = source(other.period, 0, demand)
-        switches = count * switch_time(other, self.level.platform)
         return Interference(other, count, demand.first(count), cost_of(item, count) - switches)
 
 
@@ -199,3 +261,10 @@ def demand_of(task: Task, platform: Platform) -> Demand:
     if not task.rows:
         return Demand((extra,))
     return Demand(tuple(extra + sum(row.cost for row in rows) for rows in task.frames))
+
+
+def stream_of(task: Task, platform: Platform) -> Stream:
+    """The jobs of a task that has an offset, with their context switches."""
+    return Stream(
+        task.offset or 0, task.period, jitter_of(task, platform), demand_of(task, platform)
+    )

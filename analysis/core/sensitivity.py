@@ -79,15 +79,16 @@ def network_scaling(
     of its item's chain. None when no factor above 0 meets all deadlines.
     """
 
-    def failing(count: int) -> str | None:
-        found = holistic.analyse(scaled_network(network, Fraction(count, steps), names))
-        missed = [name for name in found.responses if not found.meets(name)]
-        return max(missed, key=lambda name: _lateness(found, name), default=None)
+    def grown(count: int) -> Network:
+        return scaled_network(network, Fraction(count, steps), names)
 
-    last = greatest(lambda count: failing(count) is None, 1, FACTOR_LIMIT * steps)
+    last = greatest(lambda count: holistic.met(grown(count)), 1, FACTOR_LIMIT * steps)
     if last is None:
         return None
-    return NetworkScaling(Fraction(last, steps), failing(last + 1))
+    found = holistic.analyse(grown(last + 1))
+    missed = [name for name in found.responses if not found.meets(name)]
+    late = max(missed, key=lambda name: _lateness(found, name), default=None)
+    return NetworkScaling(Fraction(last, steps), late)
 
 
 def scaled_network(network: Network, factor: Fraction, names: Collection[str] | None) -> Network:

@@ -49,7 +49,8 @@ class Task:
     ``suspensions`` times that a job waits for something: each costs two context switches
                    and the work of making it ready
 
-    Offsets are not a parameter: the bounds hold for all of them.
+    ``offset``     arrival of job 0, of frame 0, after an epoch that all tasks of the core
+                   have in common; None where nobody knows
     """
 
     name: str
@@ -64,12 +65,15 @@ class Task:
     sporadic: bool = False
     best: int = 0
     suspensions: int = 1
+    offset: int | None = None
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names field and task."""
         owner = f"task {self.name}"
         positive(owner, period=self.period, deadline=self.deadline, suspensions=self.suspensions)
-        natural(owner, jitter=self.jitter, best=self.best)
+        natural(owner, jitter=self.jitter, best=self.best, offset=self.offset or 0)
+        if self.sporadic and self.offset is not None:
+            raise ValueError(f"offset of {owner} has no meaning: it is sporadic")
         if self.rows:
             natural(owner, cost=self.cost)
             distinct(f"rows of {owner}", [row.name for row in self.rows])
@@ -108,5 +112,5 @@ class Task:
 
 
 def plain(task: Task) -> Task:
-    """The same task with every row in every job: the sum that one reckons by hand."""
-    return replace(task, cost=task.plain_cost, rows=())
+    """The same task with every row in every job, at any time: as one reckons by hand."""
+    return replace(task, cost=task.plain_cost, rows=(), offset=None)

@@ -3,7 +3,8 @@
 What is released by something else has, as jitter, what this analysis found it inherits;
 the blocking is the one found here. A bus is a processor that does not preempt. Cheddar
 reads 32-bit integers, so the unit of time is the largest in which all is exact; where
-there is none that fits, costs and jitter are rounded up, and periods and deadlines down.
+there is none that fits, costs and jitter are rounded up, and periods and deadlines down:
+then there are no start times.
 The form follows published writers of it; no Cheddar was at hand to read what is written.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from xml.etree import ElementTree as Xml
 
 from analysis.core import holistic
@@ -40,11 +41,14 @@ class _Item:
     capacity: int
     jitter: int
     blocking: int
+    start: int
 
     @property
     def times(self) -> tuple[int, ...]:
         """All of its times."""
-        return self.period, self.deadline, self.capacity, self.jitter, self.blocking
+        return (
+            self.period, self.deadline, self.capacity, self.jitter, self.blocking, self.start,
+        )  # fmt: skip
 
 
 def export(network: Network, chains: Sequence[Chain], title: str) -> str:
@@ -56,6 +60,8 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     items = tuple(_items(network))
     places = dict.fromkeys(item.place for item in items)
     unit = _unit(items)
+    if any(time % unit for item in items for time in item.times):
+        items = tuple(replace(item, start=0) for item in items)
     root = Xml.Element("cheddar")
     for line in (f"One unit of time is {unit} ns.", *remarks(given, chains)):
         root.append(Xml.Comment(f" {line.replace('--', '- -')} "))
@@ -104,10 +110,19 @@ def _items(network: Network) -> Iterator[_Item]:
         else:
             place = next(bus for bus, some in network.frames.items() if item in some)
             level = urgency(network.frames[place])[name]
+        start = (item.offset or 0) if isinstance(item, Task) else 0
         if level > PRIORITIES:
             raise Unfit(f"Cheddar has {PRIORITIES} priorities: {places[place]} needs {level}")
         yield _Item(
-            plain[name], places[place], level, item.period, deadline, item.cost, late, blocked
+            plain[name],
+            places[place],
+            level,
+            item.period,
+            deadline,
+            item.cost,
+            late,
+            blocked,
+            start,
         )
 
 
@@ -191,7 +206,7 @@ def _task(parent: Xml.Element, number: str, item: _Item, unit: int) -> None:
         address_space_name=f"{item.place}_space",
         capacity=-(-item.capacity // unit),
         deadline=item.deadline // unit,
-        start_time=0,
+        start_time=item.start // unit,
         priority=item.priority,
         blocking_time=-(-item.blocking // unit),
         policy="SCHED_FIFO",

@@ -326,7 +326,14 @@ class _Writer:
     def _event(self, item: Task | Frame, name: str) -> Attributes:
         if isinstance(item, Task) and item.sporadic and not item.jitter:
             return _attributes(Type="Sporadic", Name=name, Min_Interarrival=item.period)
-        return _attributes(Type="Periodic", Name=name, Period=item.period, Max_Jitter=item.jitter)
+        phase = item.offset if isinstance(item, Task) else None
+        return _attributes(
+            Type="Periodic",
+            Name=name,
+            Period=item.period,
+            Max_Jitter=item.jitter,
+            Phase=phase or None,
+        )
 
     def _releases(self) -> Iterator[Object]:
         """For each task whose releases cost time, that work as a transaction of its own."""

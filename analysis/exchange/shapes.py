@@ -152,6 +152,8 @@ def remarks(network: Network, chains: Iterable[Chain]) -> Iterator[str]:
     for task in network.tasks:
         if task.frame_count > 1:
             yield f"Of table {task.name} every row counts in every job."
+    if any(task.offset for task in network.tasks):
+        yield "Offsets: bounds that make no use of them hold for any."
     for name in in_queues(network):
         yield f"{name} shares a first-in first-out queue: its turn there is jitter."
     for chain in chains:

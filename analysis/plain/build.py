@@ -161,6 +161,9 @@ def _task(row: Values, table: list[Row]) -> Task:
     if not table and not row.number("cost"):
         raise ValueError(f"cost_us of task {row.name} is missing, and it has no rows")
     period = row.number("period")
+    for column in ("offset", "period") if "offset" in row.numbers else ():
+        if not row.exact(column):
+            raise ValueError(f"{column} of task {row.name} must be whole ns: it has an offset")
     return Task(
         row.name,
         row.number("priority"),
@@ -173,6 +176,7 @@ def _task(row: Values, table: list[Row]) -> Task:
         bool(row.number("timed")),
         bool(row.number("sporadic")),
         row.number("best"),
+        offset=row.numbers.get("offset"),
     )
 
 

@@ -75,6 +75,7 @@ KINDS: Kinds = {
         "cost": Column(Form.TIME_UP, least=1),
         "jitter": _LATE,
         "best": _BEST,
+        "offset": Column(Form.TIME_DOWN),
         "timed": _FLAG,
         "sporadic": _FLAG,
         "released_by": _TEXT,
@@ -132,6 +133,14 @@ class Values:
     def number(self, column: str, default: int = 0) -> int:
         """A number, a time in ns, or 1 for yes; the default where the column is empty."""
         return self.numbers.get(column, default)
+
+    def exact(self, column: str) -> bool:
+        """The time in a column is whole ns: nothing was rounded."""
+        for title, text in self.entry.columns.items():
+            name, unit = _split(title, KINDS[self.entry.kind])
+            if name == column:
+                return (_fraction(text) * unit).denominator == 1
+        return True
 
     def word(self, column: str) -> str:
         """A word; none where the column is empty."""
@@ -213,10 +222,14 @@ def _converted(text: str, form: Form, unit: int) -> int | str:
         return int(text, 16) if text[:2] in ("0x", "0X") else int(text)
     if _NUMBER.fullmatch(text) is None:
         return f"must be a number such as 12.5, not {text[:40]}"
-    exact = Fraction(text.rstrip(".") if text.endswith(".") else text) * unit
+    exact = _fraction(text) * unit
     if form is Form.TIME_UP:
         return -(-exact.numerator // exact.denominator)
     return exact.numerator // exact.denominator
+
+
+def _fraction(text: str) -> Fraction:
+    return Fraction(text.rstrip(".") if text.endswith(".") else text)
 
 
 def _in_range(number: int, column: Column, text: str) -> int | str:

@@ -121,6 +121,8 @@ def _task(response: Response, found: Holistic, detailed: bool) -> Json:
         "blocker": response.blocking.user if response.blocking else None,
         "object": response.blocking.resource if response.blocking else None,
         "worst_job": response.worst_job,
+        "offset": task.offset,
+        "by_offsets": response.alignment is not None,
         "rows": [
             {"row": row.row.name, "cost": row.row.cost, "response": row.bound}
             for row in response.rows

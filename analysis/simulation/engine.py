@@ -10,6 +10,7 @@ from analysis.core.bus import Frame
 from analysis.core.checks import natural
 from analysis.core.holistic import Network
 from analysis.core.platform import Platform
+from analysis.core.tasks import Task
 
 from .phases import Phase, Scenario
 from .processor import Job, Processor, segments_of
@@ -116,7 +117,9 @@ class _Engine:
         raise ValueError(f"the simulation takes more than {EVENTS} events: shorten it")
 
     def _phase(self, name: str) -> Phase:
-        return self.scenario.phases.get(name, _SYNCHRONOUS)
+        item = self.items[name]
+        offset = item.offset if isinstance(item, Task) else None
+        return self.scenario.phases.get(name, Phase(offset) if offset else _SYNCHRONOUS)
 
     def _arrive(self, name: str, number: int, arrival: int, event: int | None = None) -> None:
         """Note when an instance that arrives then is released, never before the one before it."""

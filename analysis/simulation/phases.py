@@ -32,7 +32,8 @@ class Inside:
 class Phase:
     """One way in which a task or message can behave; all times in ticks.
 
-    ``first``   arrival of the first job; unused for what another item releases
+    ``first``   arrival of the first job: the offset of a task that has one; unused for what
+                another item releases
     ``late``    from arrival to release of job k, at most its jitter
     ``more``    how much more than a period passes between the arrivals of jobs k and k + 1
     ``frame``   the frame of the table that the first job executes
@@ -48,7 +49,8 @@ class Phase:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """The phases of a network's items by name (all others arrive at 0) and faults of buses.
+    """The phases of a network's items by name (all others arrive at 0, or at their offsets) and
+    faults of buses.
 
     ``faults`` gives, by bus, the instants at which what is being sent is destroyed, in order.
     """
@@ -74,13 +76,16 @@ def _chance_phase(item: Task | Frame, sections: Iterable[Section], chance: rando
     first = chance.randrange(item.period)
     if isinstance(item, Frame):
         return Phase(first, late)
+    inside = _chance_inside([s for s in sections if s.user == item.name], item, chance)
+    if item.offset is not None:
+        return Phase(item.offset, late, inside=inside)
     sporadic = item.sporadic and chance.random() < 0.5
     return Phase(
         first,
         late,
         (lambda _: chance.randrange(item.period)) if sporadic else none,
         chance.randrange(item.frame_count),
-        _chance_inside([s for s in sections if s.user == item.name], item, chance),
+        inside,
     )
 
 

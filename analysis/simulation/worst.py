@@ -2,17 +2,18 @@
 
 All rivals are released together at one instant, each with its whole jitter, and from then
 on without any; one tick before, the blocking section has been entered; one bit before,
-the blocking frame has begun.
+the blocking frame has begun. Where offsets are used, only what can be released then is.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from analysis.core.bus import Frame
 from analysis.core.can_response import FrameResponse
-from analysis.core.responses import Response
+from analysis.core.responses import Alignment, Response
 from analysis.core.tasks import Task
 
 from .phases import Choice, Inside, Phase, Scenario
@@ -35,6 +36,8 @@ def of_task(response: Response) -> WorstCase:
     task = response.task
     if response.bound is None:
         raise ValueError(f"task {task.name} has no bound")
+    if response.alignment is not None:
+        return _of_aligned(response, response.alignment)
     level = response.level
     lead = 1 + max(other.jitter for other in level.order)
     frames = {share.task.name: share.frame for share in response.interference}
@@ -46,6 +49,36 @@ def of_task(response: Response) -> WorstCase:
     if blocking is not None and blocking.user in phases:
         phases[blocking.user] = Phase(lead - 1, inside=(Inside(0, blocking),))
     return WorstCase(Scenario(phases), _never(lead, response))
+
+
+def _of_aligned(response: Response, alignment: Alignment) -> WorstCase:
+    """As late into the pattern of offsets as all tasks have arrived before."""
+    task, level = response.task, response.level
+    order = level.order[: level.reach]
+    known = [other for other in order if response.uses_offset_of(other)]
+    cycle = math.lcm(*(other.period * other.frame_count for other in known))
+    begun = max((other.offset or 0) + 2 * other.jitter for other in order)
+    start = alignment.start + -(-begun // cycle) * cycle
+    frames = {share.task.name: share.frame for share in response.interference}
+    frames[task.name] = (response.frame - response.worst_job) % task.frame_count
+    phases = _together([other for other in order if other not in known], start, frames)
+    for other in known:
+        phases[other.name] = Phase(other.offset or 0, _until(start, other))
+    until = start + response.window + 1
+    for other in level.order[level.reach :]:
+        phases[other.name] = Phase(until)
+    return WorstCase(Scenario(phases), until)
+
+
+def _until(start: int, task: Task) -> Choice:
+    """Jobs that can be released at ``start`` are; all others are not late."""
+    offset, period, jitter = task.offset or 0, task.period, task.jitter
+
+    def late(job: int) -> int:
+        wait = start - offset - job * period
+        return wait if 0 <= wait <= jitter else 0
+
+    return late
 
 
 def _never(lead: int, response: Response) -> int:

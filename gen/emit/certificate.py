@@ -17,21 +17,22 @@ from ..model import SharedObject, System, Task
 from .ada import SPARK, Aspect, Chain, Comment, Decl, Expr, Package, Ref, Unit, number
 from .certificate_bus import bus_claims, bus_terms
 from .certificate_chains import chain_claims
+from .certificate_demand import costs, demand, most, switches, work
 from .certificate_hops import hops_of
+from .certificate_offsets import offset_claims, offset_terms
 from .certificate_terms import (
+    LATE,
     SLOW,
     arrivals,
     assured,
     before,
     bounded,
-    ceiling,
     name_of,
     named,
     plus,
     refuse,
     stated,
     times,
-    within,
 )
 from .naming import ada_case
 
@@ -64,6 +65,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             items.append(stated(f"{own}_Tick_C", node.tick.wcet))
     for task in system.tasks:
         items += _terms(system, task)
+    items += offset_terms(system, claims)
     for bus in system.buses:
         items += bus_terms(system, bus)
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
@@ -110,7 +112,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
     items.append(named(f"{own}_J", _jitter(system, task)))
     items.append(arrivals(own))
-    items += [named(f"{own}_{letter}", value) for letter, value in _costs(task).items()]
+    items += [named(f"{own}_{letter}", value) for letter, value in costs(task).items()]
     items.append(named(f"{own}_B", blocking))
     return items
 
@@ -145,56 +147,7 @@ def _jitter(system: System, task: Task) -> Expr:
     return plus(*terms)
 
 
-def _switches(task: Task) -> Expr:
-    """To a job and back, twice where it waits for its least separation as well."""
-    return Ref(f"{4 if task.sporadic else 2} * {ada_case(task.node)}_Context_Switch")
-
-
-def _costs(task: Task) -> dict[str, Expr]:
-    """C of what every release executes, and C_n of the rows of every n-th release."""
-    switches = _switches(task)
-    if not task.slots:
-        return {"C": plus(Ref(f"{name_of(task.element)}_Budget"), switches)}
-    groups: dict[int, list[Expr]] = {1: []}
-    for slot in task.slots:
-        groups.setdefault(slot.divisor, []).append(Ref(f"{name_of(slot.element)}_Budget"))
-    groups[1].append(switches)
-    return {
-        "C" if divisor == 1 else f"C_{divisor}": plus(*groups[divisor])
-        for divisor in sorted(groups)
-    }
-
-
 # --- Claims --------------------------------------------------------------------------
-
-
-def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:
-    """What ``own`` work of a task needs within a window, with all that can delay it."""
-    node = system.node(task.node)
-    terms = [own, Ref(f"{name_of(task.element)}_B")]
-    for other in system.tasks:
-        if other.node != task.node:
-            continue
-        if other is not task and other.priority >= task.priority:
-            terms.append(_work(other, within(name_of(other.element), window)))
-        if node.release:
-            ready = number(2 if other.sporadic else 1), Ref(f"{ada_case(node.name)}_Release")
-            terms.append(times(within(name_of(other.element), window), *ready))
-    if node.tick is not None and node.tick.wcet:
-        tick = ada_case(node.name)
-        terms.append(times(ceiling(window, Ref(f"{tick}_Tick_T")), Ref(f"{tick}_Tick_C")))
-    return plus(*terms)
-
-
-def _work(task: Task, releases: Expr) -> Expr:
-    """The most that so many releases in a row execute: they begin with all rows at once."""
-    own = name_of(task.element)
-    terms = []
-    for letter in _costs(task):
-        divisor = int(letter.partition("_")[2] or 1)
-        count = releases if divisor == 1 else ceiling(releases, number(divisor))
-        terms.append(times(count, Ref(f"{own}_{letter}")))
-    return plus(*terms)
 
 
 def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[Decl]:
@@ -213,18 +166,22 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
             items.append(named(f"{own}_W", Chain("-", (bound, jitter))))
         else:
             items.append(stated(f"{own}_W{tail}", window))
-        work = _work(task, number(job + 1))
+        done = work(task, most(number(job + 1)))
         if len(windows) == 1:
-            work = plus(*(Ref(f"{own}_{letter}") for letter in _costs(task)))
-        items.append(named(needs, demand(system, task, last, work)))
+            done = plus(*(Ref(f"{own}_{letter}") for letter in costs(task)))
+        items.append(named(needs, demand(system, task, last, done)))
         items += bounded(Ref(needs), last, label)
         if len(windows) > 1:
             items.append(refuse(plus(jitter, last, *before(own, job)), bound, label, SLOW))
     limit = times(number(len(windows)), period)
     problem = "can be released again before it completes"
     items.append(refuse(plus(jitter, last), limit, label, problem))
-    items.append(refuse(bound, Ref(f"{own}_D"), label, "can miss its deadline"))
-    items += [assured(Ref(f"{own}_Needs{tail}"), last), assured(bound, Ref(f"{own}_D"))]
+    if claims.of(label).since:
+        items.append(assured(Ref(f"{own}_Needs{tail}"), last))
+        items += offset_claims(system, task, claims.of(label))
+    else:
+        items.append(refuse(bound, Ref(f"{own}_D"), label, LATE))
+        items += [assured(Ref(f"{own}_Needs{tail}"), last), assured(bound, Ref(f"{own}_D"))]
     for place, slot in enumerate(task.slots, 1):
         if slot.element in rows:
             items += _row(system, task, place, claims.rows.get(slot.element, 0))
@@ -236,12 +193,12 @@ def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
     row, own = task.slots[place - 1].element, name_of(task.element)
     done = name_of(row)
     budgets = [Ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
-    work = plus(_switches(task), *budgets)
+    needed = plus(switches(task), *budgets)
     window = Ref(f"{done}_W")
     return [
         Comment(f"[{row}] done, from the event that releases its processor"),
         stated(f"{done}_Done", bound),
         named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
-        named(f"{done}_Needs", demand(system, task, window, work)),
+        named(f"{done}_Needs", demand(system, task, window, needed)),
         *bounded(Ref(f"{done}_Needs"), window, row),
     ]

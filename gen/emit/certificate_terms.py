@@ -6,6 +6,7 @@ from .ada import Chain, Decl, Expr, Object, Pragma, Ref, chain, number
 from .naming import constant_name as name_of
 
 __all__ = [
+    "LATE",
     "ONE",
     "SLOW",
     "arrivals",
@@ -23,6 +24,8 @@ __all__ = [
 ]
 
 ONE = number(1)
+
+LATE = "can miss its deadline"
 
 SLOW = "can take longer than its claimed response time"
 

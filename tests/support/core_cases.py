@@ -27,9 +27,18 @@ def cases(file: str, *models: str) -> list[Any]:
 
 
 def tasks_of(case: Any) -> list[Task]:
-    """The tasks; offsets are left out, and priorities are 0 where the case gives none."""
+    """The tasks; priorities are 0 where the case gives none, and so are offsets in one with any."""
+    known = 0 if any("offset" in t for t in case["tasks"]) else None
     return [
-        Task(t["name"], t.get("prio", 0), t["T"], t["D"], t["C"], t.get("J", 0))
+        Task(
+            t["name"],
+            t.get("prio", 0),
+            t["T"],
+            t["D"],
+            t["C"],
+            t.get("J", 0),
+            offset=t.get("offset", known),
+        )
         for t in case["tasks"]
     ]
 

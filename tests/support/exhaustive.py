@@ -1,8 +1,8 @@
 """The longest responses of small task sets over everything that can happen, tick by tick.
 
-Nothing of the analysis is used or known here. Each task may start at any time, each
-job may be released up to the jitter late, a sporadic task may arrive late, and of
-several jobs of one priority any may run. All states that can be reached are visited.
+Nothing of the analysis is used or known here. Each task may start at any time, or has an
+offset; each job may be released up to the jitter late, a sporadic task may arrive late, and
+of several jobs of one priority any may run. All states that can be reached are visited.
 Time is discrete: a less urgent job that holds others up has begun a whole tick before.
 """
 
@@ -32,7 +32,8 @@ class Toy:
 
     From tick ``hold[0]`` of a job on it is inside an object for ``hold[1]`` ticks, and
     there it has the priority ``hold[2]``. A job that is not ``preemptible`` runs to its end.
-    Of the tasks of one ``queue``, without jitter, only the oldest job competes.
+    Of the tasks of one ``queue``, without jitter, only the oldest job competes. With an
+    ``offset`` job 0, of frame 0, arrives that long after the beginning, and none ever waits.
     """
 
     priority: int
@@ -43,6 +44,7 @@ class Toy:
     hold: tuple[int, int, int] | None = None
     preemptible: bool = True
     queue: str = ""
+    offset: int | None = None
 
 
 @dataclass
@@ -56,10 +58,7 @@ class Seen:
 def longest_responses(toys: Sequence[Toy]) -> list[Seen]:
     """What each task suffers at worst; its load must be at most 1, or this never ends."""
     seen = [Seen(0, {}) for _ in toys]
-    starts: list[State] = [
-        tuple((NOT_STARTED, frame, (), ()) for frame in frames)
-        for frames in product(*(range(len(toy.frames)) for toy in toys))
-    ]
+    starts: list[State] = list(product(*map(_starts, toys)))
     known: set[State] = set(starts)
     open_states = list(starts)
     while open_states:
@@ -71,6 +70,13 @@ def longest_responses(toys: Sequence[Toy]) -> list[Seen]:
                     assert len(known) < STATES, toys
                     open_states.append(after)
     return seen
+
+
+def _starts(toy: Toy) -> list[TaskState]:
+    """How a task may begin: with any frame at any time, or with the first at its offset."""
+    if toy.offset is not None:
+        return [(toy.offset, 0, (), ())]
+    return [(NOT_STARTED, frame, (), ()) for frame in range(len(toy.frames))]
 
 
 def _arrivals(toy: Toy, state: TaskState) -> Iterator[TaskState]:

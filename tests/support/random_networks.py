@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 from analysis.core.blocking import Section
 from analysis.core.bus import Bus, Errors, Frame
@@ -29,6 +30,17 @@ def random_network(chance: random.Random, *, plain: bool = False) -> Network:
         tasks, frames, released = _chain(chance, tasks, frames)
     homes = {"can": tuple(frames)} if frames else {}
     return Network(tuple(tasks), homes, {"can": bus} if frames else {}, released, tuple(sections))
+
+
+def with_offsets(network: Network, chance: random.Random) -> Network:
+    """The network with offsets of most tasks that can have one, some beyond their period."""
+    tasks = tuple(
+        replace(task, offset=chance.randrange(2 * task.period))
+        if not task.sporadic and task.name not in network.released_by and chance.random() < 0.8
+        else task
+        for task in network.tasks
+    )
+    return replace(network, tasks=tasks)
 
 
 def _tasks(chance: random.Random, core: str, plain: bool) -> list[Task]:

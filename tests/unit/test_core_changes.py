@@ -13,7 +13,6 @@ from analysis.core.bus import Bus, Frame
 from analysis.core.changes import (
     STEPS,
     Kind,
-    met,
     moved,
     parts,
     ranked,
@@ -23,7 +22,7 @@ from analysis.core.changes import (
     slower,
     stretched,
 )
-from analysis.core.holistic import Network
+from analysis.core.holistic import Network, met
 from analysis.core.tasks import Row, Task
 from tests.support.random_networks import random_network
 

@@ -255,6 +255,108 @@ def test_two_tables_are_exact_with_two_frames(longest: int, number: int) -> None
     assert compared == number
 
 
+Phased = tuple[tuple[Shape, int | None], ...]
+"""Shapes with their offsets; None: at any time."""
+
+
+def phased(chosen: Sequence[Shape], *, unknown: bool = False) -> Iterator[Phased]:
+    """All offsets within a cycle of each table, perhaps of none; those of the first are 0."""
+    places: list[list[int | None]] = [[0]]
+    for period, frames, _ in chosen[1:]:
+        places.append([*range(period * len(frames)), *([None] if unknown else [])])
+    for offsets in product(*places):
+        yield tuple(zip(chosen, offsets, strict=True))
+
+
+def both(known: Phased) -> tuple[list[Task], list[Toy]]:
+    chosen = [shape for shape, _ in known]
+    offsets = [offset for _, offset in known]
+    return (
+        [replace(t, offset=o) for t, o in zip(tasks_of(chosen), offsets, strict=True)],
+        [replace(t, offset=o) for t, o in zip(toys(chosen), offsets, strict=True)],
+    )
+
+
+@pytest.mark.parametrize(
+    ("count", "longest", "jitter", "number", "shorter"),
+    [
+        (2, 6, 0, 581, 178),
+        (3, 5, 0, 1_425, 793),
+        (2, 4, 2, 657, 228),
+        (3, 3, 1, 72, 62),
+        long(3, 4, 1, 1_424, 1_048),
+        long(2, 5, 5, 8_028, 1_992),
+    ],
+)
+def test_offsets_are_exact(
+    count: int, longest: int, jitter: int, number: int, shorter: int
+) -> None:
+    compared = less = 0
+    for chosen in sets(plain_shapes(longest, jitter), count):
+        plain = bounds(tasks_of(chosen))
+        for known in phased(chosen):
+            compared += 1
+            tasks, simulated = both(known)
+            found = bounds(tasks)
+            assert found == observed(simulated), known
+            less += found != plain
+    assert (compared, less) == (number, shorter)
+
+
+@pytest.mark.parametrize(("count", "longest", "number"), [(2, 5, 279), (3, 4, 292)])
+def test_offsets_beside_tasks_of_unknown_phase_are_exact(
+    count: int, longest: int, number: int
+) -> None:
+    compared = 0
+    for chosen in sets(plain_shapes(longest), count):
+        for known in phased(chosen, unknown=True):
+            compared += 1
+            tasks, simulated = both(known)
+            assert bounds(tasks) == observed(simulated), known
+    assert compared == number
+
+
+@pytest.mark.parametrize(("count", "longest", "number"), [(2, 4, 133), (3, 4, 630)])
+def test_offsets_beside_sections_and_equal_priorities_are_safe(
+    count: int, longest: int, number: int
+) -> None:
+    compared = 0
+    for chosen in sets(plain_shapes(longest), count):
+        for known in phased(chosen):
+            tasks, simulated = both(known)
+            equal = [replace(task, priority=1) for task in tasks]
+            seen = observed([replace(toy, priority=1) for toy in simulated])
+            assert at_least(bounds(equal), seen), known
+            for high, low, start, length in sharings(chosen):
+                compared += 1
+                held = list(simulated)
+                held[low] = replace(held[low], hold=(start, length, 9 - high))
+                sections = Section("o", f"t{low}", length), Section("o", f"t{high}", 1)
+                assert at_least(bounds(tasks, sections), observed(held)), (known, high, low)
+    assert compared == number
+
+
+@pytest.mark.parametrize(
+    ("longest", "frames", "others", "number"),
+    [(3, 2, 2, 2_136), long(2, 3, 3, 4_602), long(4, 2, 4, 12_276)],
+)
+def test_tables_with_offsets_are_exact_row_by_row(
+    longest: int, frames: int, others: int, number: int
+) -> None:
+    compared = 0
+    tables = framed_shapes(longest, frames)
+    for plain, table in product([*plain_shapes(others), *tables], tables):
+        for chosen in ((plain, table), (table, plain)):
+            if load(chosen) > 1:
+                continue
+            for known in phased(chosen):
+                compared += 1
+                tasks, simulated = both(known)
+                assert bounds(tasks) == observed(simulated), known
+                assert row_bounds(tasks) == row_observations(simulated), known
+    assert compared == number
+
+
 @pytest.mark.parametrize(
     ("count", "longest", "jitter", "number"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -55,11 +56,15 @@ def test_tasks(case: Any) -> None:
 
 
 @pytest.mark.parametrize("case", named("rta.json", "fp-offsets"))
-def test_tasks_with_offsets_lie_between_the_exact_and_the_plain_figure(case: Any) -> None:
-    for response in fixed_priority.analyse(tasks_of(case)):
+def test_tasks_with_offsets_have_the_exact_figure_and_without_them_the_plain_one(
+    case: Any,
+) -> None:
+    tasks = tasks_of(case)
+    for response in fixed_priority.analyse(tasks):
         expected = case["expected"][response.task.name]
-        assert response.bound is not None
-        assert expected["R"] <= response.bound == expected["R_without_offsets"]
+        assert (response.bound, response.met) == (expected["R"], expected["ok"])
+    for response in fixed_priority.analyse([replace(task, offset=None) for task in tasks]):
+        assert response.bound == case["expected"][response.task.name]["R_without_offsets"]
 
 
 @pytest.mark.parametrize("case", named("rta.json", "opa"))

@@ -222,7 +222,9 @@ def systems(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
         period = draw(st.integers(4, 30))
         made = task(f"t{index}", draw(st.integers(1, 4)), draw(st.integers(1, 4)), period)
         late = draw(st.integers(0, 9))
-        tasks.append(replace(made, rows=rows, jitter=late, timed=draw(st.booleans())))
+        offset = draw(st.none() | st.integers(0, 60))
+        timed = draw(st.booleans())
+        tasks.append(replace(made, rows=rows, jitter=late, timed=timed, offset=offset))
     sections = [
         Section(f"o{draw(st.integers(0, 1))}", t.name, draw(st.integers(1, t.plain_cost)))
         for t in tasks
@@ -232,7 +234,9 @@ def systems(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
 
 def adds_up(r: Response) -> bool:
     window = r.blocked + r.own + sum(i.time for i in r.interference) + r.overheads.time
-    return window == r.window and r.bound == r.jitter + window - r.worst_job * r.task.period
+    if r.alignment is None:
+        assert r.lead == r.worst_job * r.task.period - r.jitter
+    return window == r.window and r.bound == window - r.lead
 
 
 @settings(max_examples=300, deadline=None)
@@ -285,7 +289,28 @@ def test_one_response_alone_is_the_same(
         rivals = [t for t in tasks if t.priority >= r.task.priority and t is not r.task]
         below = [t for t in tasks if t.priority < r.task.priority]
         alone = response_under(r.task, rivals, below, held.get(r.task.name), platform)
-        assert (alone.bound, alone.jobs, alone.window) == (r.bound, r.jobs, r.window)
+        assert (alone.bound, alone.window, alone.alignment) == (r.bound, r.window, r.alignment)
+
+
+@settings(max_examples=300, deadline=None)
+@given(systems())
+def test_offsets_only_make_bounds_shorter(
+    system: tuple[list[Task], list[Section], Platform],
+) -> None:
+    tasks, sections, platform = system
+    blind = [replace(task, offset=None) for task in tasks]
+    for known, any_ in zip(
+        analyse(tasks, sections, {"": platform}),
+        analyse(blind, sections, {"": platform}),
+        strict=True,
+    ):
+        assert known.reason is any_.reason
+        if known.bound is None or any_.bound is None:
+            assert known.bound is any_.bound
+            continue
+        assert known.bound <= any_.bound
+        assert all(k.bound <= a.bound for k, a in zip(known.rows, any_.rows, strict=True))
+        assert known.alignment is not None or known.bound == any_.bound
 
 
 def test_the_reference_cases_add_up() -> None:

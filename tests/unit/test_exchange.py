@@ -336,6 +336,24 @@ def test_cheddar_rounds_to_the_safe_side_where_it_must() -> None:
         "jitter": "3",
     }
     assert (found["b"]["capacity"], found["b"]["period"]) == ("1", str((10**10 + 19) // 5))
+    apart = cheddar_tasks(Network((replace(tasks[0], offset=5), replace(tasks[1], offset=0))))
+    assert apart["a"]["start_time"] == "0"
+
+
+def test_offsets_are_start_times_and_phases_and_stand_in_the_head() -> None:
+    tasks = Task("a", 2, 100, 100, 40, offset=0), Task("b", 1, 100, 100, 30, offset=50)
+    network = Network((*tasks, Task("c", 0, 100, 100, 10)))
+    start = {name: task["start_time"] for name, task in cheddar_tasks(network).items()}
+    assert start == {"a": "0", "b": "5", "c": "0"}
+    for name, export in FORMATS.items():
+        assert "Offsets: bounds that make no use of them hold for any." in export(network, (), "x")
+        blind = Network(tuple(replace(task, offset=None) for task in network.tasks))
+        assert "Offsets" not in export(blind, (), "x"), name
+    events = [
+        inner(transaction.get("External_Events"))[0]
+        for transaction in by_kind(parse(mast.export(network, (), "x")))["Transaction"]
+    ]
+    assert [event.get("Phase") for event in events] == [None, "50.0", None]
 
 
 def test_what_is_spelled_out_has_the_same_bounds() -> None:

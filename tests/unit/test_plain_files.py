@@ -61,6 +61,40 @@ def test_times_are_rounded_to_the_safe_side() -> None:
     assert (task.cost, task.jitter, task.best) == (1_001, 1, 999)
 
 
+def test_an_offset_is_whole_ns_and_so_is_its_period() -> None:
+    (task,) = system(task_file(offset_us="2.5")).network.tasks
+    assert (task.offset, task.period) == (2_500, 10_000)
+    (task,) = system(task_file()).network.tasks
+    assert task.offset is None
+    whole = "must be whole ns: it has an offset"
+    assert problems(task_file(offset_us="0.0005")) == [f"a.csv:2: error: offset of task a {whole}"]
+    (told,) = problems(task_file(offset_us="0", period_us="10.0005"))
+    assert told == f"a.csv:2: error: period of task a {whole}"
+    (told,) = problems(task_file(offset_us="0", sporadic="yes"))
+    assert told == "a.csv:2: error: offset of task a has no meaning: it is sporadic"
+    assert "offset_us of task a must be at least 0" in problems(task_file(offset_us="-1"))[0]
+    follows = "task,priority,period_us,cost_us,offset_us,released_by\na,1,10,1,,\nb,2,10,1,5,a\n"
+    assert problems(follows) == ["a.csv:3: error: offset of b has no meaning: a releases it"]
+
+
+def test_offsets_make_bounds_shorter_and_it_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "apart.csv"
+    text = "task,priority,period_us,cost_us,offset_us\na,2,10,4,0\nb,1,10,3,5\n"
+    path.write_text(text)
+    assert main(["analyse", str(path)]) == 0
+    assert "By their offsets: R of b. All others hold for any offsets." in capsys.readouterr().out
+    main(["analyse", str(path), "--json"])
+    a, b = json.loads(capsys.readouterr().out)["tasks"]
+    assert (a["by_offsets"], b["by_offsets"], b["response"], b["offset"]) == (
+        False,
+        True,
+        3000,
+        5000,
+    )
+
+
 @pytest.mark.parametrize(
     ("title", "value", "ns"),
     [

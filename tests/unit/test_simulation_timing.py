@@ -18,7 +18,7 @@ from analysis.core.tasks import Row, Task
 from analysis.simulation import worst
 from analysis.simulation.engine import simulate
 from analysis.simulation.phases import Inside, Phase, Scenario, chance_scenario
-from tests.support.random_networks import random_network
+from tests.support.random_networks import random_network, with_offsets
 
 SYSTEMS = 1_000
 
@@ -134,6 +134,59 @@ def test_no_random_system_is_observed_above_its_bounds() -> None:
                         best = found.best[name]
                         assert longest <= best + one.bound, (seed, name, row)
     assert compared > 5 * SYSTEMS
+
+
+def test_no_random_system_with_offsets_is_observed_above_its_bounds() -> None:
+    """Tables, sections, jitter, several cores and chains, phases as the offsets say."""
+    shorter = compared = 0
+    for seed in range(SYSTEMS):
+        chance = random.Random(seed)
+        network = with_offsets(random_network(chance), chance)
+        found = holistic.analyse(network)
+        until = 10 * max(item.period for item in network.items().values())
+        seen = simulate(network, chance_scenario(network, chance, until), until)
+        for name, longest in seen.longest.items():
+            bound = found.from_event(name)
+            assert bound is None or longest <= bound, (seed, name, longest, bound)
+            compared += 1
+        responses = [r for r in found.responses.values() if isinstance(r, Response)]
+        for response in responses:
+            shorter += response.alignment is not None
+            for one in response.rows:
+                row = seen.rows.get((response.task.name, one.row.name), 0)
+                assert row <= found.best[response.task.name] + one.bound, (seed, one)
+    assert compared > 2 * SYSTEMS
+    assert shorter > SYSTEMS // 10
+
+
+def test_every_task_attains_a_bound_that_comes_of_offsets() -> None:
+    """No sections; priorities that differ; tables among them."""
+    attained = 0
+    for seed in range(SYSTEMS // 2):
+        chance = random.Random(seed)
+        plain = replace(random_network(chance, plain=True), sections=())
+        rows = (Row("r0", 5), Row("r1", 9, 2, seed % 2))
+        tasks = tuple(
+            replace(task, rows=rows) if number % 2 else task
+            for number, task in enumerate(plain.tasks)
+        )
+        network = with_offsets(replace(plain, tasks=tasks), chance)
+        for response in analyse(network.tasks):
+            known = {t.name for t in network.tasks if t.offset is not None}
+            level = response.level.order[: response.level.reach]
+            tables = [t for t in level if t.rows and t.name not in known]
+            if response.alignment is None or tables:
+                continue
+            case = worst.of_task(response)
+            if case.until > 200_000:
+                continue
+            for name in response.alignment.tasks:
+                task = next(t for t in network.tasks if t.name == name)
+                assert case.scenario.phases[name].first == task.offset
+            seen = simulate(network, case.scenario, case.until).longest[response.task.name]
+            assert seen == response.bound, (seed, response.task.name)
+            attained += 1
+    assert attained > SYSTEMS // 10
 
 
 def test_every_task_attains_its_bound_where_theory_has_such_phases() -> None:

@@ -1,0 +1,262 @@
+"""Responses of tasks that one clock releases, each at its own offset from a common epoch.
+
+Release k of a task with the offset O is due at O + k T, so which releases meet is known.
+A busy period in which a job suffers most begins where a job of its level, as late as its
+jitter lets it be, is released: had it begun between two such instants, it could begin later
+with the same jobs in it. So these instants, over one cycle of all the offsets and tables,
+are tried. From the instant t on, for job q of the busy period, which arrives at a(q),
+
+    w(q) = B + own(q) + sum over tasks with offsets of  cost of jobs in [t - J_j, t + w(q))
+             + sum over the others of  most_j(ceil((J_j + w(q)) / T_j))
+    R    = max over t and q of  t + w(q) - a(q)
+
+Tindell, Adding time-offsets to schedulability analysis (YCS 221, 1994); Palencia and
+Gonzalez Harbour, RTSS 1998, whose exact form this is: the tasks of a core are one
+transaction. Jobs of a table count with the rows of their own release. Where no sections,
+equal priorities or tables of unknown phase are, the bound is attained. It is never above
+that for all offsets, to which it falls back where the work allowed does not suffice.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import accumulate
+
+from .busy_period import WHOLE, Contender, Goal, Worst, pattern
+from .multiframe import Demand
+from .platform import Platform
+from .responses import (
+    Alignment,
+    Response,
+    RowResponse,
+    demand_of,
+    jitter_of,
+    release_time,
+    stream_of,
+)
+from .streams import Stream
+from .tasks import Task
+from .window import Effort, Source, cost_of, fixed_cost, source
+
+INSTANTS = 10_000
+"""Instants that are tried for one task at most: offsets that make for more are left out."""
+
+
+class _Arrivals:
+    """The arrivals of several streams over their common cycle, and what they cost up to each."""
+
+    def __init__(self, streams: Sequence[Stream], cycle: int) -> None:
+        self.streams = streams
+        self.cycle = cycle
+        arrivals = sorted(one for stream in streams for one in stream.arrivals(cycle))
+        self.times = [time for time, _ in arrivals]
+        self.sums = list(accumulate((cost for _, cost in arrivals), initial=0))
+
+    def before(self, end: int) -> int:
+        """What arrives before ``end``, counted from a common instant."""
+        cycles, rest = divmod(end, self.cycle)
+        return cycles * self.sums[-1] + self.sums[bisect_left(self.times, rest)]
+
+    def late(self, start: int) -> int:
+        """What arrives before ``start`` and may be released no earlier."""
+        return sum(s.cost(start - s.jitter, start) for s in self.streams if s.jitter)
+
+    def instants(self) -> Iterator[int]:
+        """When they release jobs as late as can be."""
+        for stream in self.streams:
+            for time, _ in stream.arrivals(self.cycle):
+                yield (time + stream.jitter) % self.cycle
+
+
+def _released(task: Task, platform: Platform) -> Stream:
+    """The work of making the jobs of such a task ready."""
+    return replace(stream_of(task, platform), demand=Demand((release_time(task, platform),)))
+
+
+def aligned(response: Response) -> tuple[Task, ...]:
+    """The tasks of its level whose offsets are used: at least two, or none.
+
+    Short cycles come first, so that it depends on the set of tasks alone: which are
+    more urgent must not matter to those that look for an order.
+    """
+    known = [t for t in response.level.order[: response.level.reach] if t.offset is not None]
+    known.sort(key=lambda task: (task.period * task.frame_count, task.period, task.name))
+    found: list[Task] = []
+    cycle, count = 1, 0
+    for task in known:
+        longer = math.lcm(cycle, task.period * task.frame_count)
+        more = count * (longer // cycle) + longer // task.period
+        if more <= INSTANTS:
+            found.append(task)
+            cycle, count = longer, more
+    return tuple(found) if len(found) > 1 else ()
+
+
+def closer(
+    found: Iterable[Response], order: Sequence[Task], platform: Platform, effort: Effort
+) -> Iterator[Response]:
+    """The responses of tasks of one core with their offsets used; ``found`` holds for all.
+
+    One stays as it is where offsets make it no shorter, and where the effort does not do.
+    """
+    known = [task for task in order if task.offset is not None]
+    together = _together(known, platform)
+    for plain in found:
+        met = together and (plain.jobs == 1 or plain.task.offset is None)
+        if len(known) < 2 or met or plain.bound is None or effort.left <= 0:
+            yield plain
+        else:
+            tasks = aligned(plain)
+            yield Search(plain, tasks, effort).found() if tasks else plain
+
+
+def _together(tasks: Sequence[Task], platform: Platform) -> bool:
+    """All begin at once, as late, with all rows: the first job then suffers what it can."""
+    begins = {(task.offset, jitter_of(task, platform)) for task in tasks}
+    return len(begins) < 2 and not any(row.phase for task in tasks for row in task.rows)
+
+
+class Search:
+    """The instants of one task, tried from those on that can lead to the longest response."""
+
+    def __init__(self, plain: Response, tasks: Sequence[Task], effort: Effort) -> None:
+        self.plain, self.effort = plain, effort
+        self.level, platform = plain.level, plain.level.platform
+        self.own = Contender.of(plain.task, platform, 0)
+        self.names = frozenset(task.name for task in tasks)
+        self.stream = stream_of(plain.task, platform) if plain.task in tasks else None
+        streams = [stream_of(task, platform) for task in tasks if task is not plain.task]
+        if platform.release:
+            streams += [_released(task, platform) for task in tasks]
+        cycle = math.lcm(*(task.period * task.frame_count for task in tasks))
+        self.rivals = _Arrivals(streams, cycle)
+        effort.left -= len(self.rivals.times)
+        self.others = list(self._others(platform))
+        self.worst = {number: Worst() for number in range(WHOLE, len(plain.task.rows))}
+        assert plain.bound is not None
+        self.limits = {WHOLE: plain.bound, **{n: r.bound for n, r in enumerate(plain.rows)}}
+        self.jobs = 0
+        self.pattern = math.inf
+
+    def _others(self, platform: Platform) -> Iterator[Source]:
+        """What has no offset here: other tasks, ticks, and the releases of less urgent tasks."""
+        for task in self.level.order[: self.level.reach]:
+            if task.name not in self.names and task.name != self.plain.task.name:
+                yield source(task.period, jitter_of(task, platform), demand_of(task, platform))
+        if platform.tick_cost:
+            yield fixed_cost(platform.tick_period, 0, platform.tick_cost)
+        for task in self.level.order if platform.release else ():
+            if task.name not in self.names:
+                cost = release_time(task, platform)
+                yield fixed_cost(task.period, jitter_of(task, platform), cost)
+
+    def found(self) -> Response:
+        """The longest response over all instants."""
+        for lead, start in self._instants():
+            if self._attained(self.own.jitter + lead):
+                break
+            self._try(start, lead)
+            if self.effort.left <= 0:
+                return self.plain
+        if self._attained(0):
+            return self.plain
+        whole = self.worst[WHOLE]
+        rows = tuple(
+            RowResponse(row, self.worst[n].bound, self.worst[n].job, self.worst[n].frame,
+                        self.worst[n].window)
+            for n, row in enumerate(self.plain.task.rows)
+        )  # fmt: skip
+        return replace(
+            self.plain, bound=whole.bound, jobs=self.jobs, worst_job=whole.job, frame=whole.frame,
+            window=whole.window, rows=rows,
+            alignment=Alignment(whole.start, whole.window - whole.bound, self.names),
+        )  # fmt: skip
+
+    def window(self, start: int) -> int | None:
+        """From ``start`` until the task's first job is done that arrives then, less its jitter.
+
+        It counts from ``start`` on, even where all is done before it arrives. None without
+        an offset of the task, or without effort.
+        """
+        if self.stream is None:
+            return None
+        first = self.stream.number(start - self.own.jitter)
+        cost = self.own.demand.costs[first % len(self.own.demand.costs)]
+        counted = self.rivals.late(start) - self.rivals.before(start)
+        found = self._settled(self.plain.blocked + cost, start, counted, 1)
+        return found if self.effort.left > 0 else None
+
+    def _attained(self, less: int) -> bool:
+        """Nothing longer can be found where the bounds for all offsets are so much less."""
+        return all(worst.bound >= self.limits[n] - less for n, worst in self.worst.items())
+
+    def _instants(self) -> list[tuple[int, int]]:
+        """The instants, each after the time from it to the first arrival of the task's own job.
+
+        The nearer that is, the longer a response can come of it.
+        """
+        late, stream = self.own.jitter, self.stream
+        starts = set(self.rivals.instants())
+        if stream is None:
+            return [(-late, start) for start in sorted(starts)]
+        cycle = self.rivals.cycle
+        starts |= {(time + late) % cycle for time, _ in stream.arrivals(cycle)}
+        return sorted(((stream.offset - start + late) % stream.period - late, start)
+                      for start in starts)  # fmt: skip
+
+    def _try(self, start: int, lead: int) -> None:
+        """The responses of all jobs of the busy period that begins at ``start``."""
+        task, own, stream = self.plain.task, self.own, self.stream
+        counted = self.rivals.late(start) - self.rivals.before(start)
+        first = 0 if stream is None else stream.number(start + lead)
+        blocked, job, length = self.plain.blocked, 0, 1
+        if lead > 0:
+            length = self._settled(blocked, start, counted, length)
+            if length <= lead:
+                return
+        while self.effort.left > 0:
+            over = True
+            arrival = lead + job * task.period
+            windows = []
+            for cost, frame, number in self._goals(job, first):
+                windows.append(window := self._settled(blocked + cost, start, counted, length))
+                if number == WHOLE and window > arrival + task.period:
+                    over = False
+                if number != WHOLE or own.demand.costs[frame]:
+                    self.worst[number].note(window - arrival, job, frame, window, start)
+            length = min(windows)
+            job += 1
+            self.jobs = max(self.jobs, job)
+            if job == 1 and not over and self.pattern == math.inf:
+                self.pattern = pattern(self.level, task.period, self.effort.left)
+            if over or job >= self.pattern:
+                return
+
+    def _goals(self, job: int, first: int) -> Iterator[Goal]:
+        """What a job has executed where something of it is complete, those before it included.
+
+        Of a task whose offset is used the frame is known; all others begin with any.
+        """
+        demand = self.own.demand
+        known = None if self.stream is None else (first + job) % len(demand.costs)
+        for cost, frame, number in self.own.goals:
+            if known is None or frame == known:
+                yield demand.before(job, frame) + cost, frame, number
+
+    def _settled(self, fixed: int, start: int, counted: int, length: int) -> int:
+        """The least window from ``length`` on that holds ``fixed`` and all that comes with it.
+
+        No more than what was reached where the effort does not do.
+        """
+        rivals, others = self.rivals, self.others
+        while True:
+            self.effort.left -= 1 + len(others) // 4
+            needed = fixed + counted + rivals.before(start + length)
+            for item in others:
+                needed += cost_of(item, -(-(length + item[1]) // item[0]))
+            if needed <= length or self.effort.left <= 0:
+                return length
+            length = needed

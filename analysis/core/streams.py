@@ -1,0 +1,42 @@
+"""Jobs whose arrivals are known: one every period, from an offset on, for ever both ways."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .multiframe import Demand
+
+
+@dataclass(frozen=True, slots=True)
+class Stream:
+    """Jobs that arrive at ``offset`` + k ``period``, of the costs of a cycle, ticks each."""
+
+    offset: int
+    period: int
+    jitter: int
+    demand: Demand
+
+    @property
+    def cycle(self) -> int:
+        """The time after which it repeats."""
+        return self.period * len(self.demand.costs)
+
+    def number(self, time: int) -> int:
+        """The first job that arrives no earlier than that."""
+        return -((self.offset - time) // self.period)
+
+    def count(self, begin: int, end: int) -> int:
+        """Jobs that arrive from ``begin`` on and before ``end``."""
+        return self.number(end) - self.number(begin)
+
+    def cost(self, begin: int, end: int) -> int:
+        """What those jobs cost."""
+        count = self.count(begin, end)
+        return self.demand.before(count, self.number(end) % len(self.demand.costs))
+
+    def arrivals(self, until: int) -> Iterator[tuple[int, int]]:
+        """Time and cost of its jobs, wrapped into ``0 .. until - 1``, of whole cycles."""
+        costs = self.demand.costs
+        for k in range(until // self.period):
+            yield (self.offset + k * self.period) % until, costs[k % len(costs)]

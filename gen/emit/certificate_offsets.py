@@ -1,0 +1,98 @@
+"""Deadlines that a processor keeps by its offset: every instant at which releases meet.
+
+Its claimed response is that for any offsets, and above the deadline. A busy period in which
+it suffers begins at an instant at which a processor of its level is released, late by its
+jitter; jobs that arrive earlier than that jitter before it are done (Tindell 1994). So of
+processors the releases due in [instant - J, instant + W) count, and no others.
+"""
+
+from __future__ import annotations
+
+from ..claims import Claim, Claims
+from ..instants import instants, lateness, phased
+from ..model import System, Task
+from .ada import Chain, Comment, Decl, Expr, Ref, number
+from .certificate_demand import Count, anyhow, costs, demand
+from .certificate_terms import (
+    LATE,
+    assured,
+    bounded,
+    ceiling,
+    name_of,
+    named,
+    plus,
+    refuse,
+    stated,
+    times,
+)
+
+
+def offset_terms(system: System, claims: Claims) -> list[Decl]:
+    """O, the offsets that the claims rest on."""
+    used = {
+        other.element: other.offset
+        for task in system.tasks
+        if claims.of(task.element).since
+        for other in phased(system, task)
+    }
+    items: list[Decl] = []
+    if used:
+        items.append(Comment("O, the first release of a processor from the epoch of its node."))
+    return items + [stated(f"{name_of(name)}_O", offset) for name, offset in used.items()]
+
+
+def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
+    """That a job is done by its deadline, whichever instant its busy period begins at."""
+    own, label = name_of(task.element), task.element
+    reach = claim.response - lateness(system, task) - task.deadline
+    bound, jitter, period, deadline = (Ref(f"{own}_{letter}") for letter in "RJTD")
+    items: list[Decl] = [
+        Comment(
+            f"[{label}] is late with other offsets, by R, and not with its own. At are the "
+            "instants, from the epoch on, at which a processor of its priority or a higher one is "
+            "released, as late as can be, less than Reach before its own job is due. Begun "
+            "at any other, that job takes Reach less than R, or even less. Of these processors "
+            "the releases that are due from At - J on, before At + W, delay it."
+        ),
+        stated(f"{own}_Reach", reach),
+        refuse(Chain("-", (bound, jitter, Ref(f"{own}_Reach"))), deadline, label, LATE),
+        refuse(deadline, period, label, "can be released again before it completes"),
+    ]
+    found = instants(system, task, reach) or ()
+    windows = (*claim.since, *[0] * len(found))
+    for place, (instant, length) in enumerate(zip(found, windows, strict=False), 1):
+        names = [f"{own}_{part}_{place}" for part in ("At", "W_At", "Needs_At")]
+        at, window, needs = map(Ref, names)
+        due = plus(Ref(f"{own}_O"), times(number(instant.release), period))
+        work = [
+            Ref(f"{own}_{letter}")
+            for letter in costs(task)
+            if instant.release % int(letter.partition("_")[2] or 1) == 0
+        ]
+        count = _counted(system, task, at, window)
+        items += [
+            stated(names[0], instant.time),
+            stated(names[1], length),
+            named(names[2], demand(system, task, window, plus(*work), count)),
+            *bounded(needs, window, label),
+            refuse(plus(at, window), plus(due, deadline), label, LATE),
+            assured(needs, window),
+        ]
+    return items
+
+
+def _counted(system: System, task: Task, at: Expr, window: Expr) -> Count:
+    """Releases of processors that are due in the window, and the most of all others."""
+    known = {other.element for other in phased(system, task)}
+    others = anyhow(window)
+
+    def count(other: Task, divisor: int) -> Expr:
+        if other.element not in known:
+            return others(other, divisor)
+        own = name_of(other.element)
+        offset, period = Ref(f"{own}_O"), times(number(divisor), Ref(f"{own}_T"))
+        end = Chain("-", (plus(at, window), offset))
+        begin = Chain("-", (at, Ref(f"{own}_J"), offset))
+        return Chain("-", (ceiling(end, period), ceiling(begin, period)))
+
+    return count

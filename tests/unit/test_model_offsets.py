@@ -1,0 +1,207 @@
+"""Offsets of models: whose they are, where they show, and what the certificate says of them."""
+
+from __future__ import annotations
+
+import io
+import json
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from analysis.claims import by_offsets, claims_of, uncertified
+from analysis.critical import schedule
+from analysis.figures import figures
+from analysis.findings import findings
+from analysis.report import render
+from analysis.table import show
+from analysis.timing import Analysis, analyse
+from gen import instants
+from gen.emit.ada_text import print_unit
+from gen.emit.certificate import emit_certificate
+from gen.model import System
+from gen.terms import Ns
+from ravenchart import steps
+from tests.support.certificates import (
+    certificate,
+    changed,
+    compiled,
+    numbers,
+    random_system,
+)
+from tests.support.timing_models import HEAD, analysed
+
+LOOPS = (
+    HEAD.replace(
+        "5 us, critical_section", "0 us, tick: {period: 100 us, wcet: 1 us}, critical_section"
+    )
+    + """\
+processors:
+  reception: {node: cpu, released_by: can0, period: 1 ms, stack: 32 KiB, activities: [can0.receive]}
+  often: {node: cpu, stack: 32 KiB, priority: 2, activities: [f.ports, f.act]}
+  seldom: {node: cpu, stack: 32 KiB, priority: 1, offset: 5 ms, activities: [s.act]}
+components:
+  Fast:
+    ports: {i: {in: Word}}
+    port_region: {period: 10 ms, wcet: 100 us}
+    data: {n: {type: Word, initial: 0}}
+    activities:
+      act: {period: 10 ms, wcet: 2 ms, body: [{set: n, to: i}]}
+  Slow:
+    data: {n: {type: Word, initial: 0}}
+    activities:
+      act: {period: 20 ms, wcet: 1 ms, body: [{set: n, to: 1}]}
+instances: {f: {component: Fast, node: cpu}, s: {component: Slow, node: cpu}}
+messages: {m: {bus: can0, id: 0x110, to: f.i, period: 10 ms}}
+"""
+)
+
+TOGETHER = (", offset: 5 ms", "")
+
+TIGHT = ("priority: 1, offset", "priority: 1, deadline: 3 ms, offset")
+"""Time enough only where often does not run before seldom."""
+
+
+def bound(found: Analysis, task: str) -> int:
+    known = found.response(task).bound
+    assert known is not None
+    return known
+
+
+def test_only_periodic_processors_have_offsets() -> None:
+    found = analysed(LOOPS)
+    known = {task.name: task.offset for task in found.network.tasks if task.offset is not None}
+    assert known == {"often": 0, "seldom": 5_000_000}
+
+
+def test_a_processor_between_the_releases_of_another_does_not_wait_for_it() -> None:
+    """2.1 ms less, and what interrupts them: both are late by up to a tick, and never meet."""
+    apart, together = analysed(LOOPS), analysed(LOOPS, TOGETHER)
+    assert 2_100_000 < bound(together, "seldom") - bound(apart, "seldom") < 2_500_000
+    assert bound(together, "often") == bound(apart, "often")
+    assert together.response("seldom").alignment is None
+    assert apart.response("seldom").alignment is not None
+    assert bound(apart.for_all_offsets, "seldom") == bound(together, "seldom")
+    assert together.for_all_offsets is together
+
+
+def test_it_is_said_which_responses_come_of_offsets() -> None:
+    apart, together = analysed(LOOPS), analysed(LOOPS, TOGETHER)
+    said = "By their offsets: R of seldom. All others hold for any offsets."
+    assert said in render(apart)
+    assert "Here it makes none shorter: every R holds for any offsets." in render(together)
+    for found in (apart, together):
+        out = io.StringIO()
+        show(found, Console(file=out, width=100))
+        assert (said in out.getvalue()) == (found is apart)
+    tasks = json.loads(json.dumps(figures(apart)))["tasks"]
+    assert [t["task"] for t in tasks if t["by_offsets"]] == ["seldom"]
+
+
+def test_the_picture_of_a_critical_instant_is_as_long_as_its_window() -> None:
+    for response in analysed(LOOPS).responses:
+        slices = schedule(response)
+        assert slices[-1].end == sum(s.end - s.start for s in slices) == response.window
+
+
+def test_the_certificate_claims_responses_for_any_offsets(tmp_path: Path) -> None:
+    apart, together = analysed(LOOPS), analysed(LOOPS, TOGETHER)
+    assert list(uncertified(apart)) == []
+    assert claims_of(apart).of("seldom").response == bound(together, "seldom")
+    assert compiled(certificate(apart), tmp_path) == ""
+
+
+def test_a_deadline_that_only_offsets_keep_is_certified_by_them(tmp_path: Path) -> None:
+    """1137 us from the only instant that matters: its own release, a tick late."""
+    tight = analysed(LOOPS, TIGHT)
+    assert list(findings(tight)) == list(uncertified(tight)) == []
+    claims = claims_of(tight)
+    assert claims.of("seldom").since == (bound(tight, "seldom") - 100_000,)
+    assert claims.of("seldom").response == bound(analysed(LOOPS, TOGETHER), "seldom")
+    text = certificate(tight)
+    assert compiled(text, tmp_path) == ""
+    for name in ("Seldom_W_At_1", "Seldom_Reach"):
+        assert "seldom can" in compiled(changed(text, name, -1), tmp_path)
+    for name, late in (("Often_O", 5_000_000), ("Seldom_O", -5_000_000), ("Cpu_Tick_C", 100_000)):
+        assert "seldom can" in compiled(changed(text, name, late), tmp_path)
+    none = {**claims.items, "seldom": replace(claims.of("seldom"), since=(Ns(1),))}
+    hostile = emit_certificate(tight.system, replace(claims, items=none), "")
+    assert "seldom can take longer" in compiled(print_unit(hostile), tmp_path)
+
+
+def test_what_the_certificate_cannot_show_is_not_generated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tight = analysed(LOOPS, TIGHT)
+    monkeypatch.setattr(instants, "MOST", 0)
+    (gap,) = uncertified(tight)
+    assert gap.code == "RV-0804"
+    assert "seldom needs over 3 ms: it may take" in gap.message
+    assert gap.message.endswith("us but for offsets, and the certificate cannot show that yet")
+    model = tmp_path / "model.yaml"
+    model.write_text(LOOPS.replace(*TIGHT))
+    with pytest.raises(steps.Refused, match=r"seldom needs over 3 ms.*RV-0804"):
+        steps.write_program(steps.check(model))
+    assert list(uncertified(analysed(LOOPS, TOGETHER))) == []
+
+
+def phased_system(seed: int) -> System:
+    """A random system with offsets, and deadlines as short as these allow."""
+    draw = random.Random(seed)
+    plain = random_system(seed)
+    processors = tuple(
+        replace(one, offset=Ns(draw.randrange(0, one.period, 100_000)))
+        if one.released_by is None
+        else one
+        for one in plain.processors
+    )
+    offsets = {one.name: one.offset for one in processors}
+    tasks = tuple(
+        replace(task, offset=offsets.get(task.element, task.offset)) for task in plain.tasks
+    )
+    whole = replace(plain, processors=processors, tasks=tasks)
+    found = analyse(whole)
+    least = {r.task.name: r.bound for r in found.responses if r.alignment is not None}
+    short = tuple(
+        replace(task, deadline=Ns(min(task.period, least.get(task.element) or task.deadline)))
+        if task.element in offsets
+        else task
+        for task in whole.tasks
+    )
+    return replace(whole, tasks=short)
+
+
+def shorter(whole: System, names: list[str]) -> System:
+    """These deadlines a nanosecond shorter: no instant is left out that then is too late."""
+    tasks = (
+        replace(task, deadline=Ns(task.deadline - 1)) if task.element in names else task
+        for task in whole.tasks
+    )
+    return replace(whole, tasks=tuple(tasks))
+
+
+def test_certificates_of_random_systems_hold_by_their_offsets(tmp_path: Path) -> None:
+    """What they claim is exact: a nanosecond less of a window, or to the deadline, is refused."""
+    shown = 0
+    for seed in range(300):
+        found = analyse(phased_system(seed))
+        gaps = list(uncertified(found))
+        if not found.schedulable or gaps:
+            continue
+        claims = claims_of(found)
+        since = [name for name, claim in claims.items.items() if claim.since]
+        if not since:
+            continue
+        text = certificate(found)
+        assert compiled(text, tmp_path) == "", seed
+        windows = numbers(text, r"_W_At_\d+")
+        assert windows, seed
+        one = windows[seed % len(windows)]
+        assert "can take longer than its claimed" in compiled(changed(text, one, -1), tmp_path)
+        assert not set(since) & set(by_offsets(analyse(shorter(found.system, since))))
+        shown += 1
+        if shown == 12:
+            break
+    assert shown == 12
