@@ -51,21 +51,26 @@ def lateness(system: System, task: Task) -> Ns:
     return Ns(task.jitter + (tick.period if tick else 0))
 
 
+def cycle_of(tasks: tuple[Task, ...]) -> Ns:
+    """The time after which the releases of processors repeat, with their rows."""
+    return Ns(math.lcm(*(slot.divisor * one.period for one in tasks for slot in one.slots)))
+
+
 def instants(system: System, task: Task, reach: int) -> tuple[Instant, ...] | None:
     """The instants that are followed by a release of ``task`` in less than ``reach`` ns.
 
-    All are late enough for what may be released at them. None where there are too many, or
-    ``task`` has no offset.
+    They are of one cycle, after one in which all tasks are released. None where there are too
+    many, or ``task`` has no offset.
     """
     tasks = phased(system, task)
     if not tasks:
         return None
-    cycle = math.lcm(*(slot.divisor * one.period for one in tasks for slot in one.slots))
+    cycle = cycle_of(tasks)
     if sum(cycle // one.period for one in tasks) > TRIED:
         return None
     late = {one.element: lateness(system, one) for one in tasks}
     begun = max(late[one.element] + one.offset for one in tasks)
-    base = -(-begun // cycle) * cycle
+    base = -(-begun // cycle) * cycle + cycle
     times = {
         base + (one.offset + k * one.period + late[one.element]) % cycle
         for one in tasks

@@ -19,9 +19,11 @@ from analysis.report import render
 from analysis.table import show
 from analysis.timing import Analysis, analyse
 from gen import instants
+from gen.claims import Claims
+from gen.emit import certificate_offsets
 from gen.emit.ada_text import print_unit
 from gen.emit.certificate import emit_certificate
-from gen.model import System
+from gen.model import System, Task
 from gen.terms import Ns
 from ravenchart import steps
 from tests.support.certificates import (
@@ -131,6 +133,27 @@ def test_a_deadline_that_only_offsets_keep_is_certified_by_them(tmp_path: Path) 
     assert "seldom can take longer" in compiled(print_unit(hostile), tmp_path)
 
 
+def test_a_certificate_with_an_instant_left_out_does_not_compile(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor one of other offsets that make such an instant: often, late, at the release of seldom."""
+    tight = analysed(LOOPS, TIGHT)
+    text = certificate(tight)
+    for name, by in (
+        ("Often_O", 4_900_000),
+        ("Seldom_At_1", -20_000_000),
+        ("Seldom_At_1", -1),
+        ("Seldom_Cycle", 20_000_000),
+        ("Seldom_Cycle", -10_000_000),
+    ):
+        assert "seldom can be late from an instant that is not listed" in compiled(
+            changed(text, name, by), tmp_path
+        )
+    assert compiled(changed(text, "Often_O", 3_000_000), tmp_path) == ""
+    monkeypatch.setattr(certificate_offsets, "instants", lambda *_: ())
+    assert "seldom can miss its deadline" in compiled(certificate(tight), tmp_path)
+
+
 def test_what_the_certificate_cannot_show_is_not_generated(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -184,7 +207,7 @@ def shorter(whole: System, names: list[str]) -> System:
 
 def test_certificates_of_random_systems_hold_by_their_offsets(tmp_path: Path) -> None:
     """What they claim is exact: a nanosecond less of a window, or to the deadline, is refused."""
-    shown = 0
+    shown = fewer = 0
     for seed in range(300):
         found = analyse(phased_system(seed))
         gaps = list(uncertified(found))
@@ -201,7 +224,30 @@ def test_certificates_of_random_systems_hold_by_their_offsets(tmp_path: Path) ->
         one = windows[seed % len(windows)]
         assert "can take longer than its claimed" in compiled(changed(text, one, -1), tmp_path)
         assert not set(since) & set(by_offsets(analyse(shorter(found.system, since))))
+        fewer += _less_one_is_refused(found, claims, tmp_path)
         shown += 1
         if shown == 12:
             break
     assert shown == 12
+    assert fewer
+
+
+def _less_one_is_refused(found: Analysis, claims: Claims, folder: Path) -> bool:
+    """Of a processor with several instants, each in turn left out; whether there is one."""
+    name, claim = max(claims.items.items(), key=lambda item: len(item[1].since))
+    count = len(claim.since)
+    for left in range(count) if count > 1 else ():
+        kept = [place for place in range(count) if place != left]
+        items = {name: replace(claim, since=tuple(claim.since[place] for place in kept))}
+
+        def some(system: System, task: Task, reach: int) -> tuple[instants.Instant, ...]:
+            whole = instants.instants(system, task, reach) or ()
+            return tuple(whole[p] for p in kept) if task.element == name else whole  # noqa: B023
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(certificate_offsets, "instants", some)
+            less = emit_certificate(
+                found.system, replace(claims, items={**claims.items, **items}), ""
+            )
+        assert "from an instant that is not listed" in compiled(print_unit(less), folder)
+    return count > 1
