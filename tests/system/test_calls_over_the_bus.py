@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import re
 import shutil
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 from analysis.observed import read_map, read_trace
 from ravenchart import steps, toolchain
 from ravenchart.__main__ import main
-from ravenchart.run import RunRequest, controller, run_model
+from ravenchart.run import controller, run_nodes
 from ravenchart.toolchain import ROOT
 
 
@@ -30,16 +28,17 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     assert not checked.warnings
     steps.write_program(checked)
     controllers = tuple(controller(made) for made in steps.programs_of(checked))
-    shown = io.StringIO()
-    request = RunRequest(
-        checked.analysis,
+    outcome = run_nodes(
         controllers,
-        folder / "generated",
+        checked.analysis,
+        folder / "generated" / "link.dbc",
         folder / "cut_bus.yaml",
         0.0,
         folder / "report",
     )
-    assert run_model(request, Console(file=shown, width=80)), shown.getvalue()
+    #  how long a response takes is for runs on a machine of their own to say
+    assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
+    assert (outcome.ended.exit_code, outcome.ended.killed) == (0, False)
     names = read_map((folder / "generated" / "panel" / "trace.json").read_text())
     trace = (folder / "report" / "trace-panel.txt").read_text()
     seen = read_trace(trace.splitlines(), names)
@@ -49,10 +48,10 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     #  the bus is cut: a second call finds the first under way, which is given up in time
     times = [(r.time / 1e6, r.text) for r in seen.of("transition", "boss_1.Plan")]
     cut = [time for time, name in times if name == "back" and time > 1500]
-    after = [(time - cut[0], name) for time, name in times if cut[0] < time <= cut[0] + 90]
+    after = [(time - cut[0], name) for time, name in times if cut[0] < time <= cut[0] + 95]
     assert [name for _, name in after] == ["insist", "hasty", "alone"]
     #  three executions of 20 ms, and one that takes the event behind the other
-    assert 70 <= after[-1][0] <= 90
+    assert round(after[-1][0] / 20) == 4
     assert seen.faults["Stale_Input"] >= 2
     #  it is mended: calls are answered again
     assert "homed" in fired[len(fired) - fired[::-1].index("alone") :]
