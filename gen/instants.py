@@ -31,6 +31,15 @@ class Instant:
     release: int
 
 
+def has_offset(system: System, task: Task) -> bool:
+    """Is it periodic, on a node where some processor has an offset, be its own zero or not?"""
+    return (
+        bool(task.slots)
+        and not task.sporadic
+        and any(other.offset for other in system.tasks if other.node == task.node)
+    )
+
+
 def phased(system: System, task: Task) -> tuple[Task, ...]:
     """The periodic processors of its core that ``task`` waits for, and itself; none if sporadic."""
     if task.sporadic or not task.slots:

@@ -13,13 +13,14 @@ from __future__ import annotations
 from collections.abc import Set
 
 from ..claims import ChainClaim, Claims
+from ..instants import has_offset
 from ..model import SharedObject, System, Task
 from .ada import SPARK, Aspect, Chain, Comment, Decl, Expr, Package, Ref, Unit, number
 from .certificate_bus import bus_claims, bus_terms
 from .certificate_chains import chain_claims
 from .certificate_demand import costs, demand, most, switches, work
 from .certificate_hops import hops_of
-from .certificate_offsets import offset_claims, offset_terms
+from .certificate_offsets import offset_claims
 from .certificate_terms import (
     LATE,
     SLOW,
@@ -65,7 +66,6 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             items.append(stated(f"{own}_Tick_C", node.tick.wcet))
     for task in system.tasks:
         items += _terms(system, task)
-    items += offset_terms(system, claims)
     for bus in system.buses:
         items += bus_terms(system, bus)
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
@@ -104,12 +104,14 @@ def _terms(system: System, task: Task) -> list[Decl]:
     own, node = name_of(task.element), ada_case(task.node)
     held = blocker(system, task)
     blocking = Ref(f"{node}_Critical_Section") if held else number(0)
-    items: list[Decl] = [Comment(_words(task, held))]
+    items: list[Decl] = [Comment(_words(system, task, held))]
     for slot in task.slots:
         items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
     if not task.slots:
         items.append(stated(f"{own}_Budget", task.budget))
     items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
+    if has_offset(system, task):
+        items.append(stated(f"{own}_O", task.offset))
     items.append(named(f"{own}_J", _jitter(system, task)))
     items.append(arrivals(own))
     items += [named(f"{own}_{letter}", value) for letter, value in costs(task).items()]
@@ -117,7 +119,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     return items
 
 
-def _words(task: Task, held: tuple[SharedObject, str] | None) -> str:
+def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) -> str:
     """What the numbers of a task are."""
     if task.released_by is not None:
         what = f"the driver's work, released by {task.released_by}, which is J late"
@@ -125,6 +127,8 @@ def _words(task: Task, held: tuple[SharedObject, str] | None) -> str:
         what = "released by arrivals, no closer than T; it may wait for T to be over as well"
     else:
         what = "released every T"
+        if has_offset(system, task):
+            what += ", first O after the epoch of its node"
     text = f"[{task.element}] priority {task.priority}, {what}."
     text += f" B: {held[1]} may be inside {held[0].element}." if held else " Nothing blocks it."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})

@@ -10,7 +10,7 @@ and after the last of a cycle comes the first once more.
 
 from __future__ import annotations
 
-from ..claims import Claim, Claims
+from ..claims import Claim
 from ..instants import Instant, cycle_of, instants, lateness, phased
 from ..model import System, Task
 from ..terms import Ns
@@ -31,20 +31,6 @@ from .certificate_terms import (
 )
 
 UNLISTED = "can be late from an instant that is not listed"
-
-
-def offset_terms(system: System, claims: Claims) -> list[Decl]:
-    """O, the offsets that the claims rest on."""
-    used = {
-        other.element: other.offset
-        for task in system.tasks
-        if claims.of(task.element).since
-        for other in phased(system, task)
-    }
-    items: list[Decl] = []
-    if used:
-        items.append(Comment("O, the first release of a processor from the epoch of its node."))
-    return items + [stated(f"{name_of(name)}_O", offset) for name, offset in used.items()]
 
 
 def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..instants import has_offset
 from ..model import Node, Processor, Slot, System, Work
 from ..trace import elements
 from .ada import (
@@ -109,6 +110,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     root, name = root_package(system), processor_package(system, processor)
     certificate = "Timing_Certificate"
     own = ada_case(processor.name)
+    shifted = any(has_offset(system, t) for t in system.tasks if t.element == processor.name)
     rows = tuple(row_name(s) for s in processor.slots)
     items: list[Decl] = [
         Comment(f"[{processor.name}.table] the activities, in the order in which they run"),
@@ -133,7 +135,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
             Table=Aggregate(slots),
             Cycle=number(processor.cycle),
             Period=Ref(f"{certificate}.{own}_T"),
-            Offset=number(processor.offset),
+            Offset=Ref(f"{certificate}.{own}_O") if shifted else number(0),
         )
     else:
         generic = "Ravenchart.Sporadic_Processors"

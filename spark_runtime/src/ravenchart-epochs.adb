@@ -7,6 +7,10 @@ is
    Microseconds_Per_Minute : constant := 60_000_000;
    Nanoseconds_Per_Microsecond : constant := 1_000;
 
+   pragma Compile_Time_Error
+     (Ada.Real_Time.Time_Unit > 1.0E-9,
+      "Ravenchart counts nanoseconds: the clock of this target is coarser");
+
    type Wide is range 0 .. 2**63 - 1;
    --  Holds a minute more than Nanoseconds does.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import random
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from gen.claims import Claims
 from gen.emit import certificate_offsets
 from gen.emit.ada_text import print_unit
 from gen.emit.certificate import emit_certificate
+from gen.emit.deployment import emit_deployment
 from gen.model import System, Task
 from gen.terms import Ns
 from ravenchart import steps
@@ -124,6 +126,11 @@ def test_a_deadline_that_only_offsets_keep_is_certified_by_them(tmp_path: Path) 
     assert claims.of("seldom").response == bound(analysed(LOOPS, TOGETHER), "seldom")
     text = certificate(tight)
     assert compiled(text, tmp_path) == ""
+    written = "".join(map(print_unit, emit_deployment(tight.system, "")))
+    assert re.findall(r"Offset +=> (.*?)[,)]", written) == [
+        "Timing_Certificate.Often_O",
+        "Timing_Certificate.Seldom_O",
+    ]
     for name in ("Seldom_W_At_1", "Seldom_Reach"):
         assert "seldom can" in compiled(changed(text, name, -1), tmp_path)
     for name, late in (("Often_O", 5_000_000), ("Seldom_O", -5_000_000), ("Cpu_Tick_C", 100_000)):
