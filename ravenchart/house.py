@@ -36,8 +36,11 @@ DRIVER_FOLDERS = {
     "bus": ("protocol", "drivers/bus", "drivers/tcp"),
     "socketcan": ("drivers/socketcan",),
 }
-"""What of hw_can/ is proved with each driver, beside the HAL and the simulator."""
+"""What of hw_can/ is proved with each driver; with the first, the HAL and the simulator as well."""
 DRIVERS = tuple(DRIVER_FOLDERS)
+GENERIC_BODY = "ravenchart-can-controllers.adb"
+INSTANCES = ("instance_bus.ads", "instance_program.adb")
+"""Its instance, which is what is proved of it, and the program with the tasks of both."""
 BUS = "bus"
 KERNEL = "analysis-kernel"
 
@@ -53,6 +56,8 @@ class Target:
     roots: tuple[Path, ...]
     whole: bool
     """With the runtime and the HAL; the examples take them as proved."""
+    units: tuple[str, ...] = ()
+    """The source files that are proved, when not all are."""
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
@@ -95,20 +100,27 @@ def _kernel() -> Target:
 
 
 def _runtime(driver: str) -> Target:
+    """All of it with the first driver; with another only what differs."""
     obj = ROOT / "obj"
+    project = ROOT / "proofs" / "proofs.gpr"
+    own = tuple(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver])
+    common = (
+        ROOT / "spark_runtime",
+        ROOT / "hw_can" / "hal",
+        ROOT / "hw_can" / "simulator",
+    )
+    first = driver == DRIVERS[0]
+    sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
+    bodies = {name for name in sources if name.endswith(".adb")}
+    specs = {name for name in sources - bodies if f"{name[:-1]}b" not in bodies}
     return Target(
         f"runtime-{driver}",
-        ROOT / "proofs" / "proofs.gpr",
+        project,
         {"MODE": "checks", "CAN_DRIVER": driver},
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
-        (
-            ROOT / "spark_runtime",
-            ROOT / "hw_can" / "hal",
-            ROOT / "hw_can" / "simulator",
-            *(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver]),
-            ROOT / "proofs" / "instances",
-        ),
+        (*(common if first else ()), *own, project.parent / "instances"),
         whole=True,
+        units=() if first else (*sorted((bodies | specs) - {GENERIC_BODY}), *INSTANCES),
     )
 
 
@@ -140,6 +152,7 @@ def prove(names: Sequence[str]) -> bool:
             target.roots,
             warnings="error",
             whole=target.whole,
+            units=target.units,
         )
         print(f"{target.name}: {proof.summary()}", flush=True)
         (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")

@@ -62,6 +62,7 @@ def prove(
     *,
     warnings: str = "continue",
     whole: bool = False,
+    units: Sequence[str] = (),
 ) -> Proof:
     """Prove a project; ``results`` are the folders its results land in, its own first.
 
@@ -70,7 +71,7 @@ def prove(
     of flow analysis, such as a value that is set and never used. The results of
     earlier runs go first: what is read then is of this run alone. Of the projects that
     it uses, which are proved by themselves, it takes what their sources say, or with
-    ``whole`` proves them again.
+    ``whole`` proves them again. ``units`` are source files, when not all shall be proved.
     """
     for old in (path for folder in results for path in folder.glob("*.spark")):
         old.unlink()
@@ -78,6 +79,8 @@ def prove(
     arguments.append(f"--warnings={warnings}")
     if not whole:
         arguments.append("--no-subprojects")
+    if units:
+        arguments += ["-u", *units]
     toolchain.run("gnatprove", arguments, project.parent, scenario)
     return read_results(results, roots)
 
