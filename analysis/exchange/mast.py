@@ -37,8 +37,10 @@ from .shapes import (
 INTERRUPT = 32_767
 """The priority of what makes jobs ready: above those of all tasks."""
 
-KEYWORDS = ("model", "processing_resource", "scheduler", "scheduling_server", "shared_resource",
-            "operation", "transaction", "yes", "no", "type", "name")  # fmt: skip
+NAMES = ("Activity_Operation", "Activity_Server", "Composite_Operation_List", "Host",
+         "Input_Event", "Model_Name", "Name", "Output_Event", "Output_Events_List",
+         "Referenced_Event", "Scheduler", "Shared_Resources_List")  # fmt: skip
+"""Attributes whose values are names: in quotes, for MAST has keywords by the hundred."""
 
 
 def export(network: Network, chains: Sequence[Chain], title: str) -> str:
@@ -53,7 +55,7 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     if _linked_releases(network):
         network = spelled_out(network)
     writer = _Writer(network)
-    name = names([title], KEYWORDS)[title]
+    name = names([title])[title]
     model = Object(
         "Model",
         _attributes(Model_Name=name, Model_Date="2000-01-01", System_PiP_Behaviour="Strict"),
@@ -72,14 +74,19 @@ def _linked_releases(network: Network) -> bool:
     )
 
 
+def _quoted(value: Value) -> Value:
+    """A name, or each of several, in quotes."""
+    return tuple(map(_quoted, value)) if isinstance(value, tuple) else f'"{value}"'
+
+
 def _attributes(**pairs: Value | int | None) -> Attributes:
     """Attributes in the order given; integers become reals, and None is left out."""
     found: list[tuple[str, Value]] = []
     for key, value in pairs.items():
-        if isinstance(value, int):
-            found.append((key, f"{value}.0"))
-        elif value is not None:
-            found.append((key, value))
+        if value is None:
+            continue
+        text = f"{value}.0" if isinstance(value, int) else value
+        found.append((key, _quoted(text) if key in NAMES else text))
     return Attributes(tuple(found))
 
 
@@ -91,9 +98,9 @@ class _Writer:
         items = network.items()
         self.trees = trees(network, "MAST")
         self.cores = list(dict.fromkeys(task.core for task in network.tasks))
-        self.item = names(items, KEYWORDS)
-        self.place = names([*self.cores, *network.buses], KEYWORDS)
-        self.resource = names([section.resource for section in network.sections], KEYWORDS)
+        self.item = names(items)
+        self.place = names([*self.cores, *network.buses])
+        self.resource = names([section.resource for section in network.sections])
         self.ceilings = ceilings(network.tasks, network.sections, network.ceilings)
         self.levels = {core: self._levels(core) for core in self.cores}
 

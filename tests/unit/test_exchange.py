@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from dataclasses import replace
 from typing import Any
 from xml.etree import ElementTree as Xml
@@ -194,6 +195,14 @@ def test_every_random_network_becomes_a_valid_model_that_reads_back() -> None:
         assert parse(printed(model)) == model
         written += 1
     assert written > 60
+
+
+def test_names_are_in_quotes_so_that_none_is_a_keyword_of_mast() -> None:
+    text = mast.export(Network((replace(TASK, name="offset", core="link"),)), (), "model")
+    assert {'"model"', '"link"', '"link_scheduler"', '"offset_server"'} <= set(
+        re.findall(r'=> ("\w+")', text)
+    )
+    assert not re.search(r"(Name|Host|Scheduler|Server|Operation|_Event) => [^\"\n]", text)
 
 
 def test_priorities_ceilings_and_sections_keep_their_order() -> None:
