@@ -25,6 +25,7 @@ from .shapes import (
     background,
     dense,
     exact,
+    last_bit,
     names,
     no_errors,
     remarks,
@@ -47,10 +48,7 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     """The model of ``network``; ``chains`` that sample are not part of what MAST analyses."""
     exact(network)
     no_errors(network, "MAST")
-    head = ["Times in ns.", *remarks(network, chains)]
-    if any(network.frames.values()):
-        head.append("MAST counts no frame that is queued in the last bit before a transmission:")
-        head.append("its bounds on a bus can be a frame smaller.")
+    head = ["Times in ns.", *remarks(network, chains), *last_bit(network, "MAST")]
     network = background(unqueued(network))
     if _linked_releases(network):
         network = spelled_out(network)

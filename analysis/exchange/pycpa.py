@@ -1,7 +1,8 @@
 """Scripts for pyCPA: the same system, built and analysed by its Python interface.
 
 pyCPA counts a response from the release: its figures are smaller, by up to the own jitter.
-It has no sections, so the script brings a scheduler that adds the blocking found here.
+It has no sections, so the script brings a scheduler that adds the blocking found here. On
+a bus it has no additional bit in which a frame still takes part in arbitration.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from analysis.core.chains import Chain, Hop
 from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
-from .shapes import Unfit, dense, names, no_errors, remarks, spelled_out, trees, unqueued
+from .shapes import Unfit, dense, last_bit, names, no_errors, remarks, spelled_out, trees, unqueued
 
 TAKEN = (*keyword.kwlist, "analysis", "blocked", "blocking", "int", "model", "options", "print",
          "results", "schedulers", "sorted", "str", "sum", "system", "task")  # fmt: skip
@@ -64,7 +65,7 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     trees(network, "pyCPA")
     sampling = [chain for chain in chains if _samples(chain, network)]
     others = [chain for chain in chains if chain not in sampling]
-    head = [f"#  {line}" for line in remarks(given, others)]
+    head = [f"#  {line}" for line in (*remarks(given, others), *last_bit(given, "pyCPA"))]
     lines = [*head, *_lines(network), *_effect_chains(network, sampling)]
     return HEAD.format(title=names([title])[title]) + "\n".join(lines) + "\n\n" + TAIL
 

@@ -160,6 +160,17 @@ def remarks(network: Network, chains: Iterable[Chain]) -> Iterator[str]:
         yield f"Left out: chain {chain.name}, through {', '.join(s.name for s in chain.steps)}."
 
 
+def last_bit(network: Network, tool: str) -> Iterator[str]:
+    """What ``tool`` leaves out on a bus: lines for the head of its export.
+
+    A frame that is queued before the arbitration is over still takes part in it (Davis, Burns,
+    Bril and Lukkien 2007, equation 7), which neither MAST 1.7 nor pyCPA 1.2 counts.
+    """
+    if any(network.frames.values()):
+        yield f"{tool} counts no frame that is queued in the last bit before a transmission:"
+        yield "its bounds on a bus can be a frame smaller."
+
+
 def spelled_out(network: Network) -> Network:
     """The same bounds without platforms: overheads as costs, jitter and tasks above all others.
 

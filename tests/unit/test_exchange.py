@@ -442,6 +442,7 @@ def test_what_is_said_in_other_words_stands_in_the_head() -> None:
         assert "Of table t every row counts in every job." in text, name
         assert "b shares a first-in first-out queue" in text, name
         assert "Left out: chain way, through a, t." in text, name
+        assert ("the last bit before a transmission" in text) == (name != "cheddar"), name
 
 
 # --- pyCPA -------------------------------------------------------------------------------
