@@ -40,6 +40,10 @@ class BusServer:
         self._socket = socket.create_server(("127.0.0.1", 0))
         self.channel = f"127.0.0.1:{self._socket.getsockname()[1]}"
         self.confirms = True
+        self.silent = False
+        """Nobody is welcomed, nor refused: behind ``first`` there is nothing."""
+        self.calls = 0
+        """So many have said hello."""
         self.refuses: Status | None = None
         """With what the next frames are refused."""
         self.harm: Callable[[Record], Record | None] = lambda record: record
@@ -92,6 +96,11 @@ class BusServer:
         with link, suppress(OSError):
             hello = _read(link)
             if hello is None or hello.kind is not Kind.HELLO:
+                return
+            self.calls += 1
+            if self.silent:
+                link.sendall(self.first)
+                link.recv(1)
                 return
             if hello.code != self._version and not self.first:
                 link.sendall(encode(Record(Kind.STATUS, code=Status.WRONG_VERSION)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import time
 from pathlib import Path
 
 import can
@@ -184,6 +185,22 @@ def test_a_server_that_says_garbage_is_left_and_tried_again(echo: Path, first: b
         assert a.wait(lambda now: now.rejected >= 2).state == "STOPPED"
         server.first = b""
         a.wait_for("ERROR_ACTIVE")
+    server.close()
+
+
+@pytest.mark.parametrize("first", [b"", encode(Record(Kind.STATE))[:44]], ids=["no", "half"])
+def test_a_server_that_says_no_record_is_left_and_tried_again(echo: Path, first: bytes) -> None:
+    server = BusServer(first=first)
+    server.silent = True
+    with node(echo, 0, server.channel) as a:
+        deadline = time.monotonic() + 30
+        while server.calls < 2:
+            assert time.monotonic() < deadline, "it waits for the first welcome"
+            time.sleep(0.1)
+        server.silent, server.first = False, b""
+        a.wait_for("ERROR_ACTIVE")
+        time.sleep(3)  # longer than it waited for the welcome
+        assert (a.standings[-1].state, server.calls) == ("ERROR_ACTIVE", 3)
     server.close()
 
 

@@ -97,6 +97,9 @@ is
       Node   : Bus_Members.Member;
    end Link;
 
+   Welcome_Limit : constant Tcp_Sockets.Patience := 2_000;
+   --  So long a server may take to answer hello.
+
    Let_Go : Suspension_Object;
    --  True when the writer may have become idle since the reader looked.
 
@@ -264,7 +267,9 @@ is
       Done    : Boolean;
       A       : Client_Side.Answer;
       Then_Do : Bus_Members.Consequence;
+      Joined  : Boolean := False;
    begin
+      Tcp_Sockets.Limit_Wait (Server, Welcome_Limit);
       Say_Hello (Server, Done);
       while Done loop
          Tcp_Sockets.Receive_All (Server, Bytes, Done);
@@ -273,6 +278,8 @@ is
          Link.Hear (A, Then_Do);
          case Then_Do is
             when Bus_Members.Note_Joined    =>
+               Joined := True;
+               Tcp_Sockets.Limit_Wait (Server, To => 0);
                if not Announced then
                   Tcp_Sockets.Announce_Joined;
                   Announced := True;
@@ -287,6 +294,10 @@ is
                exit;
          end case;
       end loop;
+      if not Joined then
+         Tcp_Sockets.Complain
+           ("the bus server does not take this node in: trying again");
+      end if;
    end Serve;
 
    ---------------

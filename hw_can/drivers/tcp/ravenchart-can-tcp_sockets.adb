@@ -113,6 +113,7 @@ is
    Close_On_Exec   : constant C_Int := 8#2000000#;
    Socket_Level    : constant C_Int := 1;
    Reuse_Address   : constant C_Int := 2;
+   Receive_Limit   : constant C_Int := 20;
    Tcp_Level       : constant C_Int := 6;
    No_Delay        : constant C_Int := 1;
    No_Signal       : constant C_Int := 16#4000#;
@@ -474,6 +475,34 @@ is
       end loop;
       Done := Got = Bytes'Length;
    end Receive_All;
+
+   ----------------
+   -- Limit_Wait --
+   ----------------
+
+   procedure Limit_Wait (Partner : Socket; To : Patience) is
+      type Time_Value is record
+         Seconds      : Interfaces.C.long;
+         Microseconds : Interfaces.C.long;
+      end record
+      with Convention => C;
+
+      Milliseconds : constant Interfaces.C.long := Interfaces.C.long (To);
+      Value        : aliased Time_Value :=
+        (Seconds      => Milliseconds / 1_000,
+         Microseconds => Milliseconds mod 1_000 * 1_000);
+   begin
+      if C_Set_Option
+           (C_Int (Partner),
+            Socket_Level,
+            Receive_Limit,
+            Value'Address,
+            Time_Value'Size / 8)
+        /= 0
+      then
+         Complain ("this system has no limit for the wait on a socket");
+      end if;
+   end Limit_Wait;
 
    ----------
    -- Send --

@@ -90,6 +90,14 @@ is
    --  Wait until Bytes are full; not Done when the other side has gone
    --  before.
 
+   type Patience is range 0 .. 60_000;
+   --  Milliseconds; 0 is for ever.
+
+   procedure Limit_Wait (Partner : Socket; To : Patience)
+   with Global => (In_Out => Network);
+   --  From now on what receives from Partner, and finds nothing for so long,
+   --  takes the other side for gone.
+
    procedure Send (To : Socket; Bytes : Octets; Done : out Boolean)
    with Global => (In_Out => Network);
    --  Send all of Bytes, as soon as the other side takes them; not Done when
