@@ -47,6 +47,11 @@ is
    with Global => (In_Out => (State, Wake_Up));
    --  Suspend the one caller until a frame is there, and hand it over.
 
+   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
+   with Global => (In_Out => (State, Wake_Up));
+   --  The same, with the time since Epochs.Start at which the driver had it,
+   --  0 before that.
+
    procedure Read_State (Now : out Controller_State)
    with Global => (Input => State);
    --  How the controller stands on the bus.

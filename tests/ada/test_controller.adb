@@ -4,11 +4,13 @@ with Ada.Real_Time;
 with Facts;
 with Nodes;
 with Ravenchart.Can;
+with Ravenchart.Epochs;
 
 procedure Test_Controller is
    use Ravenchart.Can;
    use type Ada.Real_Time.Time;
    use type Ravenchart.Event_Count;
+   use type Ravenchart.Nanoseconds;
 
    Base : constant Frame_Format := Ravenchart.Can.Standard;
    --  The literal alone would be hidden by package Standard.
@@ -26,6 +28,9 @@ procedure Test_Controller is
    Count  : Counters;
    F      : Frame;
    Right  : Boolean := True;
+   Before : Ravenchart.Nanoseconds;
+   After  : Ravenchart.Nanoseconds;
+   Stamp  : Ravenchart.Nanoseconds;
 begin
    Settle;
    Nodes.Node.Read_State (State);
@@ -42,6 +47,14 @@ begin
         and then F = Data_Frame (Identifier (I), Base, 2, 16#0101#);
    end loop;
    Facts.Check ("frames come back whole and in order", Right);
+   Ravenchart.Epochs.Since_Start (Before);
+   Nodes.Node.Send (Data_Frame (7, Base, 0, 0), Status);
+   Settle;
+   Ravenchart.Epochs.Since_Start (After);
+   Nodes.Node.Wait_Frame (F, Stamp);
+   Facts.Check
+     ("a frame bears the time at which it came, not that of its taking",
+      F.Id = 7 and then Before > 0 and then Stamp in Before .. After);
    Nodes.Node.Send (Remote_Frame (5, Extended, 0), Status);
    Right := Status = Queued;
    Nodes.Node.Send (Remote_Frame (16#100#, Extended, 0), Status);
@@ -65,8 +78,8 @@ begin
    Nodes.Node.Read_Counters (Count);
    Facts.Check
      ("everything is counted",
-      Count.Sent = 20_172
-      and then Count.Received = 20_171
+      Count.Sent = 20_173
+      and then Count.Received = 20_172
       and then Count.Lost_In = 20
       and then Count.Lost_Out = 0);
    Facts.Finish;

@@ -22,6 +22,7 @@ with Ravenchart.Epochs;
 with Ravenchart.Waiting_Queues;
 with Ravenchart.Can.Bus_Members;
 with Ravenchart.Can.Bus_Records.Client_Side;
+with Ravenchart.Can.Received_Frames;
 with Ravenchart.Can.Tcp_Sockets;
 
 package body Ravenchart.Can.Controllers
@@ -48,11 +49,8 @@ is
       Capacity     => Transmit_Depth,
       Ceiling      => Transmit_Ceiling);
 
-   package Receive is new Waiting_Queues
-     (Element_Type => Frame,
-      Null_Element => Null_Frame,
-      Capacity     => Receive_Depth,
-      Ceiling      => Receive_Ceiling);
+   package Receive is new Received_Frames
+     (Capacity => Receive_Depth, Ceiling => Receive_Ceiling);
 
    type Permission is (Write, Wait, Give_Up);
    --  What the writer does with a frame.
@@ -123,7 +121,10 @@ is
    --  Ask to be taken in, under the name that the environment gives.
 
    procedure Take (F : Frame)
-   with Global => (In_Out => (Link, Receive.State, Receive.Wake_Up));
+   with
+     Global =>
+       (In_Out => (Link, Receive.State, Receive.Wake_Up),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  A frame came over the bus.
 
    procedure Recover (Server : Tcp_Sockets.Socket; Done : out Boolean)
@@ -135,7 +136,8 @@ is
    with
      Global =>
        (In_Out => (Link, Receive.State, Receive.Wake_Up, Let_Go, Room,
-                   Tcp_Sockets.Network));
+                   Tcp_Sockets.Network),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Say hello, and take what the server says until the connection ends.
 
    procedure Wait_Idle
@@ -234,15 +236,10 @@ is
    ----------
 
    procedure Take (F : Frame) is
-      Status : Queueing.Put_Status;
    begin
       if Accepts (F.Id, F.Format) then
          Link.Count_Received;
-         pragma Warnings
-           (GNATprove, Off, """Status"" is set by*",
-            Reason => "the queue counts what it rejects");
-         Receive.Put (F, Status);
-         pragma Warnings (GNATprove, On, """Status"" is set by*");
+         Receive.Put (F);
       end if;
    end Take;
 
@@ -397,6 +394,13 @@ is
    is
    begin
       Receive.Wait (F);
+   end Wait_Frame;
+
+   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
+   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
+   is
+   begin
+      Receive.Wait (F, Stamp);
    end Wait_Frame;
 
    procedure Read_State (Now : out Controller_State)

@@ -17,6 +17,7 @@ with Ada.Real_Time;
 with Ada.Synchronous_Task_Control;
 with Ravenchart.Epochs;
 with Ravenchart.Waiting_Queues;
+with Ravenchart.Can.Received_Frames;
 with Ravenchart.Can.Slcan;
 with Ravenchart.Can.Tcp_Sockets;
 
@@ -49,11 +50,8 @@ is
       Capacity     => Transmit_Depth,
       Ceiling      => Transmit_Ceiling);
 
-   package Receive is new Waiting_Queues
-     (Element_Type => Frame,
-      Null_Element => Null_Frame,
-      Capacity     => Receive_Depth,
-      Ceiling      => Receive_Ceiling);
+   package Receive is new Received_Frames
+     (Capacity => Receive_Depth, Ceiling => Receive_Ceiling);
 
    type Channel_State is (Closed, Open);
    --  Whether the client wants frames.
@@ -121,7 +119,8 @@ is
    with
      Global =>
        (In_Out => (Link, Transmit.State, Transmit.Wake_Up,
-                   Receive.State, Receive.Wake_Up));
+                   Receive.State, Receive.Wake_Up),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Do what a line of the client says.
 
    procedure Serve (Client : Tcp_Sockets.Socket)
@@ -129,7 +128,8 @@ is
      Global =>
        (In_Out => (Link, Transmit.State, Transmit.Wake_Up,
                    Receive.State, Receive.Wake_Up,
-                   Tcp_Sockets.Network));
+                   Tcp_Sockets.Network),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Take the client's lines until it goes.
 
    procedure Wait_Idle
@@ -228,8 +228,7 @@ is
    ----------
 
    procedure Obey (Result : Slcan.Outcome; F : Frame) is
-      Now    : Controller_State;
-      Status : Queueing.Put_Status;
+      Now : Controller_State;
    begin
       case Result is
          when Slcan.Frame_Line =>
@@ -238,11 +237,7 @@ is
                Link.Count_Rejected;
             elsif Accepts (F.Id, F.Format) then
                Link.Count_Received;
-               pragma Warnings
-                 (GNATprove, Off, """Status"" is set by*",
-                  Reason => "the queue counts what it rejects");
-               Receive.Put (F, Status);
-               pragma Warnings (GNATprove, On, """Status"" is set by*");
+               Receive.Put (F);
             end if;
          when Slcan.Open_Channel =>
             Link.Set_Channel (Open);
@@ -429,6 +424,13 @@ is
    is
    begin
       Receive.Wait (F);
+   end Wait_Frame;
+
+   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
+   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
+   is
+   begin
+      Receive.Wait (F, Stamp);
    end Wait_Frame;
 
    procedure Read_State (Now : out Controller_State)
