@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from .calls import device_types
 from .claims import Claims
 from .component import Component
 from .derive import programs
@@ -69,6 +70,11 @@ def _elements(system: System) -> Iterator[_Element]:
         yield _Element("type", type_.name, type_.origin)
         if isinstance(type_, EnumerationType):
             yield from (_Element("literal", i, type_.origin) for i in type_.literals)
+    for device_type in device_types(system):
+        for one in device_type.provides:
+            yield _Element("command", one.name, one.command.origin, device_type.name)
+        yield _Element("device type", device_type.name, device_type.origin)
+    yield from (_Element("device", d.name, d.origin) for d in system.devices)
     yield from (_Element("instance", i.name, i.origin) for i in system.instances)
     yield from (_Element("processor", p.name, p.origin) for p in system.processors)
     yield from (_Element("bus", b.name, b.origin) for b in system.buses)
@@ -87,8 +93,14 @@ def _members(component: Component) -> Iterator[_Element]:
     yield from (_Element("region", r.name, r.origin, own) for r in component.regions)
     yield from (_Element("activity", a.name, a.origin, own) for a in component.activities)
     yield from (_Element("event", e.name, e.origin, own) for e in component.events)
-    yield from (_Element("port", p.name, p.origin, own) for p in component.ports)
-    yield from (_Element("data item", d.name, d.origin, own) for d in component.data)
+    for item in component.ports:
+        yield _Element("command" if item.is_command else "port", item.name, item.origin, own)
+    for data in component.data:
+        yield _Element("command" if data.is_command else "data item", data.name, data.origin, own)
+    for need in component.needs:
+        yield _Element("required interface", need.interface, need.origin, own)
+    for provided in component.provides:
+        yield _Element("provided interface", provided.name, provided.origin, own)
     yield from (_Element("parameter", p.name, p.origin, own) for p in component.parameters)
 
 
