@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gen.calls import published_by
-from gen.commands import Binding, Device, Remote, Server
+from gen.commands import Binding, Device, Remote, RemoteRead, Server
 from gen.devices import wcet_of
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Cost:
     executed: int | None = 0
     """Until the provider's row has executed it."""
     answered: int | None = None
-    """Until the reply from another node has arrived."""
+    """Until the reply from another node has arrived; of what is read there, its age."""
     limit: int | None = None
     """Of that."""
     waits: bool = False
@@ -73,6 +73,11 @@ def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
             provider.time_limit or None,
             waits=True,
         )
+    if isinstance(provider, RemoteRead):
+        message = next(m for m in analysis.system.messages if m.name == provider.message)
+        age = analysis.latency((f"message {provider.message}", caller)).age
+        name, how = str(message.source), f"over {message.bus}"
+        return Cost(caller, need.name, name, how, 0, answered=age, limit=provider.time_limit)
     if isinstance(provider, Server):
         if published_by(binding) is not None:
             name = f"{provider.instance}.{published_by(binding)}"

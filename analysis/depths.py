@@ -115,14 +115,17 @@ def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Dep
 
 
 def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> Iterator[Depth]:
-    """The requests of an interface that other nodes call; its server takes all that wait.
+    """The requests of an interface; its server takes all that wait.
 
-    Of a command with a reply one call waits at most.
+    Of a command of another node with a reply one call waits at most. Nothing is expected to
+    be lost where other nodes call, for they are not told; where none does, callers may
+    say what becomes of a call that does not fit.
     """
     system = analysis.system
     afar = calls_from_afar(system, instance.name, provided)
     near = callers_of(system, instance.name, provided)
-    if not afar or any(binding.need.on_full for binding in near):
+    expected = any(binding.need.on_full for binding in near)
+    if not (afar or near) or (expected and not afar):
         return
     served = f"{instance.name}.{provided.server}"
     ways = [(f"message {m.name}", m.period) for m in afar if m.call and m.call.reply is None]

@@ -12,8 +12,26 @@ from .commands import (
     Remote,
     Server,
 )
-from .component import Component
+from .component import Activity, Component
 from .model import Message, System
+from .statechart import Region
+
+
+def readers(component: Component, need: Need) -> tuple[Region | Activity, ...]:
+    """The rows of a component that read a command."""
+    return tuple(row for row in component.runnables() if need.name in row.reads)
+
+
+def publications(system: System, instance: str, row: Region | Activity) -> tuple[Message, ...]:
+    """The messages that bring what a row writes to the readers on other nodes."""
+    return tuple(
+        message
+        for message in system.messages
+        if message.every
+        and message.source is not None
+        and message.source.instance == instance
+        and message.source.port in row.writes
+    )
 
 
 def rows_of(system: System, binding: Binding) -> tuple[str, ...]:

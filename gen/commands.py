@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from .terms import Ns, Origin, Type, named
+from .terms import Ns, Origin, Type, Value, named
 
 
 class CommandKind(Enum):
@@ -206,12 +206,31 @@ class Remote:
 
 
 @dataclass(frozen=True, slots=True)
+class RemoteRead:
+    """A read command of an instance on another node: the message that brings what it publishes.
+
+    When none has come for so many ``executions`` of the row ``watcher``, the ``time_limit``
+    of the value is over.
+    """
+
+    need: Need
+    server: Server
+    message: str
+    initial: Value
+    """What is read before the first message."""
+    time_limit: Ns
+    executions: int
+    watcher: str
+    """The row of the reader that notices."""
+
+
+@dataclass(frozen=True, slots=True)
 class Binding:
     """What provides a required command of an instance; None: what stands in for it."""
 
     instance: str
     origin: Origin
     need: Need
-    provider: Device | Server | Remote | None
+    provider: Device | Server | Remote | RemoteRead | None
     time_limit: Ns | None = None
-    """Of a reply from another node."""
+    """Of a reply from another node, and of the age of what is read there."""

@@ -19,7 +19,7 @@ from .calls import (
     replies_read,
     rows_of,
 )
-from .commands import Remote
+from .commands import Remote, RemoteRead
 from .component import Activity
 from .distribution import as_one, part_of
 from .model import Bus, Instance, Message, Node, Processor, SharedObject, Slot, System, Task
@@ -188,7 +188,7 @@ def sending_rows(system: System, message: Message) -> tuple[str, ...]:
     return tuple(
         f"{source.name}.{item.name}"
         for item in source.component.runnables()
-        if message.source.port in item.sends
+        if message.source.port in (item.writes if message.every else item.sends)
     )
 
 
@@ -243,7 +243,10 @@ class _Sharing:
             ]
             yield self.made(f"{instance.name}.{region.name}", [own, *readers])
             if region.events():
-                raisers = self.raisers(instance, region)
+                #  every event goes through one procedure: who raises any is taken to raise all
+                raisers = [
+                    user for one in component.regions for user in self.raisers(instance, one)
+                ]
                 yield self.made(f"{instance.name}.{region.name}.queue", [own, *raisers])
             for activity, _ in component.completing(region.name):
                 users = [own, self.runs(instance.name, activity.name)]
@@ -270,6 +273,10 @@ class _Sharing:
                 rows = [*rows_of(self.system, binding), *receivers(self.system, remote.reply)]
                 users = [self.system.processor_of(row).name for row in rows]
                 yield self.made(f"{instance.name}.{binding.need.name}.call", users)
+            if binding.instance == instance.name and isinstance(remote, RemoteRead):
+                rows = [*rows_of(self.system, binding), *receivers(self.system, remote.message)]
+                users = [self.system.processor_of(row).name for row in rows]
+                yield self.made(f"{instance.name}.{binding.need.name}.read", users)
         for item in replies_read(instance.component):
             binding = next(
                 b
@@ -319,6 +326,8 @@ class _Sharing:
             if need.on_full in named or (is_remote and need.on_timeout in named):
                 rows = rows_of(self.system, binding)
                 yield from (self.system.processor_of(row).name for row in rows)
+            if isinstance(binding.provider, RemoteRead) and need.on_timeout in named:
+                yield self.runs(instance.name, binding.provider.watcher)
             if need.on_reply in named:
                 rows = repliers(self.system, binding)
                 yield from (self.system.processor_of(row).name for row in rows)

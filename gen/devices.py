@@ -17,6 +17,7 @@ from .commands import (
     Provided,
     Published,
     Remote,
+    RemoteRead,
     Server,
 )
 from .interfaces import at_axes
@@ -277,7 +278,7 @@ def provided_axes(provider: Device | Server, command: str) -> int:
     return provider.axes if isinstance(provider, Device) else provider.interface.axes
 
 
-def wcet_of(provider: Device | Server | Remote | None, command: str) -> Ns:
+def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
     """What a call adds to the budget of its caller; only a driver's work is counted apart."""
     return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)
 

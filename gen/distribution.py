@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from .calls import called
-from .commands import Remote
+from .commands import Remote, RemoteRead
 from .identifiers import OPEN
 from .model import Bus, Connection, Instance, Message, Node, Processor, Shutdown, System
 from .names import problem_of
@@ -152,11 +152,11 @@ def as_one(system: System) -> System:
     wires = tuple(
         Connection(message.origin, message.source, target)
         for message in system.messages
-        if message.source is not None and message.call is None
+        if message.source is not None and message.call is None and not message.every
         for target in message.targets
     )
     bindings = (
-        replace(b, provider=b.provider.server) if isinstance(b.provider, Remote) else b
+        replace(b, provider=b.provider.server) if isinstance(b.provider, Remote | RemoteRead) else b
         for b in system.bindings
     )
     return replace(

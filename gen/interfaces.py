@@ -148,7 +148,8 @@ def _need(
     ):
         at = form.at(key)
         events[key] = None if text is None else members.events.look_up(text, at, space.findings)
-        if text is not None and (is_read or (key != "on_full" and reply is None)):
+        has_meaning = key == "on_timeout" if is_read else key == "on_full" or reply is not None
+        if text is not None and not has_meaning:
             why = "is read" if is_read else "gives no reply"
             message = f"`{key}` has no meaning for {command.name}, which {why}"
             space.findings.error("RV-1208", form.at_key(key), message, hint=f"remove `{key}`")

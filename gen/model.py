@@ -160,6 +160,9 @@ class Message:
     """The model gives the identifier."""
     call: Remote | None = None
     """Of a command between nodes: it carries the calls or the replies. None: a port's value."""
+    every: int = 0
+    """Of a read command between nodes: sent in each so-many-eth execution of the row that writes
+    the data item which is its source. 0: of a port or a call."""
 
     @property
     def element(self) -> str:

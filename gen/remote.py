@@ -1,23 +1,30 @@
-"""Commands of tasks on other nodes: the messages that carry their calls and replies.
+"""Commands of tasks on other nodes: the messages that carry calls, replies and what is read.
 
 As with connections (`distribution`), neither component knows. The calls of a command by an
 instance are one message: a number that tells them apart, and the argument. Where somebody
 waits for replies they are another, with the number of the call, and a chain leads from the
 caller's release through the server to the arrival of the reply, limited as the binding says.
+
+What is read is published: one message for all readers carries it, sent by the row that
+writes it, as often as the fastest of them looks. To ask for it would add a frame and a
+wait. A chain leads from its sending to the reader, whose age is limited as the binding says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from .calls import awaited, published_by
-from .commands import Binding, Remote, Server
+from .calls import awaited, published_by, readers
+from .commands import Binding, Remote, RemoteRead, Server
+from .component import Activity
 from .identifiers import OPEN
 from .model import NO_TIME, Chain, End, Message, System
 from .names import problem_of
 from .signals import length_of, signals_of
-from .terms import BUILT_IN, Field, IntegerType, Origin, RecordType, Type, named
+from .statechart import Region
+from .terms import BUILT_IN, Field, IntegerType, Ns, Origin, RecordType, Type, named
 
 NUMBER = IntegerType("Call_Number", BUILT_IN, 0, 255)
 """Calls are numbered by these, again and again: one byte of a frame."""
@@ -27,19 +34,21 @@ Obstacle = tuple[str, Origin, str, str | None]
 
 
 def calling(system: System) -> System:
-    """The system with a message for each command of another node, and one for its replies.
+    """The system with the messages of all commands of other nodes.
 
     Bindings that no message can carry are left as they are; `obstacle` says why.
     """
-    found = ((b, _call(system, b)) for b in system.bindings if is_across(system, b))
+    across = [b for b in system.bindings if is_across(system, b)]
+    found = ((b, _call(system, b)) for b in across)
     made = {(b.instance, b.need.name): call for b, call in found if call is not None}
-    calls = made.values()
+    calls = (*made.values(), *_reads(system, across))
+    providers = {key: one for call in calls for key, one in call.providers.items()}
     return replace(
         system,
         types=(*system.types, *dict.fromkeys(t for call in calls for t in call.types)),
         messages=(*system.messages, *(m for call in calls for m in call.messages)),
         chains=(*system.chains, *(chain for call in calls for chain in call.chains)),
-        bindings=tuple(_bound(system, b, made) for b in system.bindings),
+        bindings=tuple(_bound(system, b, providers) for b in system.bindings),
     )
 
 
@@ -59,11 +68,16 @@ def obstacle(system: System, binding: Binding) -> Obstacle | None:
     home, there = (system.instance(name).node for name in (binding.instance, server.instance))
     own, at = f"{binding.instance}.{need.name}", binding.origin
     ends = f"{own} is on {home}, and {server.instance}, which provides it, on {there}"
-    if published_by(binding) is not None:
-        return "RV-0802", need.origin, ends, "let a port carry what is read"
+    is_read = published_by(binding) is not None
+    if is_read and _writer(system, binding) is None:
+        message = f"{ends}; nothing writes {published_by(binding)}, so nothing sends it"
+        return "RV-0802", need.origin, message, "let a parameter of the reader say what is constant"
     if not system.buses:
         hint = "declare a bus: between nodes, calls travel as its messages"
         return "RV-0606", at, ends, hint
+    if is_read and binding.time_limit is None:
+        message = f"{own} is read from {there}: the binding needs the key `time_limit`"
+        return "RV-1214", at, message, "say how old it may be: `time_limit: ...`"
     if awaited(system.instance(binding.instance).component, need) and binding.time_limit is None:
         message = f"{own} has its replies from {there}: the binding needs the key `time_limit`"
         hint = "say how long a reply may take: `time_limit: ...`"
@@ -86,18 +100,23 @@ _RENAME = "give the instance, the command, or what is called so another name"
 
 def _names(binding: Binding) -> Iterator[str]:
     """The names of messages and types that a command between nodes has."""
+    if published_by(binding) is not None:
+        yield from (_published_as(binding), f"{binding.instance}_{binding.need.name}")
+        return
     own = f"{binding.instance}_{binding.need.name}"
     yield own
     yield from (f"{own}_{what}" for what in ("Reply", "Call", "Answer"))
 
 
-def _bound(system: System, binding: Binding, made: Mapping[tuple[str, str], _Call]) -> Binding:
-    """A binding with what carries it; one across nodes that nothing calls leads nowhere."""
-    call = made.get((binding.instance, binding.need.name))
-    if call is not None:
-        return replace(binding, provider=call.remote)
-    component = system.instance(binding.instance).component
-    idle = not component.senders(binding.need.name) and published_by(binding) is None
+def _bound(
+    system: System, binding: Binding, made: Mapping[tuple[str, str], Remote | RemoteRead]
+) -> Binding:
+    """A binding with what carries it; one across nodes that nothing uses leads nowhere."""
+    carried = made.get((binding.instance, binding.need.name))
+    if carried is not None:
+        return replace(binding, provider=carried)
+    component, need = system.instance(binding.instance).component, binding.need
+    idle = not component.senders(need.name) and not readers(component, need)
     return replace(binding, provider=None) if idle and is_across(system, binding) else binding
 
 
@@ -105,7 +124,8 @@ def _bound(system: System, binding: Binding, made: Mapping[tuple[str, str], _Cal
 class _Call:
     """What carries one command."""
 
-    remote: Remote
+    providers: Mapping[tuple[str, str], Remote | RemoteRead]
+    """By instance and command."""
     messages: tuple[Message, ...]
     chains: tuple[Chain, ...]
     types: tuple[Type, ...]
@@ -143,8 +163,9 @@ def _call(system: System, binding: Binding) -> _Call | None:
         period=period,
         call=remote,
     )
+    providers = {(binding.instance, need.name): remote}
     if need.reply is None or not limit:
-        return _Call(remote, (_laid_out(here),), (), (NUMBER, here.type))
+        return _Call(providers, (_laid_out(here),), (), (NUMBER, here.type))
     server_component = system.instance(server.instance).component
     back = replace(
         here,
@@ -156,7 +177,77 @@ def _call(system: System, binding: Binding) -> _Call | None:
     )
     chain = Chain(call, binding.origin, (call, remote.served, reply), reaction=limit, age=None)
     messages = (_laid_out(here), _laid_out(back))
-    return _Call(remote, messages, (chain,), (NUMBER, here.type, back.type))
+    return _Call(providers, messages, (chain,), (NUMBER, here.type, back.type))
+
+
+def _published_as(binding: Binding) -> str:
+    """The message that carries what is read."""
+    assert isinstance(binding.provider, Server)
+    return f"{binding.provider.instance}_{binding.need.name}"
+
+
+def _writer(system: System, binding: Binding) -> Region | Activity | None:
+    """The row that writes what is read, and sends it; None where none does."""
+    assert isinstance(binding.provider, Server)
+    rows = system.instance(binding.provider.instance).component.runnables()
+    return next((row for row in rows if published_by(binding) in row.writes), None)
+
+
+def _reads(system: System, across: Sequence[Binding]) -> Iterator[_Call]:
+    """What carries the read commands between nodes, for all readers of each."""
+    of: defaultdict[str, list[Binding]] = defaultdict(list)
+    for binding in across:
+        read = readers(system.instance(binding.instance).component, binding.need)
+        if published_by(binding) is not None and read and obstacle(system, binding) is None:
+            of[_published_as(binding)].append(binding)
+    for name, bindings in of.items():
+        yield _read(system, name, bindings)
+
+
+def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
+    """What carries a read command to its readers, which are on other nodes."""
+    first = bindings[0]
+    item, writer, reply = published_by(first), _writer(system, first), first.need.reply
+    assert isinstance(first.provider, Server)
+    assert item is not None and writer is not None and reply is not None
+    owner = system.instance(first.provider.instance)
+    providers: dict[tuple[str, str], Remote | RemoteRead] = {}
+    chains: list[Chain] = []
+    periods: list[Ns] = []
+    for one in bindings:
+        rows = readers(system.instance(one.instance).component, one.need)
+        watcher = min(rows, key=lambda row: row.timing.period)
+        limit = one.time_limit or NO_TIME
+        periods.append(watcher.timing.period)
+        providers[one.instance, one.need.name] = RemoteRead(
+            need=one.need,
+            server=first.provider,
+            message=name,
+            initial=named(owner.component.data, item).initial,
+            time_limit=limit,
+            #  the first execution after a message may follow it at once
+            executions=-(-limit // watcher.timing.period) + 1,
+            watcher=watcher.name,
+        )
+        path = (name, f"{one.instance}.{watcher.name}")
+        chain = f"{one.instance}_{one.need.name}"
+        chains.append(Chain(chain, one.origin, path, reaction=None, age=limit))
+    every = max(1, min(periods) // writer.timing.period)
+    message = Message(
+        name=name,
+        origin=first.origin,
+        bus=system.buses[0].name,
+        identifier=OPEN,
+        extended=False,
+        type=reply,
+        signals=(),
+        length=0,
+        source=End(owner.name, item),
+        targets=tuple(End(one.instance, one.need.name) for one in bindings),
+        period=Ns(writer.timing.period * every),
+        every=every,
+    )
+    return _Call(providers, (_laid_out(message),), tuple(chains), ())
 
 
 def _laid_out(message: Message) -> Message:

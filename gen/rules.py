@@ -109,7 +109,8 @@ def messages_agree(resolved: Resolved) -> Iterator[Diagnostic]:
     """A message's ports are of one type, and none of them could be connected instead."""
     system = resolved.system
     for item in system.messages:
-        for target in item.targets if item.call is None else ():
+        of_ports = item.call is None and not item.every
+        for target in item.targets if of_ports else ():
             instance = system.instance(target.instance)
             taken = instance.component.port(target.port).type
             if taken != item.type:

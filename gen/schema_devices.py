@@ -45,7 +45,7 @@ class NeedForm(Element):
     on_reply: Reference | None = optional("Event raised with the reply of a call.")
     on_full: Reference | None = optional("Event raised when a call met a full queue.")
     on_timeout: Reference | None = optional(
-        "Event raised when no reply came from another node within the binding's `time_limit`."
+        "Event raised when nothing came from another node within the binding's `time_limit`."
     )
 
 
@@ -113,6 +113,6 @@ class BindingForm(Element):
     from_: OwnedReference = key("`instance.interface`, a required one.", alias="from")
     to: str = key("A device, or `instance.interface`, a provided one.")
     time_limit: PositiveSpan | None = optional(
-        "Longest time from the caller's release until a reply from another node has arrived; "
-        "needed for replies between nodes, without effect inside one."
+        "Longest time from the caller's release until a reply from another node has arrived, "
+        "and age of what is read there; needed for these, without effect inside a node."
     )

@@ -10,6 +10,7 @@ import json
 import os
 from dataclasses import dataclass
 
+from .commands import RemoteRead
 from .emit.charts.places import Places
 from .model import System
 from .terms import Origin
@@ -42,6 +43,10 @@ def elements(system: System) -> tuple[Element, ...]:
         component = instance.component
         for port in component.ports:
             add(f"{instance.name}.{port.name}", "port", port.origin)
+        for binding in system.bindings:
+            if binding.instance == instance.name and isinstance(binding.provider, RemoteRead):
+                need = binding.need
+                add(f"{instance.name}.{need.name}", "port", need.origin)
         for provided in component.provides:
             if provided.server is not None:
                 add(f"{instance.name}.{provided.name}", "port", provided.origin)

@@ -52,6 +52,7 @@ from .remote_calls import (
     sent_call,
     value_of,
 )
+from .remote_reads import kept
 
 STATUS = "Ravenchart.Queueing.Put_Status"
 
@@ -154,7 +155,7 @@ def _request(system: System, server: Server, need: Need, caller: Expr, item: Exp
 
 
 def from_afar(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
-    """For each call and reply from another node, spec and body of what takes it."""
+    """For each call, reply and value from another node, spec and body of what takes it."""
     for provided, message in heard(system, instance):
         assert message.call is not None
         need = message.call.need
@@ -166,6 +167,7 @@ def from_afar(system: System, instance: Instance) -> Iterator[tuple[Subprogram, 
         put = f"Put_{ada_case(provided.name)}"
         yield asked_from_afar(system, message, request, put)
     yield from answers(system, instance)
+    yield from kept(system, instance)
 
 
 # --- Replies -----------------------------------------------------------------------

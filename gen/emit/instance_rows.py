@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..commands import Binding, Device, Server
+from ..commands import Binding, Device, RemoteRead, Server
 from ..component import Activity, Port
 from ..statechart import DONE, Region
 from .ada import (
@@ -50,6 +50,7 @@ from .naming import (
     type_name,
 )
 from .remote_calls import watched
+from .remote_reads import copy_name, publishes
 
 
 class Rows(Site):
@@ -130,7 +131,7 @@ class Rows(Site):
         package = f"{self.component}.{name}"
         step = self._step_region(shape, package)
         declarations: list[Decl] = []
-        body: list[Stmt] = [*watched(self.system, self.instance, region.sends)]
+        body: list[Stmt] = [*watched(self.system, self.instance, region)]
         step_args: tuple[Arg, ...] = ()
         if shape.inputs:
             declarations.append(Object("Ins", f"{package}.Inputs"))
@@ -158,6 +159,7 @@ class Rows(Site):
             if data.name in region.writes and self._has_object(data.name):
                 field = f"{name}_Region.Data.{ada_case(data.name)}"
                 body.append(Do(f"{ada_case(data.name)}_Board.Write", arguments(Ref(field))))
+        body += publishes(self.system, self.instance, region, declarations)
         run = Subprogram(f"Run_{name}", declarations=tuple(declarations), body=tuple(body))
         return [step, run]
 
@@ -183,10 +185,12 @@ class Rows(Site):
         return Do(f"{ada_case(name)}_Board.Read", arguments(Ref(target)))
 
     def _read_command(self, binding: Binding, target: str) -> Stmt:
-        """Read what a required command gives: of a device, of a task, or what stands in."""
+        """Read what a required command gives: of a device or task, or what stands in."""
         need, provider = binding.need, binding.provider
         if need.stand_in is not None and provider is None:
             return self._copy_in(need.stand_in.item, target)
+        if isinstance(provider, RemoteRead):
+            return Do(f"{copy_name(need)}.Read", arguments(Ref(target)))
         assert isinstance(provider, Device | Server)
         owner = provider.instance if isinstance(provider, Server) else provider.name
         return Do(f"{ada_case(owner)}.{ada_case(need.name)}", arguments(Ref(target)))
@@ -345,7 +349,8 @@ class Rows(Site):
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = Do(f"{region_name}_Board.Read", arguments(Ref(f"{region_name}_Now")))
             body = (read, If(((guard, body),)))
-        body = (*watched(self.system, self.instance, activity.sends), *body)
+        sent = publishes(self.system, self.instance, activity, declarations)
+        body = (*watched(self.system, self.instance, activity), *body, *sent)
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )

@@ -62,6 +62,7 @@ from .naming import (
     value,
 )
 from .remote_calls import call_objects, heard_objects, remotes, units_of, watch_body
+from .remote_reads import copies, copy_name, copy_objects, read_units
 
 
 class Glue(Site):
@@ -99,6 +100,7 @@ class Glue(Site):
         if any(b.instance == self.instance.name for b in self.system.bindings):
             names.add("Ravenchart.Queueing")
         names |= set(units_of(self.system, self.instance))
+        names |= set(read_units(self.system, self.instance))
         names.add("Ravenchart.Blackboards")
         if self.noted:
             names.add("Ravenchart.Steps")
@@ -178,7 +180,10 @@ class Glue(Site):
         yield from (body for _, body in from_afar(system, instance))
         for remote in remotes(system, instance):
             if remote.reply is not None:
-                yield watch_body(remote.need, self._passed(remote.need))
+                kept = f"{ada_case(remote.need.name)}_Call"
+                yield watch_body(remote.need, kept, self._passed(remote.need))
+        for copy in copies(system, instance):
+            yield watch_body(copy.need, copy_name(copy.need), self._passed(copy.need))
 
     def _lost(self, name: str) -> tuple[Stmt, ...]:
         """Count a call that found no place."""
@@ -198,6 +203,7 @@ class Glue(Site):
         items += [request_queue(self.system, self.instance, one) for one in self._served()]
         items += reply_boards(self.system, self.instance)
         items += call_objects(self.system, self.instance)
+        items += copy_objects(self.system, self.instance)
         items += heard_objects(self.system, self.instance)
         component = self.instance.component
         items += [self._put_body(p) for p in self._connected_inputs()]

@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from ..calls import calls_from_afar, delivered
-from ..commands import Need, Provided, Remote
+from ..commands import Need, Provided, Remote, RemoteRead
+from ..component import Activity
 from ..model import Instance, Message, System
 from ..remote import NUMBER
+from ..statechart import Region
 from ..terms import RecordType, Type
 from .ada import (
     Aggregate,
@@ -126,25 +128,28 @@ def watch_name(need: str) -> str:
     return f"Watch_{ada_case(need)}"
 
 
-def watch_body(need: Need, passed: tuple[Stmt, ...]) -> Subprogram:
-    """One more execution of the caller; ``passed`` when that was the last of the limit."""
+def watch_body(need: Need, kept: str, passed: tuple[Stmt, ...]) -> Subprogram:
+    """One more execution for ``kept``; ``passed`` when that was the last of the limit."""
     status = f"{CALLS}.Wait_Status"
     late = equal(Ref("Status"), Ref(f"{CALLS}.Timed_Out"))
     return Subprogram(
         watch_name(need.name),
         declarations=(Object("Status", status), UseType(status)),
         body=(
-            Do(f"{ada_case(need.name)}_Call.Tick", arguments(Ref("Status"))),
+            Do(f"{kept}.Tick", arguments(Ref("Status"))),
             If(((late, passed),)),
         ),
     )
 
 
-def watched(system: System, instance: Instance, sends: tuple[str, ...]) -> Iterator[Stmt]:
-    """What a row that makes calls to other nodes does first."""
-    for remote in remotes(system, instance):
-        if remote.reply is not None and remote.need.name in sends:
-            yield Do(watch_name(remote.need.name))
+def watched(system: System, instance: Instance, row: Region | Activity) -> Iterator[Stmt]:
+    """What a row that calls or reads on other nodes does first."""
+    for binding in system.bindings:
+        made, name = binding.provider, binding.need.name
+        calls = isinstance(made, Remote) and made.reply is not None and name in row.sends
+        looks = isinstance(made, RemoteRead) and made.watcher == row.name
+        if binding.instance == instance.name and (calls or looks):
+            yield Do(watch_name(name))
 
 
 def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:

@@ -11,6 +11,7 @@ with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Remote_Calls;
+with Ravenchart.Remote_Reads;
 with Ravenchart.Trace_Buffers;
 
 package Instance_Store
@@ -71,6 +72,12 @@ is
    package Calling is new Ravenchart.Remote_Calls
      (Limit   => 3,
       Ceiling => Ceiling);
+
+   package Copied is new Ravenchart.Remote_Reads
+     (Element_Type => Reading,
+      Initial      => No_Reading,
+      Limit        => 3,
+      Ceiling      => Ceiling);
 
    package Trace is new Ravenchart.Trace_Buffers
      (Capacity => 64,

@@ -41,14 +41,21 @@ is
 
    procedure Tick (Item : in out Call; Status : out Wait_Status) is
    begin
-      Status := Within_Limit;
-      if Waits (Item) then
-         Item.Left := Item.Left - 1;
-         if not Waits (Item) then
-            Status := Timed_Out;
-         end if;
-      end if;
+      Count_Down (Item.Left, Status);
    end Tick;
+
+   ----------------
+   -- Count_Down --
+   ----------------
+
+   procedure Count_Down
+     (Left : in out Execution_Count; Status : out Wait_Status) is
+   begin
+      Status := (if Left = 1 then Timed_Out else Within_Limit);
+      if Left > 0 then
+         Left := Left - 1;
+      end if;
+   end Count_Down;
 
    ----------
    -- Hear --
@@ -65,5 +72,18 @@ is
          else Heard_First);
       Item   := (Any => True, Last => Number);
    end Hear;
+
+   ---------------
+   -- Take_Turn --
+   ---------------
+
+   procedure Take_Turn
+     (Left   : in out Execution_Count;
+      Every  : Execution_Limit;
+      Is_Due : out Boolean) is
+   begin
+      Is_Due := Left = 0;
+      Left   := (if Is_Due then Every - 1 else Left - 1);
+   end Take_Turn;
 
 end Ravenchart.Calls;

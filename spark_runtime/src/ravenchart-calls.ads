@@ -1,5 +1,7 @@
 --  Calls of a command on another node, told apart by their numbers: of its
 --  caller the one that waits for a reply, of its provider the last one heard.
+--  And what is read there: how long its reader waits for it, and when its
+--  provider sends it.
 --
 --  Guarantees   at most one call waits; a reply is awaited only while the call
 --               of its number waits, and a call is heard once
@@ -80,6 +82,18 @@ is
                  else not Waits (Item) and then Status = Within_Limit);
    --  One more execution of the caller has begun.
 
+   --  The reader
+
+   procedure Count_Down
+     (Left : in out Execution_Count; Status : out Wait_Status)
+   with
+     Global => null,
+     Post   =>
+       (if Left'Old > 0
+        then Left = Left'Old - 1 and then (Status = Timed_Out) = (Left = 0)
+        else Left = 0 and then Status = Within_Limit);
+   --  One more execution of those that were left has begun.
+
    --  The provider
 
    type Heard is record
@@ -101,5 +115,18 @@ is
        Item = (True, Number)
        and then (Status = Repeated) = (Item'Old = (True, Number));
    --  A call of that number has come.
+
+   procedure Take_Turn
+     (Left   : in out Execution_Count;
+      Every  : Execution_Limit;
+      Is_Due : out Boolean)
+   with
+     Global => null,
+     Post   =>
+       Is_Due = (Left'Old = 0)
+       and then Left = (if Is_Due then Every - 1 else Left'Old - 1);
+   --  One more execution of what publishes has ended: is it one of those that
+   --  send, the first, and every so many behind it? Left are those before the
+   --  next one.
 
 end Ravenchart.Calls;

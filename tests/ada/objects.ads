@@ -10,6 +10,7 @@ with Ravenchart.Port_Regions;
 with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Remote_Calls;
+with Ravenchart.Remote_Reads;
 with Ravenchart.Trace_Buffers;
 
 package Objects is
@@ -61,6 +62,12 @@ package Objects is
    package Calling is new Ravenchart.Remote_Calls
      (Limit   => Call_Limit,
       Ceiling => Ceiling);
+
+   package Reading is new Ravenchart.Remote_Reads
+     (Element_Type => Integer,
+      Initial      => -1,
+      Limit        => Call_Limit,
+      Ceiling      => Ceiling);
 
    package Trace is new Ravenchart.Trace_Buffers
      (Capacity => 4,

@@ -1,4 +1,5 @@
 --  Calls of another node: one waits, late and repeated frames are told apart.
+--  What is read there is the last that came, and told to be old once.
 
 with Facts;
 with Objects;
@@ -17,6 +18,10 @@ procedure Test_Calls is
    procedure Check_Limit;
 
    procedure Check_Provider;
+
+   procedure Check_Reader;
+
+   procedure Check_Turns;
 
    ------------------
    -- Check_Caller --
@@ -115,9 +120,67 @@ procedure Test_Calls is
          Hearing = Ravenchart.Calls.Heard_First);
    end Check_Provider;
 
+   ------------------
+   -- Check_Reader --
+   ------------------
+
+   procedure Check_Reader is
+      Wait : Ravenchart.Calls.Wait_Status;
+      Item : Integer;
+      Told : Natural := 0;
+   begin
+      Objects.Reading.Read (Item);
+      Facts.Check ("before the first value the initial one is read",
+         Item = -1);
+      for Execution in 1 .. Objects.Call_Limit - 1 loop
+         Objects.Reading.Tick (Wait);
+         Facts.Check
+           ("the first value may take its limit",
+            Wait = Ravenchart.Calls.Within_Limit);
+      end loop;
+      Objects.Reading.Tick (Wait);
+      Facts.Check
+        ("without one it is too old at its limit",
+         Wait = Ravenchart.Calls.Timed_Out);
+      Objects.Reading.Put (7);
+      for Execution in 1 .. 3 * Objects.Call_Limit loop
+         Objects.Reading.Tick (Wait);
+         Told := Told + (if Wait = Ravenchart.Calls.Timed_Out then 1 else 0);
+         Facts.Check
+           ("it is told at the limit after the last value",
+            (Wait = Ravenchart.Calls.Timed_Out)
+            = (Execution = Objects.Call_Limit));
+      end loop;
+      Objects.Reading.Read (Item);
+      Facts.Check ("it is told once", Told = 1);
+      Facts.Check ("the last value stays", Item = 7);
+   end Check_Reader;
+
+   -----------------
+   -- Check_Turns --
+   -----------------
+
+   procedure Check_Turns is
+      Left : Ravenchart.Execution_Count := 0;
+      Due  : Boolean;
+   begin
+      for Execution in 0 .. 6 loop
+         Ravenchart.Calls.Take_Turn (Left, Every => 3, Is_Due => Due);
+         Facts.Check
+           ("the first execution sends, and every third behind it",
+            Due = (Execution mod 3 = 0));
+      end loop;
+      Ravenchart.Calls.Take_Turn (Left, Every => 1, Is_Due => Due);
+      Ravenchart.Calls.Take_Turn (Left, Every => 1, Is_Due => Due);
+      Ravenchart.Calls.Take_Turn (Left, Every => 1, Is_Due => Due);
+      Facts.Check ("each execution sends when every one does", Due);
+   end Check_Turns;
+
 begin
    Check_Caller;
    Check_Limit;
    Check_Provider;
+   Check_Reader;
+   Check_Turns;
    Facts.Finish;
 end Test_Calls;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,7 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     seen = read_trace(trace.splitlines(), names)
     fired = [record.text for record in seen.of("transition", "boss_1.Plan")]
     #  a reply by event, one by polling, and what the other node was told, read back
+    #  (`check` fires once what the other node publishes is its new goal)
     assert " ".join(["homed", "known", "check", "there"]) in " ".join(fired)
     #  the bus is cut: a second call finds the first under way, which is given up in time
     times = [(r.time / 1e6, r.text) for r in seen.of("transition", "boss_1.Plan")]
@@ -52,7 +54,12 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     assert [name for _, name in after] == ["insist", "hasty", "alone"]
     #  three executions of 20 ms, and one that takes the event behind the other
     assert round(after[-1][0] / 20) == 4
-    assert seen.faults["Stale_Input"] >= 2
+    assert seen.faults["Stale_Input"] >= 3
+    #  what is read grows too old meanwhile: that is told, once
+    came = [record.time / 1e6 for record in seen.of("arrived", "mover_1_Get_Place")]
+    ((last, first),) = [pair for pair in pairwise(came) if pair[1] - pair[0] > 500]
+    view = [(r.time / 1e6, r.text) for r in seen.of("transition", "boss_1.View")]
+    assert [name for time, name in view if last < time < first].count("darkened") == 1
     #  it is mended: calls are answered again
     assert "homed" in fired[len(fired) - fired[::-1].index("alone") :]
 

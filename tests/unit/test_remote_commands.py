@@ -13,7 +13,7 @@ from analysis.depths import depths
 from analysis.findings import findings
 from analysis.report import render as render_report
 from analysis.timing import analyse
-from gen.commands import Remote, Server
+from gen.commands import Remote, RemoteRead, Server
 from gen.derive import on_one_node, programs
 from gen.diagnostics import render
 from gen.generate import generate
@@ -59,7 +59,7 @@ def _sources(system: System, node: str, unit: str) -> dict[str, str]:
     }
 
 
-def test_calls_are_messages_with_the_period_of_their_caller_and_replies_of_the_server() -> None:
+def test_calls_have_the_period_of_their_caller_replies_and_reads_that_of_the_server() -> None:
     system = _system()
     assert [
         (m.name, str(m.source), [str(t) for t in m.targets], m.period) for m in system.messages
@@ -74,6 +74,7 @@ def test_calls_are_messages_with_the_period_of_their_caller_and_replies_of_the_s
             ["boss_1.Get_Limit_Reply"],
             10_000_000,
         ),
+        ("mover_1_Get_Place", "mover_1.Goal", ["boss_1.Get_Place"], 20_000_000),
     ]
     fields = {m.name: [(s.name, s.width) for s in m.signals] for m in system.messages}
     assert fields["boss_1_Home"] == [("number", 8)]
@@ -127,7 +128,8 @@ def test_the_way_of_a_call_and_its_reply_is_a_chain_within_the_time_limit() -> N
 def test_a_time_limit_below_the_bound_is_an_error_with_both_figures() -> None:
     system = _system(("time_limit: 60 ms", "time_limit: 15 ms"))
     told = [one.message for one in findings(analyse(system))]
-    assert "the reaction of boss_1_Home may take 18710 us, and its limit is 15 ms" in told
+    assert "the reaction of boss_1_Home may take 20710 us, and its limit is 15 ms" in told
+    assert "the age of boss_1_Get_Place may take 26070 us, and its limit is 15 ms" in told
 
 
 @pytest.mark.parametrize(("limit", "executions"), [("60 ms", 3), ("61 ms", 4), ("20 ms", 1)])
@@ -139,12 +141,109 @@ def test_the_limit_is_counted_in_whole_executions_of_the_caller(
     assert provider.provider.executions == executions
 
 
+def test_what_is_read_comes_to_all_readers_of_other_nodes_in_one_message() -> None:
+    system = _system(*OTHERS)
+    (message,) = [m for m in system.messages if m.every]
+    assert (message.name, str(message.source)) == ("mover_1_Get_Place", "mover_1.Goal")
+    assert [str(target) for target in message.targets] == ["boss_1.Get_Place", "boss_3.Get_Place"]
+    assert isinstance(system.bound["boss_2", "Get_Place"].provider, Server)
+    (chain,) = [chain for chain in system.chains if chain.name == "boss_3_Get_Place"]
+    assert (chain.reaction, chain.age) == (None, 60_000_000)
+    assert chain.way == ("message mover_1_Get_Place", "boss_3.Get_Place", "boss_3.Plan")
+
+
+SERVED = "period: 10 ms\n        wcet: 200 us"
+PLANNED = "period: 20 ms\n        wcet: 400 us"
+
+
+@pytest.mark.parametrize(
+    ("writer", "reader", "every"),
+    [("10", "20", 2), ("10", "10", 1), ("20", "10", 1), ("5", "20", 4)],
+)
+def test_it_is_sent_as_often_as_its_fastest_reader_looks_or_its_writer_writes(
+    writer: str, reader: str, every: int
+) -> None:
+    system = _system(
+        (SERVED, SERVED.replace("10", writer)), (PLANNED, PLANNED.replace("20", reader))
+    )
+    (message,) = [m for m in system.messages if m.every]
+    assert (message.every, message.period) == (every, every * int(writer) * 1_000_000)
+
+
+LOOKING = """    activities:
+      Look: {period: 40 ms, wcet: 50 us, reads: [Get_Place], writes: [Seen], body: user}
+    data: {Seen: {type: Place, initial: 0}}
+    regions:
+"""
+
+
+def test_the_fastest_row_that_reads_notices_that_nothing_came() -> None:
+    looking = (("    regions:\n", LOOKING), ("boss_1.View]", "boss_1.View, boss_1.Look]"))
+    provider = _system(*looking).bound["boss_1", "Get_Place"].provider
+    assert isinstance(provider, RemoteRead)
+    #  60 ms are three executions; a value may have come just before the first
+    assert (provider.watcher, provider.executions) == ("Plan", 4)
+    slow = (("when: Get_Place = 900", "after: 100 ms"), *looking)
+    provider = _system(*slow).bound["boss_1", "Get_Place"].provider
+    assert isinstance(provider, RemoteRead)
+    assert (provider.watcher, provider.executions) == ("Look", 3)
+
+
+def test_what_nobody_reads_does_not_travel_and_needs_no_limit() -> None:
+    system = _system(("when: Get_Place = 900", "after: 100 ms"))
+    assert not [m for m in system.messages if m.every]
+    assert system.bound["boss_1", "Get_Place"].provider is None
+
+
+def test_its_age_is_bounded_by_how_often_it_is_sent_and_read() -> None:
+    found = analyse(_system())
+    ((chain, latency),) = [pair for pair in found.limited if pair[0].name == "boss_1_Get_Place"]
+    assert chain.age == 60_000_000
+    assert [hop.step.name for hop in latency.hops] == [
+        "link.driver_tx.mover_1_Get_Place",
+        "link.mover_1_Get_Place",
+        "link.driver_rx.mover_1_Get_Place",
+        "link.mover_1_Get_Place.reception",
+        "boss_1.Plan",
+    ]
+    #  a value is replaced by the next one after the period of the message
+    assert latency.age is not None
+    assert 20_000_000 < latency.age <= 60_000_000
+    (cost,) = [one for one in costs(found) if one.command == "Get_Place"]
+    assert (cost.how, cost.provider, cost.waits) == ("over link", "mover_1.Goal", False)
+    assert (cost.answered, cost.limit) == (latency.age, 60_000_000)
+
+
 def test_requests_from_other_nodes_are_counted_in_the_queue_of_their_server() -> None:
     (one,) = [d for d in depths(analyse(_system())) if "mover_1.Motion" in d.what]
     #  one call each of the two with a reply, and of the third what comes in 14 ms
     assert (one.given, one.needed) == (4, 3)
     short = analyse(_system(("queue: 4\n        served_by", "queue: 2\n        served_by")))
     assert [d.needed for d in depths(short) if not d.holds] == [3]
+
+
+def _waiting(*replacements: tuple[str, str]) -> list[tuple[int, int | None]]:
+    queues = depths(analyse(_system(*replacements)))
+    return [(d.given, d.needed) for d in queues if "mover_1.Motion" in d.what]
+
+
+def test_requests_of_the_own_node_are_counted_unless_a_caller_says_what_becomes_of_them() -> None:
+    calm = ("on_reply: Homed, on_full: Hasty, on_timeout", "on_reply: Homed, on_timeout")
+    hasty = (("on: Hasty", "after: 40 ms"), ("Hasty: {}, ", ""))
+    #  the server's period is half of the caller's: of each of three commands one call waits
+    assert _waiting(TOGETHER, calm, *hasty) == [(4, 3)]
+    assert _waiting(TOGETHER) == []
+
+
+def test_where_other_nodes_call_a_full_queue_is_an_error_whatever_a_near_caller_says() -> None:
+    ((given, needed),) = _waiting(*OTHERS)
+    #  three of boss_2, whose `Home` has an `on_full`; of two others four, `Set_Goal` twice
+    assert (given, needed) == (16, 11)
+    few = ("queue: 16\n        served", "queue: 8\n        served")
+    told = [
+        one.message for one in findings(analyse(_system(*OTHERS[:-1], (OTHERS[-1][0], few[1]))))
+    ]
+    assert [text for text in told if "up to 11 requests may wait in mover_1.Motion at once" in text]
 
 
 def test_the_report_says_of_each_command_how_it_is_provided_and_when_it_is_done() -> None:
@@ -184,6 +283,7 @@ def test_one_line_puts_both_on_one_node_and_no_component_changes() -> None:
 def test_each_node_has_its_program_and_the_objects_of_its_side() -> None:
     panel, drive = programs(_system())
     assert panel.object("boss_1.Home.call").users == ("planning", "reception_panel")
+    assert panel.object("boss_1.Get_Place.read").users == ("planning", "reception_panel")
     assert drive.object("mover_1.Motion.queue").users == ("reception_drive", "moving")
     assert not drive.has_object("boss_1.Home.call")
 
@@ -194,8 +294,8 @@ OTHERS = (
      "  boss_3: {component: Boss, node: desk}\n  mover_1: {"),
     ("  - {from: boss_1", "  - {from: boss_2.Motion, to: mover_1.Motion}\n"
      "  - {from: boss_3.Motion, to: mover_1.Motion, time_limit: 60 ms}\n  - {from: boss_1"),
-    ("  planning:", "  planning_2: {stack: 32 KiB, activities: [boss_2.Plan]}\n"
-     "  planning_3: {stack: 32 KiB, activities: [boss_3.Plan]}\n  planning:"),
+    ("  planning:", "  planning_2: {stack: 32 KiB, activities: [boss_2.Plan, boss_2.View]}\n"
+     "  planning_3: {stack: 32 KiB, activities: [boss_3.Plan, boss_3.View]}\n  planning:"),
     ("queue: 4\n        served", "queue: 16\n        served"),
 )  # fmt: skip
 
@@ -237,6 +337,35 @@ OBEY = """    activities:
     [
         ([(", time_limit: 60 ms", "")], "boss_1.Home has its replies from drive"),
         (
+            [
+                (", time_limit: 60 ms", ""),
+                ("Home: {on_reply: Homed, on_full: Hasty, on_timeout: Alone}", "Home: {}"),
+                ("{call: Get_Limit, with: High}", "{call: Set_Goal, with: 1}"),
+                ("{call: Get_Limit, with: Low}", "{call: Set_Goal, with: 2}"),
+                ("Get_Limit: {on_timeout: Alone}", "Get_Limit: {}"),
+                ("when: Get_Limit_Reply = 1000", "after: 40 ms"),
+                ("when: Get_Limit_Reply = 900", "after: 40 ms"),
+                ('"min(Get_Limit_Reply, 900)"', "900"),
+                (
+                    "on: Homed, guard: event = Well}\n          known",
+                    "after: 60 ms}\n          known",
+                ),
+            ],
+            "boss_1.Get_Place is read from drive: the binding needs the key `time_limit`",
+        ),
+        (
+            [("reads: [Goal]\n        writes: [Goal]", "reads: [Goal]")],
+            "which provides it, on drive; nothing writes Goal, so nothing sends it",
+        ),
+        (
+            [("types:\n", "types:\n  mover_1_Get_Place: {range: [0, 1]}\n")],
+            "boss_1.Get_Place is carried as `mover_1_Get_Place`, and the model has that name",
+        ),
+        (
+            [("Get_Place: {on_timeout: Blind}", "Get_Place: {on_full: Blind}")],
+            "`on_full` has no meaning for Get_Place, which is read",
+        ),
+        (
             [(f"buses:\n{BUS}", ""), (RECEPTION, "")],
             "declare a bus: between nodes, calls travel as its messages",
         ),
@@ -252,7 +381,7 @@ OBEY = """    activities:
             [
                 ("  boss_1: {comp", f"  {LONG}: {{comp"),
                 ("from: boss_1", f"from: {LONG}"),
-                ("boss_1.Plan", f"{LONG}.Plan"),
+                ("boss_1.Plan, boss_1.View", f"{LONG}.Plan, {LONG}.View"),
             ],
             "a name has at most 60 characters",
         ),
@@ -264,7 +393,7 @@ OBEY = """    activities:
             [
                 ("    requires:\n", PROVIDED),
                 ("    regions:\n", OBEY),
-                ("[boss_1.Plan]", "[boss_1.Plan, boss_1.Obey]"),
+                ("[boss_1.Plan, boss_1.View]", "[boss_1.Plan, boss_1.View, boss_1.Obey]"),
             ],
             "Obey serves up to 2 requests in one execution, so boss_1_Set_Goal may be sent more",
         ),

@@ -1,0 +1,41 @@
+--  What an instance on another node publishes, as its readers see it: the
+--  value that came last, while one comes in every Limit executions of the
+--  reader that looks after it.
+--
+--  Guarantees   those of Calls; readers get a copy of one whole value
+--  Tasking      any task up to Ceiling
+--  Timing       the time to copy one Element_Type; never blocks
+--  Analysis     one shared object, ceiling Ceiling
+
+with System;
+with Ravenchart.Calls;
+
+generic
+   type Element_Type is private;
+   Initial : Element_Type;
+   --  What readers see before the first value has come.
+   Limit : Calls.Execution_Limit;
+   --  Executions of the reader after which the value is too old.
+   Ceiling : System.Any_Priority;
+   --  At least the priority of every caller.
+package Ravenchart.Remote_Reads
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (State with Synchronous, External => (Async_Readers, Async_Writers)),
+    Initializes    => State
+is
+   procedure Put (Item : Element_Type)
+   with Global => (In_Out => State);
+   --  A value has come.
+
+   procedure Tick (Status : out Calls.Wait_Status)
+   with Global => (In_Out => State);
+   --  One more execution of the reader has begun; told once until the next
+   --  value: Timed_Out, the value is too old.
+
+   procedure Read (Item : out Element_Type)
+   with Global => (Input => State);
+   --  Copy the value out, however old.
+
+end Ravenchart.Remote_Reads;
