@@ -20,10 +20,12 @@ from .devices import (
     name_of,
     offered,
     provided_axes,
+    tells,
+    told_by,
     ungathered,
     wcet_of,
 )
-from .model import Instance, Processor, Slot, System
+from .model import Connection, End, Instance, Processor, Slot, System
 from .names import Findings, Scope, meant
 from .quantities import LONGEST
 from .schema_devices import BindingForm
@@ -52,6 +54,8 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
         required.open = instance.component.name in devices.damaged
         for need in instance.component.needs:
             required.declare(need.interface, None, need.interface)
+        for heard in instance.component.hears:
+            required.declare(heard.interface, None, heard.interface)
         name = required.look_up(interface, at, findings)
         if name is None:
             continue
@@ -72,12 +76,13 @@ def bindings_of(
     made: list[Binding] = []
     for instance in instances:
         unbound: set[str] = set()
+        uneven: set[tuple[str, str]] = set()
         for need in instance.component.needs:
             key = (instance.name.lower(), need.interface.lower())
             if key in given:
                 form, provider = given[key]
                 if provider is not None:
-                    made.append(_bound(instance, need, form, provider, findings))
+                    made.append(_bound(instance, need, form, provider, uneven, findings))
             elif need.optional:
                 made.append(Binding(instance.name, need.origin, need, None))
             elif need.interface not in unbound:
@@ -92,10 +97,62 @@ def bindings_of(
     return tuple(made)
 
 
+def event_wires(
+    instances: Iterable[Instance], given: Given, findings: Findings
+) -> tuple[Connection, ...]:
+    """What brings the events of required interfaces: connections of the ports on both sides."""
+    made: list[Connection] = []
+    for instance in instances:
+        for heard in instance.component.hears:
+            wanted = f"{instance.name}.{heard.interface}"
+            form, provider = given.get((instance.name.lower(), heard.interface.lower()), _NOTHING)
+            needed = any(
+                need.interface == heard.interface and not need.optional
+                for need in instance.component.needs
+            )
+            if form is None and not needed:
+                message = f"nothing provides {wanted}, which hears {heard.name}"
+                notes = [(heard.origin, f"{heard.name} is required here")]
+                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
+            elif form is not None and provider is not None:
+                told = tells(provider, heard.name)
+                notes = [(heard.origin, f"{heard.name} is required here")]
+                if not told:
+                    message = (
+                        f"{name_of(provider)} does not provide the event {heard.name}, which "
+                        f"{instance.name} requires"
+                    )
+                    near = meant(heard.name, told_by(provider))
+                    near = near or "provide it by `events`; a device has none"
+                    findings.error("RV-1204", form.at("to"), message, notes=notes, hint=near)
+                elif len(told) > 1:
+                    first, second = (name_of(server) for server, _ in told[:2])
+                    message = f"{first} and {second} of {name_of(provider)} both tell {heard.name}"
+                    hint = f"say which is meant: `choose: {{{heard.name}: {first}}}`"
+                    findings.error("RV-1212", form.at("to"), message, notes=notes, hint=hint)
+                else:
+                    ((server, event),) = told
+                    source = End(server.instance, event.port)
+                    made.append(Connection(form.origin, source, End(instance.name, heard.port)))
+    return tuple(made)
+
+
+_NOTHING: tuple[BindingForm | None, Provider | None] = None, None
+
+
 def _bound(
-    instance: Instance, need: Need, form: BindingForm, provider: Provider, findings: Findings
+    instance: Instance,
+    need: Need,
+    form: BindingForm,
+    provider: Provider,
+    uneven: set[tuple[str, str]],
+    findings: Findings,
 ) -> Binding:
-    """What provides one command; reported when nothing does and nothing stands in."""
+    """What provides one command; reported when nothing does and nothing stands in.
+
+    ``uneven`` has the interfaces and providers whose axes were told to differ.
+    """
     at, notes = form.at("to"), [(need.origin, f"{need.name} is required here")]
 
     def report(code: str, message: str, hint: str | None) -> None:
@@ -115,7 +172,8 @@ def _bound(
             report("RV-1204", message, hint)
     if found is not None and need.command.per_axis:
         axes = provided_axes(found, need.name)
-        if axes != need.axes:
+        if axes != need.axes and (need.interface, name_of(found)) not in uneven:
+            uneven.add((need.interface, name_of(found)))
             message = (
                 f"{name_of(found)} has {_axes(axes)}, and {instance.name}.{need.interface} works "
                 f"on {need.axes}"

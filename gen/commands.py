@@ -20,11 +20,13 @@ class CommandKind(Enum):
     WRITE = "write"
     READ = "read"
     QUALIFIED_READ = "qualified_read"
+    EVENT = "event"
+    """Comes from whoever provides it: `argument` is what it tells."""
 
     @property
     def takes(self) -> bool:
         """Whether it has an argument."""
-        return self in (CommandKind.WRITE, CommandKind.QUALIFIED_READ)
+        return self in (CommandKind.WRITE, CommandKind.QUALIFIED_READ, CommandKind.EVENT)
 
     @property
     def gives(self) -> bool:
@@ -108,6 +110,16 @@ class Published:
 
 
 @dataclass(frozen=True, slots=True)
+class InterfaceEvent:
+    """An event of an interface: it leaves its provider, or comes to who requires it, by a port."""
+
+    name: str
+    origin: Origin
+    interface: str
+    port: str
+
+
+@dataclass(frozen=True, slots=True)
 class Provided:
     """A provided interface of a component."""
 
@@ -120,6 +132,7 @@ class Provided:
     """The activity that executes them."""
     requests: tuple[Request, ...]
     published: tuple[Published, ...]
+    events: tuple[InterfaceEvent, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from .commands import Need, Provided
+from .commands import InterfaceEvent, Need, Provided
 from .statechart import DONE, Overflow, Region, Timing
 from .terms import (
     Expression,
@@ -156,6 +156,8 @@ class Component:
     invariants: tuple[Invariant, ...] = ()
     needs: tuple[Need, ...] = ()
     provides: tuple[Provided, ...] = ()
+    hears: tuple[InterfaceEvent, ...] = ()
+    """The events of its required interfaces."""
 
     def inputs(self) -> tuple[Port, ...]:
         """The input ports, in model order."""

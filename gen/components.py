@@ -11,7 +11,7 @@ from .charts import region_of
 from .commands import Command, Need
 from .component import Activity, Component, Direction, StateRef
 from .flows import Targets, Use, called, flow_of
-from .interfaces import needs_of, provided_of, servers_serve_once, stand_ins_agree
+from .interfaces import heard_of, needs_of, provided_of, servers_serve_once, stand_ins_agree
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .names import Findings, Scope, meant
 from .quantities import shown
@@ -71,6 +71,7 @@ def parts_of(
     space = Namespace(name, system, findings)
     members = members_of(form, types, space)
     needs = needs_of(form, dictionary, types, members, space)
+    hears = heard_of(form, dictionary, types, members, findings)
     states: Scope[Scope[str]] = Scope("region", open=form.lost("regions"))
     for gone in form.dropped("regions"):
         states.declare(gone, None, None)
@@ -120,6 +121,7 @@ def parts_of(
         invariants=invariants_of(form, words, findings),
         needs=needs,
         provides=tuple(one for one in provides if one is not None),
+        hears=hears,
     )
     if findings.count() == before:
         stand_ins_agree(form, component, findings)

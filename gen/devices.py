@@ -14,6 +14,7 @@ from .commands import (
     Device,
     DeviceType,
     DriverCommand,
+    InterfaceEvent,
     Provided,
     Published,
     Remote,
@@ -68,7 +69,11 @@ def device_type_of(
     for text, wcet in form.provides.items():
         at = form.entry_at("provides", text)
         command = dictionary.look_up(text, at, findings)
-        if command is not None:
+        if command is not None and command.kind is CommandKind.EVENT:
+            message = f"{command.name} is an event, and a device has no task that could raise it"
+            hint = "let the device be read, and a component tell of it"
+            findings.error("RV-1215", at, message, hint=hint)
+        elif command is not None:
             made = DriverCommand(command, *at_axes(command, form.axes, types), Ns(wcet))
             found.declare(command.name, at, made, findings)
     if len(found.sound()) < len(form.provides) or form.damaged:
@@ -226,9 +231,9 @@ class Devices:
                 message = f"`{text}` is no member of {name}"
                 value = form.place("choose", command).origin
                 self.findings.error("RV-1212", value, message, hint=meant(text, names))
-            elif command.lower() not in map(str.lower, offered(member)):
+            elif command.lower() not in map(str.lower, (*offered(member), *told_by(member))):
                 message = f"{name_of(member)} does not provide `{command}`"
-                hint = meant(command, offered(member))
+                hint = meant(command, (*offered(member), *told_by(member)))
                 self.findings.error("RV-1212", at, message, hint=hint)
             else:
                 chosen.append((command.lower(), member))
@@ -261,6 +266,25 @@ def found_in(provider: Provider, command: str, report: Report) -> Device | Serve
         hint = f"say which is meant: `choose: {{{command}: {name_of(having[0])}}}`"
         report("RV-1212", message, hint)
     return found_in(having[0], command, report) if having else None
+
+
+def tells(provider: Provider, event: str) -> tuple[tuple[Server, InterfaceEvent], ...]:
+    """Who raises an event, and by which port; of a facade whoever is chosen, or all."""
+    if isinstance(provider, Server):
+        return tuple((provider, one) for one in provider.interface.events if one.name == event)
+    if isinstance(provider, Device):
+        return ()
+    meant_by = dict(provider.chosen).get(event.lower())
+    members = provider.members if meant_by is None else (meant_by,)
+    return tuple(one for member in members for one in tells(member, event))
+
+
+def told_by(provider: Provider) -> tuple[str, ...]:
+    """The names of the events that it provides."""
+    if isinstance(provider, Server):
+        return tuple(one.name for one in provider.interface.events)
+    members = provider.members if isinstance(provider, Facade) else ()
+    return tuple(name for member in members for name in told_by(member))
 
 
 def ungathered(provider: Provider, command: str) -> Device | None:

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from .commands import Command, CommandKind, Need, Provided, Published, Request, StandIn
+from .commands import (
+    Command,
+    CommandKind,
+    InterfaceEvent,
+    Need,
+    Provided,
+    Published,
+    Request,
+    StandIn,
+)
 from .component import Activity, Component, Data, Direction, Event, Port
 from .members import Members, Namespace
 from .names import Findings, Scope
@@ -35,16 +44,18 @@ def command_of(
     sides: dict[str, Type | None] = {}
     for key, text, needed, allowed in (
         ("argument", form.argument, kind.takes, kind.takes),
-        ("reply", form.reply, kind.gives, True),
+        ("reply", form.reply, kind.gives, kind is not CommandKind.EVENT),
     ):
         sides[key] = None if text is None else types.look_up(text, form.at(key), findings)
         if text is None and needed and not form.lost(key):
-            message = f"the {_words(kind)} command {name} needs the key `{key}`"
+            message = f"the {_words(kind)} {name} needs the key `{key}`"
             findings.error("RV-1201", form.origin, message, hint=f"give the type: `{key}: ...`")
         elif text is not None and not allowed:
-            message = f"a {_words(kind)} command has no {key}"
+            message = f"a {_words(kind)} has no {key}"
             other = "write" if kind is CommandKind.VOID else "qualified_read"
             hint = f"make it `kind: {other}`, or remove `{key}`"
+            if kind is CommandKind.EVENT:
+                message, hint = "an event has no reply: nobody asked", "remove `reply`"
             findings.error("RV-1201", form.at_key(key), message, hint=hint)
     kinds = [type_ for type_ in sides.values() if type_ is not None]
     if form.per_axis and findings.count() == before:
@@ -61,7 +72,7 @@ def command_of(
 
 
 def _words(kind: CommandKind) -> str:
-    return kind.value.replace("_", " ")
+    return "event" if kind is CommandKind.EVENT else f"{kind.value.replace('_', ' ')} command"
 
 
 def declare_vectors(dictionary: Scope[Command], counts: Iterable[int], types: Scope[Type]) -> None:
@@ -107,7 +118,7 @@ def needs_of(
         for name, origin, said in _named(at):
             command = dictionary.look_up(name, origin, space.findings)
             made = None
-            if command is not None:
+            if command is not None and not _is_event(command, origin, space.findings):
                 made = _need(interface, at.axes, command, origin, said, types, members, space)
             declared = name if command is None else command.name
             if found.declare(declared, origin, made, space.findings):
@@ -293,7 +304,89 @@ def _else_at(form: RequiredForm, name: str) -> Origin:
     return form.origin if said is None else said.at("else")
 
 
+# --- Events ------------------------------------------------------------------------
+
+
+def _is_event(command: Command, origin: Origin, findings: Findings) -> bool:
+    """Whether what stands among commands is an event, which is reported."""
+    if command.kind is CommandKind.EVENT:
+        message = f"{command.name} is an event, and here is a command wanted"
+        hint = f"write `events: {{{command.name}: <port>}}`"
+        findings.error("RV-1215", origin, message, hint=hint)
+    return command.kind is CommandKind.EVENT
+
+
+def heard_of(
+    form: ComponentForm,
+    dictionary: Scope[Command],
+    types: Scope[Type],
+    members: Members,
+    findings: Findings,
+) -> tuple[InterfaceEvent, ...]:
+    """The events of the required interfaces."""
+    return tuple(
+        one
+        for name, at in (form.requires or {}).items()
+        for one in _events(name, at, Direction.IN, dictionary, types, members, findings)
+    )
+
+
+def _events(
+    interface: str,
+    form: RequiredForm | ProvidedForm,
+    direction: Direction,
+    dictionary: Scope[Command],
+    types: Scope[Type],
+    members: Members,
+    findings: Findings,
+) -> tuple[InterfaceEvent, ...]:
+    """The events of an interface whose ports have the direction and type."""
+    found: list[InterfaceEvent] = []
+    for text, name in (form.events or {}).items():
+        at, value = form.entry_at("events", text), form.place("events", text).origin
+        command = dictionary.look_up(text, at, findings)
+        port = members.ports.look_up(name, value, findings)
+        if command is None or port is None:
+            continue
+        argument, _ = at_axes(command, form.axes, types)
+        notes = [(port.origin, f"`{port.name}` is declared here")]
+        if command.kind is not CommandKind.EVENT:
+            message = f"{command.name} is a {_words(command.kind)} and no event"
+            hint = "put it under `commands`, or make it `kind: event` where it is declared"
+            findings.error("RV-1215", at, message, hint=hint)
+        elif port.direction is not direction or port.is_command:
+            way = "comes to an input" if direction is Direction.IN else "is sent on an output"
+            message = f"{command.name} {way} port, and {port.name} is none"
+            findings.error("RV-1215", value, message, notes=notes)
+        elif port.type is not argument:
+            told = "" if argument is None else argument.name
+            message = f"{port.name} is of type {port.type.name}, and {command.name} tells {told}"
+            hint = f"make it `type: {told}`"
+            findings.error("RV-1215", value, message, notes=notes, hint=hint)
+        else:
+            found.append(InterfaceEvent(command.name, at, interface, port.name))
+    return tuple(found)
+
+
 # --- Provided interfaces -----------------------------------------------------------
+
+
+def _check_served(
+    name: str, form: ProvidedForm, server: Activity | None, findings: Findings
+) -> None:
+    """Queued commands have a queue, and an activity that can execute them."""
+    given = bool(form.commands)
+    for key, value in (("queue", form.queue), ("served_by", form.served_by)):
+        if given and value is None and not form.lost(key):
+            message = f"{name} has queued commands and needs the key `{key}`"
+            findings.error("RV-1209", form.origin, message)
+        elif not given and value is not None and not form.list_damaged("commands"):
+            message = f"`{key}` has no meaning without `commands`"
+            findings.error("RV-1209", form.at_key(key), message, hint="name what is queued")
+    if server is not None and (server.flow is not None or server.while_in is not None):
+        message = f"{server.name} cannot serve {name}: it is a flow, or works in one state only"
+        hint = f"give {server.name} `body: user`, and no `while`"
+        findings.error("RV-1209", form.at("served_by"), message, hint=hint)
 
 
 def provided_of(
@@ -310,18 +403,7 @@ def provided_of(
     server = None
     if form.served_by is not None:
         server = activities.look_up(form.served_by, form.at("served_by"), findings)
-    given = bool(form.commands)
-    for key, value in (("queue", form.queue), ("served_by", form.served_by)):
-        if given and value is None and not form.lost(key):
-            message = f"{name} has queued commands and needs the key `{key}`"
-            findings.error("RV-1209", form.origin, message)
-        elif not given and value is not None and not form.list_damaged("commands"):
-            message = f"`{key}` has no meaning without `commands`"
-            findings.error("RV-1209", form.at_key(key), message, hint="name what is queued")
-    if server is not None and (server.flow is not None or server.while_in is not None):
-        message = f"{server.name} cannot serve {name}: it is a flow, or works in one state only"
-        hint = f"give {server.name} `body: user`, and no `while`"
-        findings.error("RV-1209", form.at("served_by"), message, hint=hint)
+    _check_served(name, form, server, findings)
     requests: Scope[Request | Published] = Scope(f"command of {name}")
     for index, text in enumerate(form.commands or ()):
         at = form.item_at("commands", index)
@@ -330,7 +412,7 @@ def provided_of(
             message = f"{command.name} is a read command: nothing is queued for it"
             hint = f"write `published: {{{command.name}: <data item>}}`"
             findings.error("RV-1209", at, message, hint=hint)
-        elif command is not None:
+        elif command is not None and not _is_event(command, at, findings):
             made = Request(command, *at_axes(command, form.axes, types))
             requests.declare(command.name, at, made, findings)
     for text, item in (form.published or {}).items():
@@ -340,6 +422,8 @@ def provided_of(
         if command is None or data is None:
             continue
         _, reply = at_axes(command, form.axes, types)
+        if _is_event(command, at, findings):
+            continue
         if command.kind is not CommandKind.READ:
             message = f"{command.name} is no read command: it cannot be answered from data"
             findings.error("RV-1209", at, message, hint="put it under `commands`")
@@ -351,6 +435,7 @@ def provided_of(
             notes = [(data.origin, f"`{data.name}` is declared here")]
             findings.error("RV-1209", at, message, notes=notes)
         requests.declare(command.name, at, Published(command, data.name), findings)
+    events = _events(name, form, Direction.OUT, dictionary, types, members, findings)
     if findings.count() > before or form.damaged:
         return None
     sound = requests.sound()
@@ -362,6 +447,7 @@ def provided_of(
         None if server is None else server.name,
         tuple(one for one in sound if isinstance(one, Request)),
         tuple(one for one in sound if isinstance(one, Published)),
+        events,
     )
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
-from .bindings import bindings_of, given_bindings, with_bindings
+from .bindings import bindings_of, event_wires, given_bindings, with_bindings
 from .commands import Binding, DeviceType
 from .components import parts_of
 from .deployment import (
@@ -219,8 +219,11 @@ class _Sections:
         instances: Scope[Instance],
         types: Scope[Type],
         damaged: frozenset[str],
-    ) -> tuple[Binding, ...]:
-        """What provides each required command; none where something of it was lost."""
+    ) -> tuple[tuple[Binding, ...], tuple[Connection, ...]]:
+        """What provides each required command, and brings each event.
+
+        None where something of it was lost.
+        """
         count = self.findings.count()
         scope: Scope[Provider] = self.scope("devices", "device")
         forms: Scope[DeviceForm] = Scope("device", open=scope.open)
@@ -235,9 +238,14 @@ class _Sections:
             file.list_damaged("bindings") or file.lost("bindings") for file in self.model.files
         )
         if lost or scope.has_lost() or self.findings.count() > count or not self.whole:
-            return ()
+            self.sound.discard("connections")
+            return (), ()
         known += [f"{i.name}.{p.name}" for i in instances.sound() for p in i.component.provides]
-        return bindings_of(instances.sound(), given, known, self.findings)
+        made = bindings_of(instances.sound(), given, known, self.findings)
+        wires = event_wires(instances.sound(), given, self.findings)
+        if self.findings.count() > count:
+            self.sound.discard("connections")
+        return made, wires
 
     def shutdown(self, site: Site) -> Shutdown:
         """What a request to stop does."""
@@ -294,11 +302,15 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     )
     stop = sections.shutdown(site)
     damaged = {part.component.name for part in parts.sound() if part.is_damaged}
-    bindings = sections.bindings(kinds, instances, types, frozenset(damaged))
+    bindings, wires = sections.bindings(kinds, instances, types, frozenset(damaged))
+    if any(
+        part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts.sound()
+    ):
+        sections.sound.discard("connections")
     for part in parts.sound():
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
     carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
-    connections, carried = carrier.carried(connections, messages.sound())
+    connections, carried = carrier.carried((*connections, *wires), messages.sound())
     system = System(
         name=name,
         origin=model.files[0].at_key("system"),
@@ -324,6 +336,13 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     )
     system = placed(system)
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
+
+
+def _hears_or_tells(component: str, model: Merged) -> bool:
+    """Whether interfaces of a component have events, which become connections."""
+    forms = [form for name, form in model.entries("components") if name == component]
+    sides = (side for form in forms for side in (form.requires, form.provides) if side)
+    return any(interface.events for side in sides for interface in side.values())
 
 
 def _axes(model: Merged) -> list[int]:

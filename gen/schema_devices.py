@@ -21,9 +21,9 @@ from .schema_base import (
 class CommandForm(Element):
     """An entry of the command dictionary: what the name means in the whole project."""
 
-    kind: Literal["void", "write", "read", "qualified_read"] = key(
+    kind: Literal["void", "write", "read", "qualified_read", "event"] = key(
         "`void` takes nothing, `write` an argument, `read` gives a reply, `qualified_read` gives "
-        "one to an argument."
+        "one to an argument; an `event` comes from whoever provides it, with an argument."
     )
     argument: Reference | None = optional("The type of its argument.")
     reply: Reference | None = optional("The type of its reply; `void` and `write` may have one.")
@@ -58,6 +58,9 @@ class RequiredForm(Element):
         | Annotated[dict[Reference, NeedForm], Tag("<map>")],
         shaped("a list of commands, or a mapping from commands to what is said of them"),
     ] = key("The commands; in the component they are called by their names.")
+    events: dict[Reference, Reference] | None = optional(
+        "Events of the provider, each with the input port that it comes to."
+    )
 
 
 class ProvidedForm(Element):
@@ -73,6 +76,9 @@ class ProvidedForm(Element):
     commands: list[Reference] | None = optional("Commands that are queued.")
     published: dict[Reference, Reference] | None = optional(
         "Read commands, each with the data item that is its reply."
+    )
+    events: dict[Reference, Reference] | None = optional(
+        "Events, each with the output port that it is sent on."
     )
 
 

@@ -220,9 +220,11 @@ def replies(
         if back is None or back.call is None:
             continue
         need, first = back.call.need, _first(local, place)
-        asks = member(Ref("Asked.Caller"), f"{first:_} .. {first + NUMBER.last:_}")
         caller: Expr = Ref("Asked.Caller")
-        caller = caller if first == 0 else Operation("-", (caller, number(first)))
+        asks: Expr = Operation("<=", (caller, number(NUMBER.last)))
+        if first > 0:
+            asks = member(caller, f"{first:_} .. {first + NUMBER.last:_}")
+            caller = Operation("-", (caller, number(first)))
         called = Call("Ravenchart.Number", arguments(caller))
         frame = _framed(back, called, Ref(reply(need.name)), need.reply)
         send = f"{ada_case(back.bus)}.Send_{ada_case(back.name)}"

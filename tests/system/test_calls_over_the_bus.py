@@ -64,6 +64,20 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     assert "homed" in fired[len(fired) - fired[::-1].index("alone") :]
 
 
+def test_a_region_publishes_and_events_are_brought_without_a_warning(tmp_path: Path) -> None:
+    copy = tmp_path / "gripper"
+    shutil.copytree(ROOT / "tests" / "nodes" / "gripper", copy)
+    checked = steps.check(copy / "model.yaml")
+    assert not checked.warnings
+    assert steps.write_program(checked).missing == ()
+    for made in steps.programs_of(checked):
+        made.build()
+    grasp = (copy / "generated" / "board" / "gripper_cell-grasp_1.adb").read_text()
+    assert "Link.Send_Grasp_1_Get_Heat (Life_Region.Data.Heat_Now);" in grasp
+    #  the only callers are far: their numbers are the first
+    assert "if Asked.Caller <= 255 then" in grasp
+
+
 @pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
 def test_both_programs_are_proved(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["prove", str(folder / "model.yaml")]) == 0

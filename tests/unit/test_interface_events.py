@@ -1,0 +1,83 @@
+"""Events of interfaces: a binding brings them, as a connection of both ports would."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from analysis.claims import claims_of
+from analysis.timing import analyse
+from gen.diagnostics import render
+from gen.generate import generate
+from gen.load import load
+from gen.model import System
+from ravenchart.toolchain import ROOT
+
+MODEL = (ROOT / "tests" / "nodes" / "gripper" / "model.yaml").read_text()
+TOGETHER = ("component: Boss, node: desk", "component: Boss, node: board")
+BY_HAND = (
+    ("        events: {Gripped: Told}\n", ""),
+    ("        events: {Gripped: Has_It}\n", ""),
+    ("bindings:\n", "connections:\n  - {from: grasp_1.Has_It, to: boss_1.Told}\nbindings:\n"),
+)
+
+
+def _system(*replacements: tuple[str, str]) -> System:
+    text = MODEL
+    for old, new in replacements:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    found = load(Path("model.yaml"), lambda path, limit: text.encode())
+    said = "\n".join(render(one, found.sources) for one in found.diagnostics)
+    assert found.system is not None, said
+    assert not found.diagnostics, said
+    return found.system
+
+
+def _program(system: System) -> dict[str, str]:
+    """What is generated, but for where elements stand in the model."""
+    files = generate(system, claims_of(analyse(system)))
+    return {name: text for name, text in files.items() if not name.endswith("trace.json")}
+
+
+def test_an_event_is_brought_as_by_a_connection_on_one_node() -> None:
+    system = _system(TOGETHER)
+    assert [(str(c.source), str(c.target)) for c in system.connections] == [
+        ("grasp_1.Has_It", "boss_1.Told")
+    ]
+    assert _program(system) == _program(_system(TOGETHER, *BY_HAND))
+
+
+def test_an_event_is_brought_as_by_a_connection_between_nodes() -> None:
+    system = _system()
+    assert not system.connections
+    (message,) = [m for m in system.messages if m.call is None and not m.every]
+    assert (str(message.source), [str(t) for t in message.targets]) == (
+        "grasp_1.Has_It",
+        ["boss_1.Told"],
+    )
+    assert _program(system) == _program(_system(*BY_HAND))
+
+
+def test_of_a_facade_the_one_that_is_chosen_tells() -> None:
+    second = (
+        ("  grasp_1: {", "  grasp_2: {component: Grasp, node: board}\n  grasp_1: {"),
+        (
+            "  - {from: grasp_1.Hand,",
+            "  - {from: grasp_2.Hand, to: Hand}\n  - {from: grasp_1.Hand,",
+        ),
+        ("to: grasp_1.Work", "to: Both"),
+        (
+            "devices:\n",
+            "devices:\n  Both: {facade: [grasp_2.Work, grasp_1.Work], choose: CHOSEN}\n",
+        ),
+        ("activities: [grasp_1.Serve]", "activities: [grasp_1.Serve, grasp_2.Serve]"),
+        ("grasp_1.Life]", "grasp_1.Life, grasp_2.Guess, grasp_2.Life]"),
+        ("CHOSEN", "{Gripped: grasp_1.Work, Grip: grasp_2.Work, Get_Heat: grasp_2.Work}"),
+        TOGETHER,
+    )
+    text = MODEL
+    for old, new in second:
+        text = text.replace(old, new)
+    found = load(Path("model.yaml"), lambda path, limit: text.encode())
+    assert found.system is not None, [one.message for one in found.diagnostics]
+    assert [str(c.source) for c in found.system.connections] == ["grasp_1.Has_It"]
