@@ -1,7 +1,9 @@
 """The component structure of a system as a graph for Graphviz.
 
-Each node of the hardware is a cluster with its instances, their ports and
-connections, and with its processors, each a cluster with its table in order.
+Each node of the hardware is a cluster with its instances, their ports,
+interfaces and connections, with the devices that it calls, and with its
+processors, each a cluster with its table in order. A binding is a dashed arrow
+from who requires to who provides; a diamond is at the array of what it leads to.
 A bus is a cluster of its messages. The instances are read from the one with
 the most neighbours outward, buses last; a port stands on the side of what it
 is connected with, so that no wire has to go round.
@@ -17,6 +19,19 @@ import networkx as nx
 from ..component import Direction, Port
 from ..model import Bus, End, Instance, Message, Node, Processor, System
 from ..quantities import BITS_PER_SECOND, shown
+from .devices import (
+    DASHED,
+    Link,
+    device_name,
+    devices,
+    end_port,
+    interface_cell,
+    links,
+    parts,
+    provided_port,
+    required,
+    required_port,
+)
 from .dot import (
     Attributes,
     Defaults,
@@ -54,10 +69,17 @@ class _Drawing:
                 (wire.target, wire.source.instance),
             )
         }
+        for link in reversed(links(system)):
+            right = link.interface is None or (
+                self.position[link.instance] < self.position[link.provider]
+            )
+            self.on_right[link.instance, required_port(link.required)] = right
+            if link.interface is not None:
+                self.on_right[link.provider, provided_port(link.interface)] = not right
         for message in system.messages:
             for end in (message.source, *message.targets):
                 if end is not None:
-                    self.on_right[end.instance, end.port] = True
+                    self.on_right[end.instance, end_port(system, message, end)] = True
 
     def items(self) -> Iterator[Item]:
         """The whole graph."""
@@ -78,6 +100,8 @@ class _Drawing:
             yield Edge(_rim(node), _message_name(message), _HIDDEN)
         for wire in self.system.connections:
             yield self._wire(wire.source, wire.target)
+        yield from map(self._bound, links(self.system))
+        yield from parts(self.system)
         for message in self.system.messages:
             yield from self._carried(message)
 
@@ -89,6 +113,7 @@ class _Drawing:
             Drawn(i.name, {"label": self._instance(i)})
             for i in sorted(here, key=lambda i: self.position[i.name])
         ]
+        items += devices(self.system, node.name)
         items.append(Drawn(_rim(node), {"shape": "point", "width": "0.01", "style": "invis"}))
         items += (Edge(i.name, _rim(node), _HIDDEN) for i in here)
         processors = [p for p in self.system.processors if p.node == node.name]
@@ -115,12 +140,18 @@ class _Drawing:
     def _instance(self, instance: Instance) -> Html:
         """Its name, and its ports on both sides."""
         component = instance.component
-        right = [port for port in component.ports if self._is_right(instance.name, port)]
-        left = [port for port in component.ports if port not in right]
+        ports = [port for port in component.ports if not port.is_command]
+        right = [port for port in ports if self._is_right(instance.name, port)]
+        left = [port for port in ports if port not in right]
         name = f"{html(instance.name, 'b')} : {html(component.name)}"
         rows = f'<tr><td colspan="3" border="0" cellpadding="5">{name}</td></tr>'
-        for pair in zip_longest(left, right):
-            one, other = map(_cell, pair)
+        cells: tuple[list[str], list[str]] = [_cell(p) for p in left], [_cell(p) for p in right]
+        ends = [(required_port(one), one) for one in required(instance)]
+        ends += [(provided_port(one.name), one.name) for one in component.provides]
+        for port, text in ends:
+            on_right = self.on_right.get((instance.name, port), port.startswith("requires"))
+            cells[on_right].append(interface_cell(port, text))
+        for one, other in zip_longest(*cells, fillvalue='<td border="0"></td>'):
             rows += f'<tr>{one}<td border="0" width="20"></td>{other}</tr>'
         table = f'<table border="1" cellborder="1" cellspacing="2" bgcolor="{PAPER}"'
         return Html(f"{table}>{rows}</table>")
@@ -139,21 +170,40 @@ class _Drawing:
             "tailport": self._port(target), "headport": self._port(source), **_BACKWARD,
         })  # fmt: skip
 
+    def _bound(self, link: Link) -> Edge:
+        """From a required interface to what provides it; devices stand on the right."""
+        tail = f"{required_port(link.required)}:{self._side(link.instance, link.required)}"
+        if link.interface is None:
+            return Edge(link.instance, device_name(link.provider), {"tailport": tail, **DASHED})
+        port = provided_port(link.interface)
+        head = f"{port}:{'e' if self.on_right[link.provider, port] else 'w'}"
+        if self.position[link.instance] <= self.position[link.provider]:
+            look = {"tailport": tail, "headport": head, **DASHED}
+            return Edge(link.instance, link.provider, look)
+        look = {"tailport": head, "headport": tail, **DASHED, **_BACKWARD}
+        return Edge(link.provider, link.instance, look)
+
+    def _side(self, instance: str, name: str) -> str:
+        return "e" if self.on_right[instance, required_port(name)] else "w"
+
     def _carried(self, message: Message) -> Iterator[Edge]:
         """From the port that sends a message, and to those that receive it."""
         name = _message_name(message)
         if message.source is not None:
-            ports = {"tailport": self._port(message.source), "headport": "w"}
+            ports = {"tailport": self._end(message, message.source), "headport": "w"}
             yield Edge(message.source.instance, name, dict(ports))
         for target in message.targets:
-            ports = {"tailport": self._port(target), "headport": "w"}
+            ports = {"tailport": self._end(message, target), "headport": "w"}
             yield Edge(target.instance, name, ports | _BACKWARD)
 
     def _port(self, end: End) -> str:
-        """The side of a port; of the instance where a call or reply ends at none."""
-        side = "e" if self.on_right[end.instance, end.port] else "w"
-        ports = {port.name for port in self.system.instance(end.instance).component.ports}
-        return f"{end.port}:{side}" if end.port in ports else side
+        """A port and its side."""
+        return f"{end.port}:{'e' if self.on_right[end.instance, end.port] else 'w'}"
+
+    def _end(self, message: Message, end: End) -> str:
+        """The port or interface where a message begins or ends, and its side."""
+        port = end_port(self.system, message, end)
+        return f"{port}:{'e' if self.on_right[end.instance, port] else 'w'}"
 
 
 _HIDDEN: Attributes = {"style": "invis"}
@@ -166,6 +216,8 @@ def _order(system: System) -> list[str]:
     graph: nx.Graph[str] = nx.Graph()
     graph.add_nodes_from(instance.name for instance in system.instances)
     graph.add_edges_from((w.source.instance, w.target.instance) for w in system.connections)
+    bound = [one for one in links(system) if one.interface is not None]
+    graph.add_edges_from((one.instance, one.provider) for one in bound)
     found: list[str] = []
     while len(graph):
         hub = max(graph, key=graph.degree)
@@ -209,9 +261,7 @@ def _table(processor: Processor) -> Html:
     return Html(f'<table border="0" cellborder="0" cellspacing="0" cellpadding="2">{rows}</table>')
 
 
-def _cell(port: Port | None) -> str:
-    if port is None:
-        return '<td border="0"></td>'
+def _cell(port: Port) -> str:
     return f'<td port="{port.name}" bgcolor="{SHADES[1]}">{html(port.name)}</td>'
 
 

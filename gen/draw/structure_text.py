@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ..component import Direction
 from ..model import End, Instance, Message, System
+from .devices import devices_of, kind_of, links
 
 
 def plantuml(system: System) -> str:
@@ -16,11 +17,19 @@ def plantuml(system: System) -> str:
         for instance in system.instances:
             if instance.node == node.name:
                 lines += [f"  {line}" for line in _component(instance)]
+        for device in devices_of(system, node.name):
+            title = f"{device.name} : {kind_of(device)}"
+            lines.append(f'  component "{title}" <<device>> as device_{device.name}')
         lines.append("}")
     lines += [f"queue {bus.name}" for bus in system.buses]
     for wire in system.connections:
         source, target = wire.source, wire.target
         lines.append(f"{source.instance}_{source.port} --> {target.instance}_{target.port}")
+    for link in links(system):
+        provider = link.provider if link.interface else f"device_{link.provider}"
+        lines.append(f"{link.instance} ..> {provider} : {link.required}")
+    for device in system.devices:
+        lines += [f"device_{device.name} o-- device_{one.name}" for one in device.members]
     for message in system.messages:
         if message.source is not None:
             lines.append(f"{_end(system, message.source)} --> {message.bus} : {_carried(message)}")
@@ -34,13 +43,16 @@ def plantuml(system: System) -> str:
 
 def _end(system: System, end: End) -> str:
     """A port, or the instance where a call or reply ends at none."""
-    ports = {port.name for port in system.instance(end.instance).component.ports}
+    component = system.instance(end.instance).component
+    ports = {port.name for port in component.ports if not port.is_command}
     return f"{end.instance}_{end.port}" if end.port in ports else end.instance
 
 
 def _component(instance: Instance) -> Iterator[str]:
     yield f'component "{instance.name} : {instance.component.name}" as {instance.name} {{'
     for port in instance.component.ports:
+        if port.is_command:
+            continue
         kind = "portin" if port.direction is Direction.IN else "portout"
         yield f'  {kind} "{port.name}" as {instance.name}_{port.name}'
     yield "}"
@@ -56,6 +68,9 @@ def mermaid(system: System) -> str:
             if instance.node == node.name:
                 label = f"{instance.name} : {instance.component.name}"
                 lines.append(f'    instance_{instance.name}["{label}"]')
+        for device in devices_of(system, node.name):
+            title = f"{device.name} : {kind_of(device)}"
+            lines.append(f'    device_{device.name}(["{title}"])')
         for processor in system.processors:
             if processor.node == node.name:
                 rows = "<br/>".join(slot.element for slot in processor.slots)
@@ -67,6 +82,11 @@ def mermaid(system: System) -> str:
         source, target = wire.source, wire.target
         label = f"{source.port} to {target.port}"
         lines.append(f'  instance_{source.instance} -->|"{label}"| instance_{target.instance}')
+    for link in links(system):
+        kind = "instance" if link.interface else "device"
+        lines.append(f'  instance_{link.instance} -.->|"{link.required}"| {kind}_{link.provider}')
+    for device in system.devices:
+        lines += [f"  device_{device.name} o--o device_{one.name}" for one in device.members]
     for message in system.messages:
         label = _carried(message)
         if message.source is not None:

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from gen.draw import structure_text
 from gen.draw.chart import chart_dot
 from gen.draw.look import ROOM
 from gen.draw.mermaid import mermaid
@@ -20,7 +21,7 @@ from gen.draw.structure import structure_dot
 from gen.draw.wrapping import wrapped
 from gen.load import load
 from ravenchart import draw, toolchain
-from ravenchart.toolchain import ToolMissing
+from ravenchart.toolchain import ROOT, ToolMissing
 from tests.support.every_construct import every_construct
 from tests.support.plant_model import plant
 from tests.support.random_charts import model_of
@@ -298,6 +299,24 @@ def test_mermaid_says_what_it_cannot_draw() -> None:
     remarks = " ".join(x for x in mermaid(_picture()).splitlines() if x.startswith("  %%"))
     for word in ("history", "terminate", "junction", "compartments", "local"):
         assert word in remarks
+
+
+def test_structure_has_interfaces_devices_and_what_each_is_bound_to() -> None:
+    system = load(ROOT / "examples" / "surgical_robot" / "model.yaml").system
+    assert system is not None
+    dot = structure_dot(system)
+    for line in (
+        '"supervisor_1" -> "servo_1" [tailport="requires Arm:e", headport="provides Motion:w"',
+        '"servo_1" -> "device Boards" [tailport="requires Joints:e", style="dashed"]',
+        '"servo_1" -> "device Wrist" [tailport="requires Joints:e", style="dashed"]',
+        '"device Boards" -> "device Left" [dir="back", arrowtail="odiamond"',
+        "<b>Wrist</b> : Force_Sensor</td></tr><tr><td>Get_Force<",
+    ):
+        assert line in dot
+    assert "Camera" not in dot  # nothing is bound to it
+    text = structure_text.plantuml(system)
+    assert "servo_1 ..> device_Boards : Joints\n" in text
+    assert "supervisor_1 ..> servo_1 : Arm\n" in text
 
 
 def test_structure_has_instances_ports_wires_messages_and_tables() -> None:
