@@ -10,7 +10,7 @@ help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
 	@echo 'make test      every test'
 	@echo 'make test-long  the same with 2,000 random charts, millions of frames and lines: hours'
-	@echo 'make hw-test   SocketCAN and its driver on interfaces of a guest of QEMU: minutes'
+	@echo 'make hw-test   drivers on SocketCAN and CTU CAN FD in a guest of QEMU, tests on other machines: minutes'
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'

@@ -1,8 +1,9 @@
-"""The driver `socketcan`, in a program that echoes, tried by python-can on an interface.
+"""A driver, in a program that echoes, tried by python-can on an interface of Linux.
 
 Run as ``python -m ravenchart.driver_test PROGRAM INTERFACE``, where PROGRAM is
 tests/ada/can_echo.adb, built with ``CAN_DRIVER=socketcan``. With ``--near``, python-can is on
-another interface of the same bus. As root, for the interface is taken down and up again.
+another interface of the same bus. As root, for the interface is taken down and up again. With
+``--driver ctucanfd`` INTERFACE is what the program finds in RAVENCHART_CTUCANFD.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from hw_can.bench.driver_cases import LIMIT, cases, started
+from hw_can.bench.driver_cases import LIMIT, VARIABLES, cases, started
 from hw_can.bench.loopback.ends import Ends, Setup, opened
 from hw_can.bench.loopback.suite import LoopbackResult, run
 from hw_can.bench.peer import BenchError
@@ -20,10 +21,12 @@ from . import loopback_files
 from .loopback import show
 
 
-def tried(program: Path, channel: str, near: str, *, emulated: bool) -> LoopbackResult:
+def tried(
+    program: Path, channel: str, near: str, *, emulated: bool, name: str = "socketcan"
+) -> LoopbackResult:
     """Run all cases; BenchError when the program or python-can cannot open its interface."""
     setup = Setup("socketcan", near, "socketcan", near)
-    with started(program, channel, emulated=emulated) as driver:
+    with started(program, channel, emulated=emulated, name=name) as driver:
         if not driver.echo.came(lambda: driver.echo.now.state == "ERROR_ACTIVE", LIMIT):
             raise BenchError(f"{program} does not open {channel}: {' '.join(driver.echo.said)}")
         bus = opened(setup.interface, near, setup)
@@ -41,11 +44,18 @@ def main() -> int:
     parser.add_argument("channel", metavar="INTERFACE")
     parser.add_argument("--near", metavar="INTERFACE", help="of python-can (default: the same)")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML there")
-    parser.add_argument("--emulated", action="store_true", help="it is an SJA1000 of QEMU")
+    parser.add_argument("--driver", choices=tuple(VARIABLES), default="socketcan")
+    parser.add_argument("--emulated", action="store_true", help="an SJA1000 of QEMU is on the bus")
     options = parser.parse_args()
     near = options.near or options.channel
     try:
-        result = tried(options.program, options.channel, near, emulated=options.emulated)
+        result = tried(
+            options.program,
+            options.channel,
+            near,
+            emulated=options.emulated,
+            name=options.driver,
+        )
     except (BenchError, OSError) as problem:
         print(f"driver_test: error: {problem}", file=sys.stderr)
         return 2

@@ -35,12 +35,14 @@ DRIVER_FOLDERS = {
     "slcan": ("drivers/slcan", "drivers/tcp"),
     "bus": ("protocol", "drivers/bus", "drivers/tcp"),
     "socketcan": ("drivers/socketcan",),
+    "ctucanfd": ("drivers/ctucanfd",),
 }
 """What of hw_can/ is proved with each driver; with the first, the HAL and the simulator as well."""
 DRIVERS = tuple(DRIVER_FOLDERS)
-GENERIC_BODY = "ravenchart-can-controllers.adb"
+GENERIC_BODIES = {"ravenchart-can-controllers.adb", "ravenchart-can-ctu_cores.adb"}
+"""Of these the instances are proved: of the first that below, of the other one that it brings."""
 INSTANCES = ("instance_bus.ads", "instance_program.adb")
-"""Its instance, which is what is proved of it, and the program with the tasks of both."""
+"""An instance, and the program with its tasks and those of the processors."""
 BUS = "bus"
 KERNEL = "analysis-kernel"
 
@@ -120,7 +122,7 @@ def _runtime(driver: str) -> Target:
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
         (*(common if first else ()), *own, project.parent / "instances"),
         whole=True,
-        units=() if first else (*sorted((bodies | specs) - {GENERIC_BODY}), *INSTANCES),
+        units=() if first else (*sorted((bodies | specs) - GENERIC_BODIES), *INSTANCES),
     )
 
 

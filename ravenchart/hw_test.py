@@ -1,12 +1,16 @@
-"""`make hw-test`: SocketCAN and the driver for it, on interfaces of a guest of QEMU.
+"""`make hw-test`: drivers of CAN controllers, in a guest of QEMU; and other machines.
 
 The guest runs Debian's kernel, sees the root of this machine read-only, and has a virtual
-interface, vcan0, and two emulated SJA1000 on one bus, can0 and can1. Exit status: 0 all that
-was run passed; 1 something failed; 2 nothing could be run, for the reasons printed.
+interface, vcan0, two emulated SJA1000 on one bus, can0 and can1, and two cards with two
+emulated CTU CAN FD each, for which it has no driver: one on the same bus, one on its own.
+Beside it, the Ada tests and generated codecs run on a big-endian machine and on one of 32
+bits, in QEMU's user mode. Exit status: 0 all that was run passed; 1 something failed; 2
+nothing could be run, for the reasons printed.
 """
 
 from __future__ import annotations
 
+import itertools
 import platform
 import shlex
 import shutil
@@ -17,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from . import toolchain
+from . import machines, toolchain
 from .toolchain import ROOT, ToolFailed, ToolMissing
 
 QEMU = "qemu-system-x86_64"
@@ -27,11 +31,27 @@ KERNEL = ROOT / "build" / "guest"
 HOME = ROOT / "build" / "hw-test"
 INIT = ROOT / "scripts" / "guest_init.sh"
 MODULES = ("virtio_pci", "9pnet_virtio", "9p", "can-raw", "vcan", "sch_tbf", "kvaser_pci")
+MODE = "checks"
+PROGRAMS = {
+    "socketcan": ("can_echo.adb",),
+    "ctucanfd": ("can_echo.adb", "test_ctu_cores.adb"),
+}
+"""What is built with each driver."""
+
+ELSEWHERE = ("tests/system/test_other_machines.py", "tests/system/test_codecs.py")
+"""What is run on other machines: of the latter the tests that are named after one."""
+
 PATIENCE = 1_200
 """Seconds after which a guest is given up; it needs about a minute."""
 
 LIMIT = 300
 """Seconds for one step of it."""
+
+CARDS = "/sys/bus/pci/devices/0000:00:{:02x}.0/resource1"
+"""The registers of a card with CTU CAN FD in the guest, by its slot."""
+
+SHARED_SLOT, OWN_SLOT = 0x10, 0x11
+"""Of the card on the bus of the SJA1000, and of the one that has a bus of its own."""
 
 TAIL = 15
 """Lines that are shown of a guest's console, or of a step without a result."""
@@ -54,20 +74,44 @@ class Total:
     skipped: int
     lost: tuple[str, ...]
 
+    def __add__(self, other: Total) -> Total:
+        """Both together."""
+        return Total(
+            self.passed + other.passed,
+            self.failed + other.failed,
+            self.skipped + other.skipped,
+            self.lost + other.lost,
+        )
+
     @property
     def good(self) -> bool:
         """Nothing failed, nothing was lost, and something passed."""
         return self.passed > 0 and self.failed == 0 and not self.lost
 
 
-def steps(python: str, program: Path) -> tuple[Step, ...]:
-    """What is run in the guest, in this order."""
+def steps(python: str, programs: Path) -> tuple[Step, ...]:
+    """What is run in the guest, in this order; ``programs`` is obj/ of the checkout."""
     loopback = (python, "-m", "ravenchart.loopback", "--interface", "socketcan", "--channel")
-    driver = (python, "-m", "ravenchart.driver_test", str(program))
+    driver = (python, "-m", "ravenchart.driver_test")
+    fact = (python, "-m", "ravenchart.fact_test")
+    socketcan, ctucanfd = (
+        programs / f"tests-{MODE}-{name}" / "bin" for name in ("socketcan", "ctucanfd")
+    )
+    shared, own = CARDS.format(SHARED_SLOT), CARDS.format(OWN_SLOT)
+    echo = str(socketcan / "can_echo")
+    near = ("--near", "can0", "--emulated")
     return (
         Step("loopback-vcan0", (*loopback, "vcan0", "--fd")),
-        Step("driver-vcan0", (*driver, "vcan0")),
-        Step("driver-can0", (*driver, "can0", "--near", "can1", "--emulated")),
+        Step("driver-vcan0", (*driver, echo, "vcan0")),
+        Step("driver-can0", (*driver, echo, "can0", "--near", "can1", "--emulated")),
+        Step(
+            "driver-ctucanfd",
+            (*driver, str(ctucanfd / "can_echo"), f"{shared}:1", "--driver", "ctucanfd", *near),
+        ),
+        Step(
+            "registers-ctucanfd",
+            ("env", f"RAVENCHART_CTUCANFD={own}", *fact, str(ctucanfd / "test_ctu_cores")),
+        ),
     )
 
 
@@ -156,6 +200,9 @@ def boot(kernel: Path, archive: Path, home: Path) -> None:
             "-object", "can-bus,id=bus",
             "-device", "kvaser_pci,canbus=bus",
             "-device", "kvaser_pci,canbus=bus",
+            "-device", f"ctucan_pci,canbus0=bus,canbus1=bus,addr={SHARED_SLOT:#x}",
+            "-object", "can-bus,id=other",
+            "-device", f"ctucan_pci,canbus0=other,canbus1=other,addr={OWN_SLOT:#x}",
             "-fsdev", f"local,id=machine,path=/,readonly=on,{shared}",
             "-device", "virtio-9p-pci,fsdev=machine,mount_tag=machine",
             "-fsdev", f"local,id=results,path={home / 'results'},{shared}",
@@ -180,9 +227,9 @@ def total(chosen: Sequence[Step], results: Path) -> Total:
             continue
         for case in root.iter("testcase"):
             kinds = {child.tag for child in case}
-            failed += "failure" in kinds
+            failed += bool(kinds & {"failure", "error"})
             skipped += "skipped" in kinds
-            passed += not kinds & {"failure", "skipped"}
+            passed += not kinds & {"failure", "error", "skipped"}
     return Total(passed, failed, skipped, tuple(lost))
 
 
@@ -194,16 +241,16 @@ def _tail(path: Path) -> str:
     return "\n".join(text.splitlines()[-TAIL:])
 
 
-def _program() -> Path:
-    """The Ada program with the driver, built."""
-    where, scenario = ROOT / "tests" / "ada", {"MODE": "checks", "CAN_DRIVER": "socketcan"}
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
-    toolchain.run("gprbuild", options, where, scenario)
-    return ROOT / "obj" / "tests-checks-socketcan" / "bin" / "can_echo"
+def _build() -> None:
+    """The Ada programs with the drivers."""
+    for driver, mains in PROGRAMS.items():
+        options = ["-p", "-q", "-j0", "-P", "tests.gpr", *mains]
+        scenario = {"MODE": MODE, "CAN_DRIVER": driver}
+        toolchain.run("gprbuild", options, ROOT / "tests" / "ada", scenario)
 
 
-def _told(chosen: Sequence[Step], home: Path) -> bool:
-    """Print what the guest found; whether it is good."""
+def _told(chosen: Sequence[Step], home: Path) -> Total:
+    """Print what the guest found, and count it."""
     results = home / "results"
     for step in chosen:
         text = results / f"{step.name}.txt"
@@ -213,36 +260,58 @@ def _told(chosen: Sequence[Step], home: Path) -> bool:
     if found.lost:
         print(f"\nwithout a result: {', '.join(found.lost)}; the guest's console ended with")
         print(_tail(home / "console.txt"))
-    word = "PASS" if found.good else "FAIL"
-    print(
-        f"\nhw-test: {word}: {found.passed} passed, {found.failed} failed, {found.skipped} skipped"
-    )
-    return found.good
+    return found
+
+
+def guest() -> Total:
+    """Build, boot, and print what came of it; ToolMissing or ToolFailed before that."""
+    _build()
+    chosen = steps(sys.executable, ROOT / "obj")
+    (HOME / "results" / "steps").write_text(script(chosen), encoding="utf-8")
+    try:
+        boot(KERNEL, make_initramfs(KERNEL, HOME), HOME)
+    except subprocess.SubprocessError as failed:
+        print(f"hw-test: the guest: {failed}", file=sys.stderr)
+    return _told(chosen, HOME)
+
+
+def elsewhere() -> Total:
+    """The tests for other machines, as far as there are tools for them."""
+    step = Step("other-machines", ())
+    told = [sys.executable, "-m", "pytest", "-q", "-rs", *ELSEWHERE]
+    names = " or ".join(machine.name for machine in machines.OTHERS)
+    result = HOME / "results" / f"{step.name}.xml"
+    print(f"\n== {step.name}\n", flush=True)
+    subprocess.run([*told, "-k", names, f"--junitxml={result}"], cwd=ROOT, check=False)
+    return total((step,), HOME / "results")
 
 
 def main() -> int:
-    """Build, boot, and say what came of it."""
-    reasons = tuple(missing(KERNEL, platform.machine()))
-    if reasons:
-        for reason in reasons:
-            print(f"hw-test: skipped: {reason}", file=sys.stderr)
-        print("hw-test: nothing was run", file=sys.stderr)
-        return 2
+    """Run what can be run, and say what came of it."""
     shutil.rmtree(HOME / "results", ignore_errors=True)
     (HOME / "results").mkdir(parents=True)
+    reasons = list(missing(KERNEL, platform.machine()))
+    others = [list(machine.missing()) for machine in machines.OTHERS]
+    found = Total(0, 0, 0, ())
     try:
-        chosen = steps(sys.executable, _program())
-        (HOME / "results" / "steps").write_text(script(chosen), encoding="utf-8")
-        boot(KERNEL, make_initramfs(KERNEL, HOME), HOME)
+        if not reasons:
+            found += guest()
+        if not all(others):
+            found += elsewhere()
     except ToolMissing as tool:
-        print(f"hw-test: skipped: {tool}\nhw-test: nothing was run", file=sys.stderr)
-        return 2
+        reasons.append(str(tool))
     except ToolFailed as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return 1
-    except subprocess.SubprocessError as failed:
-        print(f"hw-test: the guest: {failed}", file=sys.stderr)
-    return 0 if _told(chosen, HOME) else 1
+    for reason in itertools.chain(reasons, *others):
+        print(f"hw-test: skipped: {reason}", file=sys.stderr)
+    if found == Total(0, 0, 0, ()):
+        print("hw-test: nothing was run", file=sys.stderr)
+        return 2
+    word = "PASS" if found.good else "FAIL"
+    counts = f"{found.passed} passed, {found.failed} failed, {found.skipped} skipped"
+    print(f"\nhw-test: {word}: {counts}")
+    return 0 if found.good else 1
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 # Install what is missing: Debian's GNAT, gprbuild and Graphviz, and a virtual
 # environment in .venv from requirements.lock. Does nothing when all is there.
 # With the word "arm" also the compiler for 32-bit Arm, which only figures need;
-# with the word "guest" QEMU and, unpacked below build/guest and not installed,
-# Debian's kernel, which only `make hw-test` needs.
+# with the word "guest" QEMU, the compilers for s390x and 32-bit Arm and, unpacked
+# below build/guest and not installed, Debian's kernel, which only `make hw-test` needs.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -23,26 +23,39 @@ if [ "${1:-}" = guest ]; then
    command -v busybox >/dev/null 2>&1 || packages="$packages busybox-static"
    command -v ip >/dev/null 2>&1 || packages="$packages iproute2"
 fi
-if [ -n "$packages" ]; then
+
+install() {
    as_root=
    if [ "$(id -u)" -ne 0 ]; then
       if ! command -v sudo >/dev/null 2>&1; then
-         say "needs the Debian packages$packages; as root: apt-get install$packages" >&2
-         exit 2
+         say "needs the Debian packages $*; as root: apt-get install $*" >&2
+         return 1
       fi
       as_root=sudo
    fi
-   say "installing the Debian packages$packages"
+   say "installing the Debian packages $*"
    log=$(mktemp)
    if ! { $as_root apt-get update && DEBIAN_FRONTEND=noninteractive \
-          $as_root apt-get install -y --no-install-recommends $packages; } >"$log" 2>&1
+          $as_root apt-get install -y --no-install-recommends "$@"; } >"$log" 2>&1
    then
       tail -n 20 "$log" >&2
       say "apt-get failed (above); are the package sources reachable?" >&2
-      exit 2
+      return 1
    fi
    rm -f "$log"
+}
+
+[ -z "$packages" ] || install $packages || exit 2
+
+# Without these only the tests for other machines are skipped.
+others=
+if [ "${1:-}" = guest ]; then
+   for machine in s390x-linux-gnu arm-linux-gnueabihf; do
+      command -v $machine-gnatmake >/dev/null 2>&1 || others="$others gnat-12-$machine"
+   done
+   command -v qemu-s390x-static >/dev/null 2>&1 || others="$others qemu-user-static"
 fi
+[ -z "$others" ] || install $others || say "goes on without them"
 
 python3 - <<'EOF' || { say "Python 3.11 or later is needed" >&2; exit 2; }
 import sys

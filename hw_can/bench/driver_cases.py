@@ -1,7 +1,7 @@
-"""The cases of a test of the driver `socketcan`: a program that echoes, against python-can.
+"""The cases of a test of the drivers `socketcan` and `ctucanfd`: a program that echoes.
 
 Program and python-can are on one interface of Linux, virtual (vcan) or real, or on two
-interfaces of one bus. Each case returns what it saw, or raises why not.
+controllers of one bus. Each case returns what it saw, or raises why not.
 """
 
 from __future__ import annotations
@@ -34,21 +34,30 @@ RESTING = 0.5
 LIMIT = 10.0
 """Seconds within which the driver must have noticed something."""
 
+COMMAND, MEMORY_SPACE = 4, 0x2
+"""A register of the configuration space of PCI, and its bit that lets memory be read."""
+
 # Classes and details of error reports, by linux/can/error.h.
 BUS_OFF, RESTARTED, CONTROLLER, COUNTERS = 0x40, 0x100, 0x4, 0x200
 WARNING, PASSIVE, ACTIVE = 0x08, 0x20, 0x40
 
 
+VARIABLES = {"socketcan": "RAVENCHART_CAN_INTERFACE", "ctucanfd": "RAVENCHART_CTUCANFD"}
+"""What tells each driver where its controller is."""
+
+
 @dataclass(slots=True)
 class Driver:
-    """The program and its interface, for the cases."""
+    """The program and its interface, or its file of registers, for the cases."""
 
     program: Path
     channel: str
     echo: Echo
     emulated: bool = False
-    """The interface is an SJA1000 of QEMU, whose receive queue a remote frame disorders: it
+    """There is an SJA1000 of QEMU on the bus, whose receive queue a remote frame disorders: it
     keeps as many bytes as the frame's length says, and releases none of them."""
+    name: str = "socketcan"
+    """Of the driver."""
 
     @property
     def virtual(self) -> bool:
@@ -77,17 +86,19 @@ class Driver:
 
     def announced(self, times: int) -> None:
         """Wait until it has opened its interface so many times."""
-        line = f"can: socketcan on {self.channel}"
+        line = f"can: {self.name} on {self.channel}"
         if not self.echo.came(lambda: self.echo.said.count(line) >= times, LIMIT):
             raise Failed(f"{line!r} was expected, but it said {self.echo.said}")
 
 
 @contextmanager
-def started(program: Path, channel: str, *, emulated: bool = False) -> Iterator[Driver]:
+def started(
+    program: Path, channel: str, *, emulated: bool = False, name: str = "socketcan"
+) -> Iterator[Driver]:
     """The program on ``channel`` for the time of a block."""
-    echo = Echo(program, {"RAVENCHART_CAN_INTERFACE": channel})
+    echo = Echo(program, {VARIABLES[name]: channel})
     try:
-        yield Driver(program, channel, echo, emulated)
+        yield Driver(program, channel, echo, emulated, name)
     finally:
         echo.close()
 
@@ -131,6 +142,16 @@ def _lengths(ends: Ends, *, extended: bool, remote: bool = False) -> str:
                 data=None if remote else bytes(range(0xA0, 0xA0 + n)),
             )
             for n in range(9)
+        ],
+    )
+
+
+def _empty_remotes(ends: Ends) -> str:
+    return _answered(
+        ends,
+        [
+            can.Message(arbitration_id=0x400, is_extended_id=extended, is_remote_frame=True)
+            for extended in (False, True)
         ],
     )
 
@@ -190,10 +211,11 @@ def _filter(ends: Ends, driver: Driver) -> str:
 
 
 def _fd(ends: Ends, driver: Driver) -> str:
-    if (INTERFACES / driver.channel / "mtu").read_text().strip() != FD_UNIT:
+    near = ends.setup.channel
+    if (INTERFACES / near / "mtu").read_text().strip() != FD_UNIT:
         raise Skipped("the interface is set up for classic CAN")
-    setup = Setup("socketcan", driver.channel, "socketcan", driver.channel, fd=True)
-    with opened("socketcan", driver.channel, setup) as bus:
+    setup = Setup("socketcan", near, "socketcan", near, fd=True)
+    with opened("socketcan", near, setup) as bus:
         bus.send(can.Message(arbitration_id=0x200, is_extended_id=False, is_fd=True, data=b"12"))
         if (answer := bus.recv(SETTLING)) is not None:
             raise Failed(f"an FD frame was answered: {answer}")
@@ -250,28 +272,70 @@ def _gone(ends: Ends, driver: Driver) -> str:
 
 
 def _nowhere(driver: Driver) -> str:
-    with started(driver.program, "nocan9") as other:
-        words = "error: can: there is no CAN interface nocan9; trying again"
+    place, words = {
+        "socketcan": ("nocan9", "there is no CAN interface nocan9"),
+        "ctucanfd": ("/none:1", "there are no registers in /none"),
+    }[driver.name]
+    words = f"error: can: {words}; trying again"
+    with started(driver.program, place, name=driver.name) as other:
         if not other.echo.came(lambda: words in other.echo.said, LIMIT):
             raise Failed(f"it said {other.echo.said}")
     return words
 
 
+def _decodes(card: Path, *, memory: bool) -> None:
+    """Let a card on PCI answer to reads of its memory, or not: the COMMAND register."""
+    with (card / "config").open("r+b", buffering=0) as config:
+        config.seek(COMMAND)
+        now = int.from_bytes(config.read(2), "little")
+        config.seek(COMMAND)
+        wanted = now | MEMORY_SPACE if memory else now & ~MEMORY_SPACE
+        config.write(wanted.to_bytes(2, "little"))
+
+
+def _deaf(ends: Ends, driver: Driver) -> str:
+    card = Path(driver.channel).parent
+    if not (card / "config").exists():
+        raise Skipped("only a card on PCI can be made deaf by a program")
+    _decodes(card, memory=False)
+    try:
+        driver.stands(lambda now: now.state == "STOPPED", "STOPPED with a deaf card")
+    finally:
+        _decodes(card, memory=True)
+    driver.announced(2)
+    return "stopped; opened anew; then " + _answered(ends, [frame(0x20C)])
+
+
 def cases(driver: Driver) -> tuple[Case, ...]:
-    """All cases, for a program that has been started."""
+    """All cases of its driver, for a program that has been started."""
+    own = _of_socketcan if driver.name == "socketcan" else _of_ctucanfd
+    return _of_all(driver) + own(driver)
+
+
+def _of_ctucanfd(driver: Driver) -> tuple[Case, ...]:
+    return (Case("card deaf and there again", lambda ends: _deaf(ends, driver)),)
+
+
+def _of_all(driver: Driver) -> tuple[Case, ...]:
     return (
         Case("an interface that is not there", lambda ends: _nowhere(driver)),
         Case("standard data frames", lambda ends: _lengths(ends, extended=False)),
         Case("extended data frames", lambda ends: _lengths(ends, extended=True)),
+        Case("remote frames that ask for nothing", _empty_remotes),
         Case("standard remote frames", lambda ends: _remotes(ends, driver, extended=False)),
         Case("extended remote frames", lambda ends: _remotes(ends, driver, extended=True)),
         Case("identifiers at their limits", _identifiers),
         Case("every byte value", _every_byte),
         Case("burst", lambda ends: _burst(ends, driver)),
-        Case("interface without room", lambda ends: _full(ends, driver)),
         Case("acceptance filter", lambda ends: _filter(ends, driver)),
+        Case("FD frames", lambda ends: _fd(ends, driver)),
+    )
+
+
+def _of_socketcan(driver: Driver) -> tuple[Case, ...]:
+    return (
+        Case("interface without room", lambda ends: _full(ends, driver)),
         Case("error reports", lambda ends: _reports(ends, driver)),
         Case("interface down and up", lambda ends: _down(ends, driver)),
         Case("interface gone and there again", lambda ends: _gone(ends, driver)),
-        Case("FD frames", lambda ends: _fd(ends, driver)),
     )

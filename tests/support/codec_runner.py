@@ -17,6 +17,7 @@ from gen.emit.naming import ada_case, type_name
 from gen.model import Message, System
 from gen.signals import Signal
 from gen.terms import EnumerationType
+from ravenchart.machines import HERE, Machine
 from ravenchart.toolchain import ROOT
 
 Values = tuple[int, ...]
@@ -120,25 +121,21 @@ class Runner:
     """The program, built."""
 
     system: System
-    program: Path
+    command: tuple[str, ...]
 
     @staticmethod
-    def built(system: System, generated: Path, folder: Path) -> Runner:
-        """Built in ``folder`` from the files of a generation."""
+    def built(system: System, generated: Path, folder: Path, machine: Machine = HERE) -> Runner:
+        """Built in ``folder`` from the files of a generation, to run on ``machine``."""
         source = folder / "runner.adb"
         source.write_text(main_text(system), encoding="ascii")
         places = (generated, ROOT / "spark_runtime" / "src", ROOT / "hw_can" / "hal")
-        subprocess.run(
-            ["gnatmake", "-q", "-gnat2012", "-gnata", source, *(f"-aI{place}" for place in places)],
-            cwd=folder,
-            check=True,
-        )
-        return Runner(system, folder / "runner")
+        machine.build([source], places, folder)
+        return Runner(system, machine.command(folder / "runner"))
 
     def _answers(self, lines: Sequence[str]) -> list[list[int]]:
         text = "\n".join(lines) + "\n"
         found = subprocess.run(
-            [self.program], input=text, capture_output=True, text=True, check=True, timeout=100
+            self.command, input=text, capture_output=True, text=True, check=True, timeout=100
         )
         return [[int(word) for word in line.split()] for line in found.stdout.splitlines()]
 

@@ -27,7 +27,7 @@ MAINS = (
 )
 
 
-OF_DRIVERS = (("socketcan", "test_socket_frames"),)
+OF_DRIVERS = (("socketcan", "test_socket_frames"), ("ctucanfd", "test_ctu_frames"))
 """Programs that need the sources of a driver."""
 
 

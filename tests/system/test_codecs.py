@@ -17,8 +17,10 @@ from gen.signals import Signal
 from gen.terms import IntegerType
 from gen.units import count_of
 from ravenchart import steps
+from ravenchart.machines import HERE, OTHERS, Machine
 from ravenchart.toolchain import ROOT
 from tests.support.codec_runner import Runner, Values, boundaries, literal
+from tests.support.elsewhere import needed
 
 CASES = {
     "signals": ROOT / "tests" / "feature" / "signals",
@@ -28,15 +30,15 @@ CASES = {
 
 
 class Peer:
-    """The program and the database of one model."""
+    """The program, for one machine, and the database of one model."""
 
-    def __init__(self, case: Path, folder: Path) -> None:
+    def __init__(self, case: Path, folder: Path, machine: Machine = HERE) -> None:
         checked = steps.check(case / "model.yaml")
         self.system: System = checked.system
         files = generate(checked.system, steps.claims(checked))
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
-        self.runner = Runner.built(checked.system, folder, folder)
+        self.runner = Runner.built(checked.system, folder, folder, machine)
         database = cantools.database.load_file(
             folder / f"{self.system.buses[0].name}.dbc", strict=True
         )
@@ -44,9 +46,14 @@ class Peer:
         self.database = database
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(
+    scope="module",
+    params=[(case, machine) for machine in (HERE, *OTHERS) for case in CASES],
+    ids=lambda made: f"{made[0]}-{made[1].name}",
+)
 def peer(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Peer:
-    return Peer(CASES[request.param], tmp_path_factory.mktemp("codecs"))
+    case, machine = request.param
+    return Peer(CASES[case], tmp_path_factory.mktemp("codecs"), needed(machine))
 
 
 def sent(message: Message, values: Values) -> dict[str, int]:

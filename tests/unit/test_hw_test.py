@@ -15,6 +15,7 @@ from hw_can.bench.echo import Echo, Standing
 from hw_can.bench.loopback.ends import Ends, Setup, open_ends
 from hw_can.bench.loopback.suite import LoopbackResult, Verdict, run
 from ravenchart import hw_test, toolchain
+from ravenchart.fact_test import facts, junit
 from ravenchart.hw_test import Step, Total, load_order, missing, script, steps, total
 
 DEPENDENCIES = """\
@@ -37,13 +38,21 @@ def test_a_module_is_loaded_behind_what_it_needs() -> None:
 
 
 def test_each_step_leaves_a_result_of_its_own() -> None:
-    chosen = steps("python", Path("/a b/can_echo"))
+    chosen = steps("python", Path("/a b"))
     lines = script(chosen).splitlines()
-    assert [step.name for step in chosen] == ["loopback-vcan0", "driver-vcan0", "driver-can0"]
+    assert [step.name for step in chosen] == [
+        "loopback-vcan0",
+        "driver-vcan0",
+        "driver-can0",
+        "driver-ctucanfd",
+        "registers-ctucanfd",
+    ]
     for step, line in zip(chosen, lines, strict=True):
         assert line.endswith(f"--junit {step.name}.xml > {step.name}.txt 2>&1")
-    assert "'/a b/can_echo' vcan0" in lines[1]
-    assert "'/a b/can_echo' can0 --near can1 --emulated" in lines[2]
+    assert "'/a b/tests-checks-socketcan/bin/can_echo' vcan0" in lines[1]
+    assert "'/a b/tests-checks-socketcan/bin/can_echo' can0 --near can1 --emulated" in lines[2]
+    assert "'/a b/tests-checks-ctucanfd/bin/can_echo' /sys/bus/pci/devices" in lines[3]
+    assert "env RAVENCHART_CTUCANFD=/sys/bus/pci/devices/0000:00:11.0/resource1 " in lines[4]
 
 
 def _suite(*outcomes: str) -> str:
@@ -61,6 +70,7 @@ PASSED, FAILED, SKIPPED = "<system-out>exact</system-out>", "<failure/>", "<skip
         (_suite(PASSED), _suite(FAILED, PASSED), Total(2, 1, 0, ()), False),
         (_suite(SKIPPED), _suite(SKIPPED), Total(0, 0, 2, ()), False),
         (_suite(PASSED), None, Total(1, 0, 0, ("b",)), False),
+        (_suite(PASSED), _suite("<error/>"), Total(1, 1, 0, ()), False),
         (_suite(PASSED), "<testsuites>", Total(1, 0, 0, ("b",)), False),
     ],
 )
@@ -74,17 +84,40 @@ def test_what_the_guest_has_written_is_counted(
     assert (found, found.good) == (expected, good)
 
 
+@pytest.mark.parametrize(
+    ("output", "status", "expected"),
+    [
+        ("ok one\nok two\n", 0, [("one", True), ("two", True)]),
+        ("ok one\nnot ok two\n", 1, [("one", True), ("two", False)]),
+        ("ok one\n", 1, [("one", True), ("it ends well, not with status 1", False)]),
+        ("raised CONSTRAINT_ERROR\n", 1, [("it says a fact", False)]),
+        ("", 0, [("it says a fact", False)]),
+    ],
+)
+def test_the_facts_of_a_program_become_cases(
+    output: str, status: int, expected: list[tuple[str, bool]], tmp_path: Path
+) -> None:
+    found = facts(output, status)
+    assert [(fact.text, fact.holds) for fact in found] == expected
+    (tmp_path / "a.xml").write_text(junit("program", found))
+    held = sum(holds for _, holds in expected)
+    assert total((Step("a", ()),), tmp_path) == Total(held, len(expected) - held, 0, ())
+
+
 def test_what_is_missing_is_said_and_nothing_is_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("shutil.which", lambda name: None)
     monkeypatch.setattr(hw_test, "KERNEL", tmp_path)
+    monkeypatch.setattr(hw_test, "HOME", tmp_path / "hw-test")
     assert toolchain.have("ip") is False
     assert len(tuple(missing(tmp_path, "aarch64"))) == 5
     assert hw_test.main() == 2
     said = capsys.readouterr().err
     assert "hw-test: skipped: qemu-system-x86_64 is not on PATH" in said
     assert f"there is no kernel in {tmp_path}" in said
+    assert "hw-test: skipped: s390x, big-endian: qemu-s390x-static is not on PATH" in said
+    assert "hw-test: skipped: Arm, 32 bits: arm-linux-gnueabihf-gnatmake is not" in said
     assert said.endswith("hw-test: nothing was run\n")
 
 

@@ -1,0 +1,7 @@
+--  The core of the one controller.
+
+pragma SPARK_Mode;
+
+with Ravenchart.Can.Ctu_Cores;
+
+package Ravenchart.Can.Ctu_Core is new Ravenchart.Can.Ctu_Cores (Behind => 0);
