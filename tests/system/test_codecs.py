@@ -212,7 +212,7 @@ def expected(message: Message, frame: bytes) -> dict[str, int] | None:
     return {name: raws[name] for name in there}
 
 
-@pytest.mark.parametrize("peer", ["signals"], indirect=True)
+@pytest.mark.parametrize("peer", [("signals", HERE)], indirect=True, ids=["signals"])
 def test_the_database_says_who_sends_what_how_often_with_which_codes(peer: Peer) -> None:
     motion = peer.database.get_message_by_name("motion_out")
     assert (motion.senders, motion.cycle_time) == (["board"], 20)
@@ -220,7 +220,7 @@ def test_the_database_says_who_sends_what_how_often_with_which_codes(peer: Peer)
     assert gear.choices == {0: "Neutral", 17: "Forward", 3: "Backward"}
 
 
-@pytest.mark.parametrize("peer", ["pages"], indirect=True)
+@pytest.mark.parametrize("peer", [("pages", HERE)], indirect=True, ids=["pages"])
 def test_the_database_says_units_ranges_and_pages(peer: Peer) -> None:
     inside = peer.database.get_message_by_name("status_in").get_signal_by_name("inside")
     assert (inside.unit, inside.scale, inside.offset) == ("degC", 0.1, 0)
