@@ -11,6 +11,7 @@
 --  Assumptions  those of the driver chosen
 
 with System;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Queueing;
 
 generic
@@ -26,6 +27,8 @@ generic
    with function Accepts
      (Id : Identifier; Format : Frame_Format) return Boolean;
    --  The acceptance filter: frames it refuses are not received.
+   Setting : Bus_Setting;
+   --  The configuration of the bus.
 package Ravenchart.Can.Controllers
   with
     SPARK_Mode,
@@ -39,18 +42,22 @@ is
      (Driver_Priority <= Transmit_Ceiling
       and then Driver_Priority <= Receive_Ceiling);
 
-   procedure Send (F : Frame; Status : out Send_Status)
-   with Global => (In_Out => (State, Wake_Up));
+   use type Any_Frames.Frame_Family;
+
+   procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
+   with
+     Global => (In_Out => (State, Wake_Up)),
+     Pre    => F.Family = Any_Frames.Classic or else Setting.Takes_Fd;
    --  Queue F for transmission; a full queue rejects it.
 
-   procedure Wait_Frame (F : out Frame)
-   with Global => (In_Out => (State, Wake_Up));
-   --  Suspend the one caller until a frame is there, and hand it over.
-
-   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
-   with Global => (In_Out => (State, Wake_Up));
-   --  The same, with the time since Epochs.Start at which the driver had it,
-   --  0 before that.
+   procedure Wait_Frame
+     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
+   with
+     Global => (In_Out => (State, Wake_Up)),
+     Pre    => not F'Constrained;
+   --  Suspend the one caller until a frame is there, and hand it over with
+   --  the time since Epochs.Start at which the driver had it, 0 before that.
+   --  Unless the bus takes CAN FD, none comes.
 
    procedure Read_State (Now : out Controller_State)
    with Global => (Input => State);

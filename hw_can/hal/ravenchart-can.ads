@@ -106,6 +106,19 @@ is
      Pre    => Fits (Id, Format);
    --  A request for Length bytes of data.
 
+   type Bits_Per_Second is range 0 .. 20_000_000;
+
+   subtype Nominal_Rate is Bits_Per_Second range 1 .. 1_000_000;
+
+   type Bus_Setting is record
+      Bit_Rate  : Nominal_Rate := 500_000;
+      Data_Rate : Bits_Per_Second := 0;
+      Takes_Fd  : Boolean := False;
+   end record;
+   --  How a controller is configured: the bit rate, that of the data of CAN
+   --  FD frames with switched rate, 0 where none switches, and whether there
+   --  are CAN FD frames on the bus.
+
    type Send_Status is (Queued, Rejected_Full);
    --  What became of a frame handed to a controller.
 

@@ -3,7 +3,8 @@
 --  Guarantees   the identifier of an Fd_Frame fits its format, its length is
 --               one that a length code stands for; Byte is 0 beyond it
 --  Tasking      none: frames are values
---  Timing       constant; Fd_Data_Frame is linear in the room for data
+--  Timing       constant; Fd_Data_Frame is linear in the room for data, Words
+--               too
 
 with Interfaces;
 
@@ -55,6 +56,20 @@ is
    type Fd_Bytes is array (Fd_Index) of Interfaces.Unsigned_8;
    --  Room for the data of the longest frame.
 
+   subtype Word_Index is Natural range 0 .. 7;
+
+   type Fd_Words is array (Word_Index) of Interfaces.Unsigned_64;
+   --  The same room as words of eight bytes each, byte 0 in the lowest eight
+   --  bits of word 0, and so on, on every machine.
+
+   function Byte
+     (Words : Fd_Words; Index : Fd_Index) return Interfaces.Unsigned_8
+   is (Interfaces.Unsigned_8
+         (Interfaces.Shift_Right (Words (Index / 8), 8 * (Index mod 8))
+          and 16#FF#))
+   with Global => null;
+   --  One byte of the words.
+
    type Bit_Rate_Use is (Constant_Rate, Switched_Rate);
    --  The bit rate switch (BRS): is the data phase sent at the data bit rate?
 
@@ -78,6 +93,33 @@ is
    with Global => null;
    --  One byte of the data; 0 beyond the length.
 
+   function Word
+     (F : Fd_Frame; Index : Word_Index) return Interfaces.Unsigned_64
+   is (Interfaces.Unsigned_64 (Byte (F, 8 * Index))
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 1)), 8)
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 2)), 16)
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 3)), 24)
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 4)), 32)
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 5)), 40)
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 6)), 48)
+       or Interfaces.Shift_Left
+            (Interfaces.Unsigned_64 (Byte (F, 8 * Index + 7)), 56))
+   with Global => null;
+   --  Eight bytes of the data, the first one lowest.
+
+   function Words (F : Fd_Frame) return Fd_Words
+   with
+     Global => null,
+     Post   =>
+       (for all I in Word_Index => Words'Result (I) = Word (F, I));
+   --  The data as words; 0 beyond the length.
+
    function Fd_Data_Frame
      (Id     : Identifier;
       Format : Frame_Format;
@@ -99,5 +141,26 @@ is
             Fd_Data_Frame'Result.Bytes (I)
             = (if I < Length then Bytes (I) else 0));
    --  A frame whose unused bytes are 0, so that equal frames are equal.
+
+   function Fd_Data_Frame
+     (Id     : Identifier;
+      Format : Frame_Format;
+      Length : Fd_Length;
+      Words  : Fd_Words;
+      Rate   : Bit_Rate_Use) return Fd_Frame
+   with
+     Global => null,
+     Pre    => Fits (Id, Format),
+     Post   =>
+       Fd_Data_Frame'Result.Id = Id
+       and then Fd_Data_Frame'Result.Format = Format
+       and then Fd_Data_Frame'Result.Rate = Rate
+       and then Fd_Data_Frame'Result.Sender = Active_Sender
+       and then Fd_Data_Frame'Result.Length = Length
+       and then
+         (for all I in Fd_Index =>
+            Byte (Fd_Data_Frame'Result, I)
+            = (if I < Length then Byte (Words, I) else 0));
+   --  The frame that carries Words; those beyond Length are not carried.
 
 end Ravenchart.Can.Fd_Frames;

@@ -1,0 +1,68 @@
+--  A frame of a bus: a classic one or a CAN FD one.
+--
+--  Guarantees   those of Can and of Fd_Frames; what only frames of the other
+--               family have reads as 0
+--  Tasking      none: frames are values
+--  Timing       constant; Words is linear in the room for data
+
+with Interfaces;
+with Ravenchart.Can.Fd_Frames;
+
+package Ravenchart.Can.Any_Frames
+  with SPARK_Mode, Pure
+is
+   type Frame_Family is (Classic, Flexible);
+   --  CAN 2.0 or CAN FD (the bit FDF of ISO 11898-1).
+
+   type Any_Frame (Family : Frame_Family := Classic) is record
+      case Family is
+         when Classic  =>
+            Plain : Frame;
+         when Flexible =>
+            Fd : Fd_Frames.Fd_Frame;
+      end case;
+   end record;
+
+   Null_Any_Frame : constant Any_Frame :=
+     (Family => Classic, others => <>);
+   --  Stands where there is no frame.
+
+   function To_Any (F : Frame) return Any_Frame
+   is (Family => Classic, Plain => F)
+   with Global => null;
+
+   function To_Any (F : Fd_Frames.Fd_Frame) return Any_Frame
+   is (Family => Flexible, Fd => F)
+   with Global => null;
+
+   function Id (F : Any_Frame) return Identifier
+   is (if F.Family = Classic then F.Plain.Id else F.Fd.Id)
+   with Global => null;
+
+   function Format (F : Any_Frame) return Frame_Format
+   is (if F.Family = Classic then F.Plain.Format else F.Fd.Format)
+   with Global => null, Post => Fits (Id (F), Format'Result);
+
+   function Carries
+     (F : Any_Frame; Family : Frame_Family; Length : Fd_Frames.Fd_Length)
+      return Boolean
+   is (F.Family = Family
+       and then
+         (if F.Family = Classic
+          then F.Plain.Kind = Data and then F.Plain.Length = Length
+          else F.Fd.Length = Length))
+   with Global => null;
+   --  Is it a data frame of this family with so many bytes?
+
+   function Payload (F : Any_Frame) return Interfaces.Unsigned_64
+   is (if F.Family = Classic then Payload (F.Plain) else 0)
+   with Global => null;
+   --  The data of a classic frame as one word, byte 0 lowest.
+
+   function Words (F : Any_Frame) return Fd_Frames.Fd_Words
+   is (if F.Family = Flexible then Fd_Frames.Words (F.Fd)
+       else (others => 0))
+   with Global => null;
+   --  The data of a CAN FD frame.
+
+end Ravenchart.Can.Any_Frames;
