@@ -14,25 +14,25 @@ is
    type Frame_Family is (Classic, Flexible);
    --  CAN 2.0 or CAN FD (the bit FDF of ISO 11898-1).
 
-   type Any_Frame (Family : Frame_Family := Classic) is record
-      case Family is
-         when Classic  =>
-            Plain : Frame;
-         when Flexible =>
-            Fd : Fd_Frames.Fd_Frame;
-      end case;
+   type Any_Frame is record
+      Family : Frame_Family := Classic;
+      Plain  : Frame;
+      Fd     : Fd_Frames.Fd_Frame;
    end record;
+   --  Plain is the frame of the classic family, Fd that of the flexible one;
+   --  the other means nothing. There is no discriminant, so that queues of
+   --  any element take it.
 
    Null_Any_Frame : constant Any_Frame :=
-     (Family => Classic, others => <>);
+     (others => <>);
    --  Stands where there is no frame.
 
    function To_Any (F : Frame) return Any_Frame
-   is (Family => Classic, Plain => F)
+   is (Family => Classic, Plain => F, others => <>)
    with Global => null;
 
    function To_Any (F : Fd_Frames.Fd_Frame) return Any_Frame
-   is (Family => Flexible, Fd => F)
+   is (Family => Flexible, Fd => F, others => <>)
    with Global => null;
 
    function Id (F : Any_Frame) return Identifier

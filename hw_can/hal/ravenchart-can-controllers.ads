@@ -52,9 +52,7 @@ is
 
    procedure Wait_Frame
      (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
-   with
-     Global => (In_Out => (State, Wake_Up)),
-     Pre    => not F'Constrained;
+   with Global => (In_Out => (State, Wake_Up));
    --  Suspend the one caller until a frame is there, and hand it over with
    --  the time since Epochs.Start at which the driver had it, 0 before that.
    --  Unless the bus takes CAN FD, none comes.

@@ -6,17 +6,17 @@ package body Ravenchart.Can.Received_Frames
     Refined_State => (State => Stamped.State, Wake_Up => Stamped.Wake_Up)
 is
    type Stamped_Frame is record
-      Item  : Frame;
+      Item  : Any_Frames.Any_Frame;
       Stamp : Nanoseconds := 0;
    end record;
 
    package Stamped is new Waiting_Queues
      (Element_Type => Stamped_Frame,
-      Null_Element => (Item => Null_Frame, Stamp => 0),
+      Null_Element => (Item => Any_Frames.Null_Any_Frame, Stamp => 0),
       Capacity     => Capacity,
       Ceiling      => Ceiling);
 
-   procedure Put (F : Frame)
+   procedure Put (F : Any_Frames.Any_Frame)
    with
      Refined_Global =>
        (In_Out => (Stamped.State, Stamped.Wake_Up),
@@ -33,7 +33,8 @@ is
       pragma Warnings (GNATprove, On, """Status"" is set by*");
    end Put;
 
-   procedure Wait (F : out Frame; Stamp : out Nanoseconds)
+   procedure Wait
+     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with
      Refined_Global => (In_Out => (Stamped.State, Stamped.Wake_Up))
    is
@@ -42,16 +43,6 @@ is
       Stamped.Wait (Next);
       F     := Next.Item;
       Stamp := Next.Stamp;
-   end Wait;
-
-   procedure Wait (F : out Frame)
-   with
-     Refined_Global => (In_Out => (Stamped.State, Stamped.Wake_Up))
-   is
-      Next : Stamped_Frame;
-   begin
-      Stamped.Wait (Next);
-      F := Next.Item;
    end Wait;
 
    function Lost return Event_Count

@@ -8,6 +8,7 @@
 
 with Ada.Real_Time;
 with System;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Epochs;
 with Ravenchart.Queueing;
 
@@ -23,21 +24,18 @@ package Ravenchart.Can.Received_Frames
        (Wake_Up with Synchronous, External)),
     Initializes    => (State, Wake_Up)
 is
-   procedure Put (F : Frame)
+   procedure Put (F : Any_Frames.Any_Frame)
    with
      Global =>
        (In_Out => (State, Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  F has come: stamp it, queue it, and wake the caller of Wait.
 
-   procedure Wait (F : out Frame; Stamp : out Nanoseconds)
+   procedure Wait
+     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with Global => (In_Out => (State, Wake_Up));
    --  Suspend the one caller until a frame is there, and hand it over with
    --  the time since Epochs.Start at which it came, 0 before that.
-
-   procedure Wait (F : out Frame)
-   with Global => (In_Out => (State, Wake_Up));
-   --  The same, for who does not ask when.
 
    function Lost return Event_Count
    with Volatile_Function, Global => State;

@@ -18,8 +18,8 @@ is
    use type Queueing.Put_Status;
 
    package Transmit is new Waiting_Queues
-     (Element_Type => Frame,
-      Null_Element => Null_Frame,
+     (Element_Type => Any_Frames.Any_Frame,
+      Null_Element => Any_Frames.Null_Any_Frame,
       Capacity     => Transmit_Depth,
       Ceiling      => Transmit_Ceiling);
 
@@ -78,20 +78,20 @@ is
    end Status_Board;
 
    task body Bus is
-      F : Frame;
+      F : Any_Frames.Any_Frame;
    begin
       Status_Board.Begin_Bus;
       loop
          Transmit.Wait (F);
          Status_Board.Count_Sent;
-         if Accepts (F.Id, F.Format) then
+         if Accepts (Any_Frames.Id (F), Any_Frames.Format (F)) then
             Status_Board.Count_Received;
             Receive.Put (F);
          end if;
       end loop;
    end Bus;
 
-   procedure Send (F : Frame; Status : out Send_Status)
+   procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
    with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
    is
       Result : Queueing.Put_Status;
@@ -101,14 +101,8 @@ is
         (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
    end Send;
 
-   procedure Wait_Frame (F : out Frame)
-   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
-   is
-   begin
-      Receive.Wait (F);
-   end Wait_Frame;
-
-   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
+   procedure Wait_Frame
+     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
    is
    begin

@@ -22,6 +22,8 @@ is
       Transmit_Depth   => 8,
       Receive_Depth    => 8,
       Stack_Bytes      => 65_536,
-      Accepts          => Accepts);
+      Accepts          => Accepts,
+      Setting          =>
+        (Bit_Rate => 500_000, Data_Rate => 2_000_000, Takes_Fd => True));
 
 end Instance_Bus;

@@ -1,4 +1,5 @@
-with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Health;
 with Ravenchart.Queueing;
 with Ravenchart.Timers;
@@ -9,17 +10,21 @@ package body Instance_Tasks
     SPARK_Mode,
     Refined_State =>
       (Periodic_State => (Port, Timers, Raised),
-       Sporadic_State => Last_Frame)
+       Sporadic_State => (Last_Frame, Last_Stamp))
 is
    use type Ravenchart.Queueing.Put_Status;
    use type Ravenchart.Queueing.Take_Status;
+   package Any_Frames renames Ravenchart.Can.Any_Frames;
+
    use type Ravenchart.Can.Send_Status;
+   use type Ravenchart.Nanoseconds;
    use type Instance_Store.Ports.Change;
 
    Port       : Instance_Store.Ports.Port;
    Timers     : Ravenchart.Timers.Timer_Array (1 .. 2);
    Raised     : Instance_Store.Events.List;
-   Last_Frame : Ravenchart.Can.Frame;
+   Last_Frame : Ravenchart.Can.Any_Frames.Any_Frame;
+   Last_Stamp : Ravenchart.Nanoseconds := 0;
 
    procedure Sense_Input
    with
@@ -92,11 +97,25 @@ is
       Instance_Store.Events.Clear (Raised);
       Instance_Store.Board.Read (Reading);
       Instance_Bus.Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id      => 16#105#,
-            Format  => Ravenchart.Can.Standard,
-            Length  => 1,
-            Payload => (if Reading.Valid then 1 else 0)),
+        (Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id      => 16#105#,
+               Format  => Ravenchart.Can.Standard,
+               Length  => 1,
+               Payload => (if Reading.Valid then 1 else 0))),
+         Send);
+      if Send = Ravenchart.Can.Rejected_Full then
+         Instance_Store.Counters.Record_Fault
+           (Ravenchart.Health.Queue_Overflow);
+      end if;
+      Instance_Bus.Controller.Send
+        (Any_Frames.To_Any
+           (Ravenchart.Can.Fd_Frames.Fd_Data_Frame
+              (Id     => 16#106#,
+               Format => Ravenchart.Can.Standard,
+               Length => 64,
+               Words  => (others => (if Reading.Valid then 1 else 0)),
+               Rate   => Ravenchart.Can.Fd_Frames.Switched_Rate)),
          Send);
       if Send = Ravenchart.Can.Rejected_Full then
          Instance_Store.Counters.Record_Fault
@@ -127,7 +146,7 @@ is
 
    procedure Await_Frame is
    begin
-      Instance_Bus.Controller.Wait_Frame (Last_Frame);
+      Instance_Bus.Controller.Wait_Frame (Last_Frame, Last_Stamp);
    end Await_Frame;
 
    -----------------
@@ -140,8 +159,8 @@ is
       case Activity is
          when Receive =>
             Instance_Store.Rejecting_Queue.Put
-              ((Level => Ravenchart.Number (Last_Frame.Length),
-                Valid => True),
+              ((Level => Ravenchart.Number (Any_Frames.Id (Last_Frame)),
+                Valid => Last_Stamp > 0),
                Put);
             if Put = Ravenchart.Queueing.Rejected_Full then
                Instance_Store.Counters.Record_Fault
@@ -165,7 +184,6 @@ is
    ------------------
 
    procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds) is
-      use type Ravenchart.Nanoseconds;
       Budgets : constant array (Job) of Ravenchart.Nanoseconds :=
         (Sense => 100_000, Control => 500_000, Report => 1_000_000);
    begin

@@ -1,10 +1,13 @@
 with Interfaces;
 with Nodes;
-with Ravenchart.Can;
+with Ravenchart;
+with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Fd_Frames;
 
 package body Echoes is
 
    use Ravenchart.Can;
+   use type Any_Frames.Frame_Family;
    use type Interfaces.Unsigned_64;
 
    procedure Send_Burst (Length : Interfaces.Unsigned_64);
@@ -19,7 +22,7 @@ package body Echoes is
       Status : Send_Status;
    begin
       for I in 1 .. Length loop
-         Nodes.Node.Send
+         Nodes.Send
            (Data_Frame (16#102#, Ravenchart.Can.Standard, 8, I), Status);
       end loop;
    end Send_Burst;
@@ -29,18 +32,28 @@ package body Echoes is
    ----------
 
    task body Echo is
+      Any    : Any_Frames.Any_Frame;
+      Stamp  : Ravenchart.Nanoseconds;
       F      : Frame;
+      Fd     : Fd_Frames.Fd_Frame;
       Status : Send_Status;
    begin
       loop
-         Nodes.Node.Wait_Frame (F);
-         if F.Id = 16#7F0# + Identifier (Number)
+         Nodes.Node.Wait_Frame (Any, Stamp);
+         F  := Any.Plain;
+         Fd := Any.Fd;
+         if Any.Family = Any_Frames.Flexible then
+            if Fd.Id mod 4 = Identifier (Number) then
+               Fd.Id := Fd.Id + 1;
+               Nodes.Node.Send (Any_Frames.To_Any (Fd), Status);
+            end if;
+         elsif F.Id = 16#7F0# + Identifier (Number)
            and then F.Format = Ravenchart.Can.Standard
          then
             Send_Burst (Payload (F) and 16#FFFF#);
          elsif F.Id mod 4 = Identifier (Number) then
             F.Id := F.Id + 1;
-            Nodes.Node.Send (F, Status);
+            Nodes.Send (F, Status);
          end if;
       end loop;
    end Echo;

@@ -1,6 +1,7 @@
 --  The CAN controller under test, with the driver of this build.
 
 with System;
+with Ravenchart;
 with Ravenchart.Can;
 with Ravenchart.Can.Controllers;
 
@@ -18,6 +19,16 @@ package Nodes is
       Transmit_Depth   => 1_000,
       Receive_Depth    => 100,
       Stack_Bytes      => 65_536,
-      Accepts          => Accepts);
+      Accepts          => Accepts,
+      Setting          =>
+        (Bit_Rate => 500_000, Data_Rate => 2_000_000, Takes_Fd => True));
+
+   procedure Send
+     (F : Ravenchart.Can.Frame; Status : out Ravenchart.Can.Send_Status);
+   --  Send a classic frame.
+
+   procedure Wait_Frame
+     (F : out Ravenchart.Can.Frame; Stamp : out Ravenchart.Nanoseconds);
+   --  Wait for a frame, which is a classic one; Null_Frame where it is not.
 
 end Nodes;

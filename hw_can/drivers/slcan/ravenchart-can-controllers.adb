@@ -409,7 +409,7 @@ is
       end loop;
    end Writer;
 
-   procedure Send (F : Frame; Status : out Send_Status)
+   procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
    with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
    is
       Result : Queueing.Put_Status;
@@ -419,14 +419,8 @@ is
         (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
    end Send;
 
-   procedure Wait_Frame (F : out Frame)
-   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
-   is
-   begin
-      Receive.Wait (F);
-   end Wait_Frame;
-
-   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
+   procedure Wait_Frame
+     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
    is
    begin

@@ -32,8 +32,8 @@ is
    use type Raw_Sockets.Socket;
 
    package Transmit is new Waiting_Queues
-     (Element_Type => Frame,
-      Null_Element => Null_Frame,
+     (Element_Type => Any_Frames.Any_Frame,
+      Null_Element => Any_Frames.Null_Any_Frame,
       Capacity     => Transmit_Depth,
       Ceiling      => Transmit_Ceiling);
 
@@ -334,7 +334,7 @@ is
       end loop;
    end Writer;
 
-   procedure Send (F : Frame; Status : out Send_Status)
+   procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
    with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
    is
       Result : Queueing.Put_Status;
@@ -344,14 +344,8 @@ is
         (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
    end Send;
 
-   procedure Wait_Frame (F : out Frame)
-   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
-   is
-   begin
-      Receive.Wait (F);
-   end Wait_Frame;
-
-   procedure Wait_Frame (F : out Frame; Stamp : out Nanoseconds)
+   procedure Wait_Frame
+     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
    is
    begin
