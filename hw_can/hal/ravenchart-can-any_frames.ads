@@ -43,6 +43,11 @@ is
    is (if F.Family = Classic then F.Plain.Format else F.Fd.Format)
    with Global => null, Post => Fits (Id (F), Format'Result);
 
+   function Fits (F : Any_Frame; Setting : Bus_Setting) return Boolean
+   is (F.Family = Classic or else Setting.Takes_Fd)
+   with Global => null;
+   --  Can it be on a bus that is configured so?
+
    function Carries
      (F : Any_Frame; Family : Frame_Family; Length : Fd_Frames.Fd_Length)
       return Boolean

@@ -42,12 +42,10 @@ is
      (Driver_Priority <= Transmit_Ceiling
       and then Driver_Priority <= Receive_Ceiling);
 
-   use type Any_Frames.Frame_Family;
-
    procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
    with
      Global => (In_Out => (State, Wake_Up)),
-     Pre    => F.Family = Any_Frames.Classic or else Setting.Takes_Fd;
+     Pre    => Any_Frames.Fits (F, Setting);
    --  Queue F for transmission; a full queue rejects it.
 
    procedure Wait_Frame
@@ -55,7 +53,7 @@ is
    with Global => (In_Out => (State, Wake_Up));
    --  Suspend the one caller until a frame is there, and hand it over with
    --  the time since Epochs.Start at which the driver had it, 0 before that.
-   --  Unless the bus takes CAN FD, none comes.
+   --  Only frames that fit the setting come.
 
    procedure Read_State (Now : out Controller_State)
    with Global => (Input => State);

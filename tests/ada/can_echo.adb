@@ -1,6 +1,7 @@
 --  A node of a bus, as a process: it does what package Echoes says, under
 --  the number on its command line, and prints how it stands whenever that
---  has changed. It ends when nobody reads that any more.
+--  has changed. It ends when nobody reads that any more. It takes CAN FD
+--  frames unless CAN_ECHO_CLASSIC is set.
 
 with Ada.Command_Line;
 with Ada.Real_Time;

@@ -1,5 +1,6 @@
 --  The CAN controller under test, with the driver of this build.
 
+with Ada.Environment_Variables;
 with System;
 with Ravenchart;
 with Ravenchart.Can;
@@ -21,7 +22,10 @@ package Nodes is
       Stack_Bytes      => 65_536,
       Accepts          => Accepts,
       Setting          =>
-        (Bit_Rate => 500_000, Data_Rate => 2_000_000, Takes_Fd => True));
+        (Bit_Rate  => 500_000,
+         Data_Rate => 2_000_000,
+         Takes_Fd  =>
+           not Ada.Environment_Variables.Exists ("CAN_ECHO_CLASSIC")));
 
    procedure Send
      (F : Ravenchart.Can.Frame; Status : out Ravenchart.Can.Send_Status);

@@ -3,17 +3,19 @@
 
 with Facts;
 with Interfaces;
-with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Bus_Frames;
 with Ravenchart.Can.Bus_Members;
 with Ravenchart.Can.Bus_Records;
 with Ravenchart.Can.Bus_Records.Client_Side;
 with Ravenchart.Can.Fault_Confinement;
+with Ravenchart.Can.Fd_Frames;
 
 procedure Test_Bus_Members is
    use Ravenchart.Can;
    use Ravenchart.Can.Bus_Members;
    use Ravenchart.Can.Bus_Records.Client_Side;
+   use type Any_Frames.Frame_Family;
    use type Bus_Frames.Bus_Frame;
    use type Bus_Records.Byte;
    use type Bus_Records.Request_Kind;
@@ -28,8 +30,21 @@ procedure Test_Bus_Members is
    Welcome : constant Bus_Records.Image :=
      Bus_Records.Welcome ("can0", True, 500_000, 2_000_000, 7, 9, 255);
 
-   function Is_Read (F : Frame) return Boolean;
+   function Is_Read (F : Any_Frames.Any_Frame) return Boolean;
    --  Does the server read the request of F as it was meant?
+
+   function Is_Read (F : Frame) return Boolean
+   is (Is_Read (Any_Frames.To_Any (F)));
+
+   function Is_Read (F : Fd_Frames.Fd_Frame) return Boolean
+   is (Is_Read (Any_Frames.To_Any (F)));
+
+   function Long_Frame
+     (Code : Fd_Frames.Length_Code; Rate : Fd_Frames.Bit_Rate_Use)
+      return Fd_Frames.Fd_Frame
+   is (Fd_Frames.Fd_Data_Frame
+         (16#123#, Base, Fd_Frames.Length_Of (Code),
+          Words => (others => 16#8877_6655_4433_2211#), Rate => Rate));
 
    function Is_Deaf
      (Bytes : Bus_Records.Image; First, Last : Bus_Records.Position)
@@ -56,13 +71,16 @@ procedure Test_Bus_Members is
    -- Is_Read --
    -------------
 
-   function Is_Read (F : Frame) return Boolean is
+   function Is_Read (F : Any_Frames.Any_Frame) return Boolean is
       R : constant Bus_Records.Request :=
         Bus_Records.Read (Request (F, 16#8000_0001#));
    begin
       return R.Kind = Bus_Records.Frame_Request
         and then R.Number = 16#8000_0001#
-        and then R.Frame = (Family => Bus_Frames.Classic, Plain => F);
+        and then R.Frame =
+          (if F.Family = Any_Frames.Classic
+           then (Family => Bus_Frames.Classic, Plain => F.Plain)
+           else (Family => Bus_Frames.Flexible, Fd => F.Fd));
    end Is_Read;
 
    -------------
@@ -104,8 +122,17 @@ procedure Test_Bus_Members is
            and then Is_Read (Remote_Frame (0, Base, Length))
            and then Is_Read (Remote_Frame (16#800#, Extended, Length));
       end loop;
+      for Code in Fd_Frames.Length_Code loop
+         for Rate in Fd_Frames.Bit_Rate_Use loop
+            Right := Right and then Is_Read (Long_Frame (Code, Rate));
+         end loop;
+      end loop;
       Facts.Check ("the server reads requests as they are meant", Right);
-      R := Bus_Records.Read (Hello ("node~1"));
+      R := Bus_Records.Read (Hello ("node~1", Takes_Fd => True));
+      Facts.Check
+        ("hello tells whether the node takes CAN FD",
+         R.Kind = Bus_Records.Hello and then R.Takes_Fd);
+      R := Bus_Records.Read (Hello ("node~1", Takes_Fd => False));
       Facts.Check
         ("hello is one of a classic node that takes any rate",
          R.Kind = Bus_Records.Hello and then not R.Takes_Fd
@@ -129,7 +156,24 @@ procedure Test_Bus_Members is
       Facts.Check
         ("a frame is heard as it was sent",
          Heard (Bus_Records.Frame_Record ((Bus_Frames.Classic, F), 5))
-         = (Kind => Frame_Came, Came => F, others => <>));
+         = (Kind   => Frame_Came,
+            Came   => Any_Frames.To_Any (F),
+            others => <>));
+      for Code in Fd_Frames.Length_Code loop
+         Right := Right
+           and then
+             Heard
+               (Bus_Records.Frame_Record
+                  ((Family => Bus_Frames.Flexible,
+                    Fd     => Long_Frame (Code, Fd_Frames.Switched_Rate)),
+                   5))
+             = (Kind   => Frame_Came,
+                Came   => Any_Frames.To_Any
+                            (Long_Frame (Code, Fd_Frames.Switched_Rate)),
+                others => <>);
+      end loop;
+      Facts.Check ("CAN FD frames are heard as they were sent", Right);
+      Right := True;
       Facts.Check
         ("a confirmation is heard",
          Heard (Bus_Records.Confirmation (7, 5))

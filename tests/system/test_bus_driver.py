@@ -16,7 +16,7 @@ from ravenchart.bus import running
 from ravenchart.toolchain import ROOT
 from tests.support.bus_server import BusServer
 from tests.support.can_bus import started
-from tests.support.can_frames import WAIT, taken
+from tests.support.can_frames import FD_LENGTHS, WAIT, taken
 from tests.support.can_node import JOINED, node
 
 MOST_OPEN = 8
@@ -92,6 +92,38 @@ def test_frames_of_every_kind_go_from_program_to_program(echo: Path) -> None:
             (m.arbitration_id, m.is_extended_id, m.is_remote_frame, m.dlc, bytes(m.data))
             for m in found
             if m.arbitration_id % 4 == rest
+        ]
+
+
+def test_fd_frames_of_every_length_go_from_program_to_program(echo: Path) -> None:
+    sent = [
+        can.Message(
+            arbitration_id=identifier,
+            is_extended_id=extended,
+            is_fd=True,
+            bitrate_switch=switch,
+            data=bytes(range(1, length + 1)),
+        )
+        for identifier, extended in ((0x400, False), (0x1FFF_FFFC, True))
+        for switch in (False, True)
+        for length in FD_LENGTHS
+    ]
+    with started() as channel, node(echo, 0, channel) as a, node(echo, 1, channel) as b:
+        a.wait_for("ERROR_ACTIVE")
+        b.wait_for("ERROR_ACTIVE")
+        with RavenchartBus(channel, fd=True) as bus:
+            for message in sent:
+                bus.send(message)
+            found = taken(bus, 2 * len(sent))
+        a.wait(lambda now: now.sent == len(sent) and now.received == 2 * len(sent))
+    for rest in (1, 2):
+        assert [
+            (m.arbitration_id + rest, m.is_extended_id, m.bitrate_switch, bytes(m.data))
+            for m in sent
+        ] == [
+            (m.arbitration_id, m.is_extended_id, m.bitrate_switch, bytes(m.data))
+            for m in found
+            if m.arbitration_id % 4 == rest and m.is_fd
         ]
 
 
@@ -233,7 +265,7 @@ def test_what_a_server_must_not_say_ends_the_connection(echo: Path, bad: Record)
 
 def test_what_a_classic_node_knows_nothing_of_is_passed_over(echo: Path) -> None:
     server = BusServer()
-    with node(echo, 0, server.channel) as a:
+    with node(echo, 0, server.channel, CAN_ECHO_CLASSIC="1") as a:
         a.wait_for("ERROR_ACTIVE")
         server.inject_bytes(encode(Record(Kind.FRAME, flags=int(Flag.FD), length=12)))
         server.inject_bytes(encode(Record(Kind.ERROR_FRAME, identifier=8, flags=1)))

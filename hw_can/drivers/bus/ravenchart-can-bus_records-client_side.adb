@@ -1,7 +1,7 @@
 package body Ravenchart.Can.Bus_Records.Client_Side
   with SPARK_Mode
 is
-   use type Bus_Frames.Frame_Family;
+   use type Any_Frames.Frame_Family;
 
    function Is_Time (Bytes : Image; First : Position) return Boolean
    is (Bytes (First + 7) < 128)
@@ -75,11 +75,21 @@ is
         or else not Is_Time (Bytes, Time_At)
       then
          return (others => <>);
-      elsif Found.Frame.Family = Bus_Frames.Classic then
-         return
-           (Kind => Frame_Came, Came => Found.Frame.Plain, others => <>);
       else
-         return (Kind => Noted, others => <>);
+         case Found.Frame.Family is
+            when Bus_Frames.Classic     =>
+               return
+                 (Kind   => Frame_Came,
+                  Came   => Any_Frames.To_Any (Found.Frame.Plain),
+                  others => <>);
+            when Bus_Frames.Flexible    =>
+               return
+                 (Kind   => Frame_Came,
+                  Came   => Any_Frames.To_Any (Found.Frame.Fd),
+                  others => <>);
+            when Bus_Frames.Asked_Error =>
+               return (Kind => Noted, others => <>);
+         end case;
       end if;
    end Read_Frame;
 
@@ -166,10 +176,11 @@ is
    -- Hello --
    -----------
 
-   function Hello (Name : String) return Image is
+   function Hello (Name : String; Takes_Fd : Boolean) return Image is
       Result : Image := (others => 0);
    begin
       Result (Kind_At)   := Hello_Kind;
+      Result (Flags_At)  := (if Takes_Fd then Fd_Flag else 0);
       Result (Length_At) := Byte (Name'Length);
       Result (Code_At)   := Version;
       Put (Result, Id_At, 4, Mark);
@@ -184,10 +195,14 @@ is
    -------------
 
    function Request
-     (F : Frame; Number : Interfaces.Unsigned_32) return Image
+     (F : Any_Frames.Any_Frame; Number : Interfaces.Unsigned_32) return Image
    is
       Result : Image :=
-        Frame_Record ((Family => Bus_Frames.Classic, Plain => F), 0);
+        Frame_Record
+          ((if F.Family = Any_Frames.Classic
+            then (Family => Bus_Frames.Classic, Plain => F.Plain)
+            else (Family => Bus_Frames.Flexible, Fd => F.Fd)),
+           Now => 0);
    begin
       Put (Result, Number_At, 4, Interfaces.Unsigned_64 (Number));
       return Result;

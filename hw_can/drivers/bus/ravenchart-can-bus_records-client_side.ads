@@ -6,6 +6,8 @@
 --  Tasking      none: records are values
 --  Timing       constant
 
+with Ravenchart.Can.Any_Frames;
+
 package Ravenchart.Can.Bus_Records.Client_Side
   with SPARK_Mode, Pure
 is
@@ -19,16 +21,16 @@ is
       Closed,
       Turned_Away,
       Broken);
-   --  What a server can say. Noted: an error frame, or a frame of the FD
-   --  format, of which a classic node makes nothing. Closed: the server
-   --  ends. Turned_Away: it ends the connection for another reason.
+   --  What a server can say. Noted: an error frame, of which a node makes
+   --  nothing. Closed: the server ends. Turned_Away: it ends the connection
+   --  for another reason.
 
    type Answer is record
       Kind            : Answer_Kind := Broken;
       Number          : Interfaces.Unsigned_32 := 0;
       Transmit_Errors : Error_Count := 0;
       Receive_Errors  : Error_Count := 0;
-      Came            : Frame := Null_Frame;
+      Came            : Any_Frames.Any_Frame;
    end record;
    --  Number of the request that is Confirmed or Refused, counters of
    --  State_Told, and the frame that Came.
@@ -41,12 +43,13 @@ is
         then Heard'Result.Number > 0);
    --  What a server has said.
 
-   function Hello (Name : String) return Image
+   function Hello (Name : String; Takes_Fd : Boolean) return Image
    with Global => null, Pre => Is_Name (Name);
-   --  The first record: a classic node, which takes any bit rate.
+   --  The first record: a node, which takes any bit rate. One that does not
+   --  take CAN FD is told of no such frames.
 
    function Request
-     (F : Frame; Number : Interfaces.Unsigned_32) return Image
+     (F : Any_Frames.Any_Frame; Number : Interfaces.Unsigned_32) return Image
    with Global => null, Pre => Number > 0;
    --  Asks for F to be transmitted.
 

@@ -120,7 +120,7 @@ is
    with Global => (In_Out => Tcp_Sockets.Network);
    --  Ask to be taken in, under the name that the environment gives.
 
-   procedure Take (F : Frame)
+   procedure Take (F : Any_Frames.Any_Frame)
    with
      Global =>
        (In_Out => (Link, Receive.State, Receive.Wake_Up),
@@ -219,14 +219,14 @@ is
    begin
       Tcp_Sockets.Read_Name (Text, Last);
       if Bus_Records.Is_Name (Text (1 .. Last)) then
-         Bytes := Client_Side.Hello (Text (1 .. Last));
+         Bytes := Client_Side.Hello (Text (1 .. Last), Setting.Takes_Fd);
       else
          if Last > 0 then
             Tcp_Sockets.Complain
               ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;"
                & " joining as " & Default);
          end if;
-         Bytes := Client_Side.Hello (Default);
+         Bytes := Client_Side.Hello (Default, Setting.Takes_Fd);
       end if;
       Tcp_Sockets.Send (Server, Wire_Record (Bytes), Done);
    end Say_Hello;
@@ -235,9 +235,11 @@ is
    -- Take --
    ----------
 
-   procedure Take (F : Frame) is
+   procedure Take (F : Any_Frames.Any_Frame) is
    begin
-      if Accepts (F.Id, F.Format) then
+      if Any_Frames.Fits (F, Setting)
+        and then Accepts (Any_Frames.Id (F), Any_Frames.Format (F))
+      then
          Link.Count_Received;
          Receive.Put (F);
       end if;
@@ -354,7 +356,7 @@ is
    ------------
 
    task body Writer is
-      F      : Frame;
+      F      : Any_Frames.Any_Frame;
       May    : Permission;
       Number : Bus_Members.Request_Number;
       Server : Tcp_Sockets.Socket;
