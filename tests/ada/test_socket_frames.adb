@@ -2,7 +2,7 @@
 
 with Facts;
 with Interfaces;
-with Ravenchart.Can;
+with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Socket_Frames;
 
 procedure Test_Socket_Frames is
@@ -18,6 +18,12 @@ procedure Test_Socket_Frames is
    Bits : constant Interfaces.Unsigned_64 := 16#8877_6655_4433_2211#;
 
    function Survives (F : Frame) return Boolean;
+   --  Does F come back in one piece?
+
+   function Survives (F : Fd_Frames.Fd_Frame) return Boolean
+   is (Sockets.Is_Frame (Sockets.Item_Of (F))
+       and then Sockets.Is_Fd (Sockets.Item_Of (F))
+       and then Fd_Frames."=" (Sockets.Fd_Frame_Of (Sockets.Item_Of (F)), F));
    --  Does F come back in one piece?
 
    function Report
@@ -77,6 +83,23 @@ procedure Test_Socket_Frames is
            and then Survives (Remote_Frame (2**29 - 1, Extended, Length));
       end loop;
       Facts.Check ("frames of every length come back", Good);
+      Good := True;
+      for Code in Fd_Frames.Length_Code loop
+         for Rate in Fd_Frames.Bit_Rate_Use loop
+            Good := Good
+              and then Survives
+                (Fd_Frames.Fd_Data_Frame
+                   (16#7FF#, Base, Fd_Frames.Length_Of (Code),
+                    Words => (others => Bits), Rate => Rate))
+              and then Survives
+                (Fd_Frames.Fd_Data_Frame
+                   (2**29 - 1, Extended, Fd_Frames.Length_Of (Code),
+                    Bytes  => (others => 16#A5#),
+                    Rate   => Rate,
+                    Sender => Fd_Frames.Passive_Sender));
+         end loop;
+      end loop;
+      Facts.Check ("CAN FD frames of every length come back", Good);
    end Check_Lengths;
 
    ------------------
@@ -127,6 +150,13 @@ begin
      ("the counters are seen where they are",
       Sockets.Has_Counters (Report (16#200#, 0, 96, 127))
       and then not Sockets.Has_Counters (Report (16#4#, 0, 96, 127)));
+   Facts.Check
+     ("a CAN FD frame of ten bytes, or one that asks, is no frame",
+      not Sockets.Is_Frame
+        ((Length => 10, Flags => Sockets.Fd_Flag, others => <>))
+      and then not Sockets.Is_Frame
+        ((Id => Sockets.Remote_Flag, Flags => Sockets.Fd_Flag,
+          others => <>)));
    Check_Lengths;
    Check_States;
    Facts.Finish;

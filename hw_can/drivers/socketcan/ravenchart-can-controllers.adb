@@ -115,7 +115,7 @@ is
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Take what comes until the socket is of no use any more.
 
-   procedure Put (F : Frame; Sent : out Boolean)
+   procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean)
    with
      Global =>
        (In_Out => (Link, Let_Go, Raw_Sockets.Network));
@@ -160,6 +160,8 @@ is
                end if;
             when Raw_Sockets.Busy =>
                null;
+            when Raw_Sockets.Refused =>
+               Counts.Lost_Out := Next (Counts.Lost_Out);
             when Raw_Sockets.Down | Raw_Sockets.Gone =>
                Counts.Lost_Out := Next (Counts.Lost_Out);
                Now             := Stopped;
@@ -213,14 +215,16 @@ is
    ----------
 
    procedure Take (Item : Socket_Frames.Item) is
-      F : Frame;
+      F : Any_Frames.Any_Frame;
    begin
       if Socket_Frames.Is_Error (Item) then
          Link.Note_Report (Item);
       elsif Socket_Frames.Is_Frame (Item) then
          Link.Note_Up;
-         F := Socket_Frames.Frame_Of (Item);
-         if Accepts (F.Id, F.Format) then
+         F := Socket_Frames.Any_Frame_Of (Item);
+         if Any_Frames.Fits (F, Setting)
+           and then Accepts (Any_Frames.Id (F), Any_Frames.Format (F))
+         then
             Link.Count_Received;
             Receive.Put (F);
          end if;
@@ -251,7 +255,7 @@ is
    -- Put --
    ---------
 
-   procedure Put (F : Frame; Sent : out Boolean) is
+   procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean) is
       Bus    : Raw_Sockets.Socket;
       Result : Raw_Sockets.Outcome;
    begin
@@ -301,7 +305,7 @@ is
       delay until Epochs.Start;
       --  Frames that come before the processors run would find nobody.
       loop
-         Raw_Sockets.Open (Bus);
+         Raw_Sockets.Open (Setting.Takes_Fd, Bus);
          if Bus = Raw_Sockets.No_Socket then
             Pause (Milliseconds => 1_000);
          else
@@ -321,7 +325,7 @@ is
    ------------
 
    task body Writer is
-      F    : Frame;
+      F    : Any_Frames.Any_Frame;
       Sent : Boolean;
    begin
       loop

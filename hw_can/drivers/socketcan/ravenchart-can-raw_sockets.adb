@@ -9,6 +9,7 @@ is
    use type Interfaces.C.long;
    use type Interfaces.C.Strings.chars_ptr;
    use type Interfaces.C.unsigned;
+   use type Interfaces.Unsigned_8;
 
    subtype C_Int is Interfaces.C.int;
 
@@ -83,13 +84,16 @@ is
    Raw_Level       : constant C_Int := 101;
    Error_Filter    : constant C_Int := 2;
    No_Wait         : constant C_Int := 16#40#;
+   Fd_Frames_Too   : constant C_Int := 5;
    Frame_Length    : constant := 16;
+   Fd_Frame_Length : constant := 72;
    Standard_Output : constant C_Int := 1;
    Standard_Error  : constant C_Int := 2;
    No_Room         : constant C_Int := 105;
    Try_Again       : constant C_Int := 11;
    Interrupted     : constant C_Int := 4;
    Network_Down    : constant C_Int := 100;
+   Invalid         : constant C_Int := 22;
 
    Complained : Boolean := False
    with Atomic;
@@ -153,9 +157,10 @@ is
    -- Open --
    ----------
 
-   procedure Open (Opened : out Socket) is
+   procedure Open (With_Fd : Boolean; Opened : out Socket) is
       Name    : constant String := Interface_Name;
       All_Of  : aliased Interfaces.Unsigned_32 := 16#1FFF_FFFF#;
+      Yes     : aliased C_Int := 1;
       Address : aliased Can_Address;
       File    : constant C_Int :=
         C_Socket (Can_Family, Raw_Socket + Close_On_Exec, Raw_Protocol);
@@ -171,6 +176,10 @@ is
       Address.Index := C_Int (Index);
       Result := C_Set_Option
         (File, Raw_Level, Error_Filter, All_Of'Address, 4);
+      if With_Fd and then Result = 0 then
+         Result := C_Set_Option
+           (File, Raw_Level, Fd_Frames_Too, Yes'Address, C_Int'Size / 8);
+      end if;
       if Index /= 0 and then Result = 0 then
          Result := C_Bind (File, Address'Address, Address_Length);
       end if;
@@ -196,9 +205,14 @@ is
    begin
       loop
          Item := (others => <>);
-         Read := C_Receive (C_Int (From), Item'Address, Frame_Length, 0);
-         if Read = Frame_Length then
-            Result := Done;
+         Read := C_Receive
+           (C_Int (From), Item'Address, Fd_Frame_Length, 0);
+         if Read in Frame_Length | Fd_Frame_Length then
+            --  The length tells the format, on kernels of any age.
+            Item.Flags :=
+              (if Read = Fd_Frame_Length
+               then Item.Flags or Socket_Frames.Fd_Flag else 0);
+            Result     := Done;
             return;
          end if;
          exit when Read >= 0
@@ -215,11 +229,21 @@ is
    procedure Send
      (To : Socket; Item : Socket_Frames.Item; Result : out Outcome)
    is
-      Copy : aliased constant Socket_Frames.Item := Item;
-      Sent : constant Interfaces.C.long :=
-        C_Send (C_Int (To), Copy'Address, Frame_Length, No_Wait);
+      Copy   : aliased constant Socket_Frames.Item := Item;
+      Length : constant Interfaces.C.size_t :=
+        (if Socket_Frames.Is_Fd (Item)
+         then Fd_Frame_Length else Frame_Length);
+      Sent   : constant Interfaces.C.long :=
+        C_Send (C_Int (To), Copy'Address, Length, No_Wait);
    begin
-      Result := (if Sent = Frame_Length then Done else Failure);
+      if Sent = Interfaces.C.long (Length) then
+         Result := Done;
+      elsif Socket_Frames.Is_Fd (Item) and then C_Error = Invalid then
+         Complain (Interface_Name & " is not set up for CAN FD (fd on)");
+         Result := Refused;
+      else
+         Result := Failure;
+      end if;
    end Send;
 
    -----------

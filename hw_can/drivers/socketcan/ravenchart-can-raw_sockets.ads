@@ -22,22 +22,25 @@ is
    No_Socket : constant Socket := -1;
    --  What a failed call hands over.
 
-   type Outcome is (Done, Busy, Down, Gone);
-   --  Busy: no room to send at present. Down: the interface is not up.
-   --  Gone: the socket is of no use any more.
+   type Outcome is (Done, Busy, Refused, Down, Gone);
+   --  Busy: no room to send at present. Refused: the interface is not set up
+   --  for CAN FD, which is said once on standard error. Down: the interface
+   --  is not up. Gone: the socket is of no use any more.
 
-   procedure Open (Opened : out Socket)
+   procedure Open (With_Fd : Boolean; Opened : out Socket)
    with Global => (In_Out => Network);
    --  A socket on the interface that RAVENCHART_CAN_INTERFACE names, can0
-   --  where it does not, with all error reports; announced on standard
-   --  output. No_Socket, with one message on standard error, where the
-   --  system has no CAN or no such interface.
+   --  where it does not, with all error reports, and with CAN FD frames if
+   --  so asked; announced on standard output. No_Socket, with one message on
+   --  standard error, where the system has no CAN or no such interface.
 
    procedure Receive
      (From   : Socket;
       Item   : out Socket_Frames.Item;
       Result : out Outcome)
-   with Global => (In_Out => Network), Post => Result /= Busy;
+   with
+     Global => (In_Out => Network),
+     Post   => Result not in Busy | Refused;
    --  Wait for a frame or an error report; a null item when not Done.
 
    procedure Send

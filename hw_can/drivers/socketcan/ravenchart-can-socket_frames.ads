@@ -1,6 +1,6 @@
 --  Frames and error reports as Linux hands them over on a raw CAN socket:
---  struct can_frame of linux/can.h, and the error classes of
---  linux/can/error.h.
+--  struct can_frame and struct canfd_frame of linux/can.h, and the error
+--  classes of linux/can/error.h.
 --
 --  Guarantees   what is converted there and back is the same frame; every
 --               item that a socket can hand over has a meaning
@@ -8,6 +8,8 @@
 --  Timing       constant
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Fd_Frames;
 
 package Ravenchart.Can.Socket_Frames
   with SPARK_Mode, Pure
@@ -15,20 +17,29 @@ is
    use type Interfaces.Unsigned_8;
    use type Interfaces.Unsigned_32;
 
-   type Data_Bytes is array (Byte_Index) of Interfaces.Unsigned_8
+   use type Fd_Frames.Bit_Rate_Use;
+   use type Fd_Frames.Sender_State;
+
+   type Data_Bytes is array (Fd_Frames.Fd_Index) of Interfaces.Unsigned_8
    with Convention => C;
    --  Byte 0 goes over the bus first.
 
    type Item is record
       Id       : Interfaces.Unsigned_32 := 0;
       Length   : Interfaces.Unsigned_8 := 0;
-      Padding  : Interfaces.Unsigned_8 := 0;
+      Flags    : Interfaces.Unsigned_8 := 0;
       Reserved : Interfaces.Unsigned_8 := 0;
       Raw_Dlc  : Interfaces.Unsigned_8 := 0;
       Data     : Data_Bytes := (others => 0);
    end record
    with Convention => C;
-   --  struct can_frame: 16 bytes, Id in the order of the machine.
+   --  struct canfd_frame: 72 bytes, Id in the order of the machine. The first
+   --  16 are a struct can_frame where Flags does not tell of CAN FD.
+
+   Switch_Flag  : constant Interfaces.Unsigned_8 := 1;
+   Passive_Flag : constant Interfaces.Unsigned_8 := 2;
+   Fd_Flag      : constant Interfaces.Unsigned_8 := 4;
+   --  CANFD_BRS, CANFD_ESI and CANFD_FDF, within Flags.
 
    Extended_Flag : constant Interfaces.Unsigned_32 := 16#8000_0000#;
    Remote_Flag   : constant Interfaces.Unsigned_32 := 16#4000_0000#;
@@ -44,18 +55,27 @@ is
    with Global => null;
    --  An error report rather than a frame of the bus.
 
+   function Is_Fd (I : Item) return Boolean
+   is ((I.Flags and Fd_Flag) /= 0)
+   with Global => null;
+   --  Of CAN FD, rather than of the classic format.
+
    function Is_Frame (I : Item) return Boolean
    is (not Is_Error (I)
-       and then I.Length <= 8
+       and then
+         (if Is_Fd (I)
+          then (I.Id and Remote_Flag) = 0
+               and then Natural (I.Length) in Fd_Frames.Fd_Length
+          else I.Length <= 8)
        and then ((I.Id and Extended_Flag) /= 0
                  or else (I.Id and Extended_Bits) <= Standard_Bits))
    with Global => null;
-   --  A classic frame; the system hands over no other without an error flag.
+   --  A frame of a bus.
 
    function Frame_Of (I : Item) return Frame
    with
      Global => null,
-     Pre    => Is_Frame (I),
+     Pre    => Is_Frame (I) and then not Is_Fd (I),
      Post   =>
        Frame_Of'Result.Length = Natural (I.Length)
        and then Frame_Of'Result.Id = Identifier (I.Id and Extended_Bits)
@@ -67,6 +87,32 @@ is
                  then (for all B in Byte_Index =>
                          (if B < Frame_Of'Result.Length
                           then Byte (Frame_Of'Result, B) = I.Data (B))));
+   --  The classic frame that was received.
+
+   function Fd_Frame_Of (I : Item) return Fd_Frames.Fd_Frame
+   with
+     Global => null,
+     Pre    => Is_Frame (I) and then Is_Fd (I),
+     Post   =>
+       Fd_Frame_Of'Result.Length = Natural (I.Length)
+       and then Fd_Frame_Of'Result.Id = Identifier (I.Id and Extended_Bits)
+       and then (Fd_Frame_Of'Result.Format = Extended)
+                = ((I.Id and Extended_Flag) /= 0)
+       and then (Fd_Frame_Of'Result.Rate = Fd_Frames.Switched_Rate)
+                = ((I.Flags and Switch_Flag) /= 0)
+       and then (Fd_Frame_Of'Result.Sender = Fd_Frames.Passive_Sender)
+                = ((I.Flags and Passive_Flag) /= 0)
+       and then
+         (for all B in Fd_Frames.Fd_Index =>
+            Fd_Frames.Byte (Fd_Frame_Of'Result, B)
+            = (if B < Fd_Frame_Of'Result.Length then I.Data (B) else 0));
+   --  The CAN FD frame that was received.
+
+   function Any_Frame_Of (I : Item) return Any_Frames.Any_Frame
+   is (if Is_Fd (I)
+       then Any_Frames.To_Any (Fd_Frame_Of (I))
+       else Any_Frames.To_Any (Frame_Of (I)))
+   with Global => null, Pre => Is_Frame (I);
    --  The frame that was received.
 
    function Item_Of (F : Frame) return Item
@@ -74,6 +120,7 @@ is
      Global => null,
      Post   =>
        Is_Frame (Item_Of'Result)
+       and then not Is_Fd (Item_Of'Result)
        and then Natural (Item_Of'Result.Length) = F.Length
        and then (Item_Of'Result.Id and Extended_Bits)
                 = Interfaces.Unsigned_32 (F.Id)
@@ -83,6 +130,32 @@ is
                 = (F.Kind = Remote)
        and then (for all B in Byte_Index =>
                    Item_Of'Result.Data (B) = Byte (F, B));
+   --  What is handed to the socket to send F.
+
+   function Item_Of (F : Fd_Frames.Fd_Frame) return Item
+   with
+     Global => null,
+     Post   =>
+       Is_Frame (Item_Of'Result)
+       and then Is_Fd (Item_Of'Result)
+       and then Natural (Item_Of'Result.Length) = F.Length
+       and then (Item_Of'Result.Id and Extended_Bits)
+                = Interfaces.Unsigned_32 (F.Id)
+       and then ((Item_Of'Result.Id and Extended_Flag) /= 0)
+                = (F.Format = Extended)
+       and then ((Item_Of'Result.Flags and Switch_Flag) /= 0)
+                = (F.Rate = Fd_Frames.Switched_Rate)
+       and then ((Item_Of'Result.Flags and Passive_Flag) /= 0)
+                = (F.Sender = Fd_Frames.Passive_Sender)
+       and then (for all B in Fd_Frames.Fd_Index =>
+                   Item_Of'Result.Data (B) = Fd_Frames.Byte (F, B));
+   --  What is handed to the socket to send F.
+
+   function Item_Of (F : Any_Frames.Any_Frame) return Item
+   is (case F.Family is
+         when Any_Frames.Classic  => Item_Of (F.Plain),
+         when Any_Frames.Flexible => Item_Of (F.Fd))
+   with Global => null;
    --  What is handed to the socket to send F.
 
    --  Error reports
