@@ -62,12 +62,14 @@ procedure Test_Ctu_Cores is
       Read (Registers.Device_Id_Version, Id);
       Write (Registers.Mode_Settings, Registers.Reset);
       Read (Registers.Tx_Status, Buffers);
-      Registers.Choose_Timing (100_000_000, 500_000, Timing, Found);
+      Registers.Choose_Timing
+        (100_000_000, 500_000, Registers.Quanta_Count'Last, Timing, Found);
       Write (Registers.Btr, Registers.Btr_Of (Timing));
       Good := Registers.Is_Core (Id)
         and then Registers.Has_Buffers (Buffers)
         and then Found;
-      Registers.Choose_Timing (100_000_000, 2_000_000, Timing, Found);
+      Registers.Choose_Timing
+        (100_000_000, 2_000_000, Registers.Data_Quanta, Timing, Found);
       Write (Registers.Btr_Fd, Registers.Btr_Of (Timing));
       Write (Registers.Mode_Settings, Registers.Fd_Mode);
       Write (Registers.Tx_Priority, Registers.Priorities (1));

@@ -204,27 +204,60 @@ procedure Test_Ctu_Frames is
       T     : Registers.Bit_Timing;
       Found : Boolean;
       Good  : Boolean := True;
+
+      procedure Choose_Nominal
+        (Rate  : Registers.Hertz;
+         T     : out Registers.Bit_Timing;
+         Found : out Boolean);
+      --  With the clock of the PCI card.
+
+      procedure Choose_Nominal
+        (Rate  : Registers.Hertz;
+         T     : out Registers.Bit_Timing;
+         Found : out Boolean) is
+      begin
+         Registers.Choose_Timing
+           (100_000_000, Rate, Registers.Quanta_Count'Last, T, Found);
+      end Choose_Nominal;
    begin
       for Rate of Rate_List'
         (10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000,
          800_000, 1_000_000, 2_000_000, 5_000_000)
       loop
-         Registers.Choose_Timing (100_000_000, Rate, T, Found);
+         Choose_Nominal (Rate, T, Found);
          Good := Good
            and then Found
            and then T.Prescaler * Registers.Quanta (T) * Rate
                     = 100_000_000;
       end loop;
       Facts.Check ("the usual bit rates are had exactly", Good);
-      Registers.Choose_Timing (100_000_000, 500_000, T, Found);
+      Choose_Nominal (500_000, T, Found);
       Facts.Check
         ("500 kbit/s has 100 quanta, sampled at 80 %",
          Found
          and then T = (Prescaler => 2, Propagation => 59,
                        Phase_1 => 20, Phase_2 => 20)
          and then Registers.Btr_Of (T) = 16#A012_8A3B#);
-      Registers.Choose_Timing (100_000_000, 300_000, T, Found);
+      Choose_Nominal (300_000, T, Found);
       Facts.Check ("what no prescaler gives is not found", not Found);
+      Good := True;
+      for Rate of Rate_List'
+        (500_000, 1_000_000, 2_000_000, 4_000_000, 5_000_000, 10_000_000)
+      loop
+         Registers.Choose_Timing
+           (100_000_000, Rate, Registers.Data_Quanta, T, Found);
+         Good := Good
+           and then Found
+           and then T.Propagation < 64
+           and then T.Phase_1 < 32;
+      end loop;
+      Facts.Check ("the data phase has room in its register", Good);
+      Registers.Choose_Timing
+        (100_000_000, 2_000_000, Registers.Data_Quanta, T, Found);
+      Facts.Check
+        ("above 1 Mbit/s a sender samples behind the delay that it measures",
+         Registers.Ssp_Of (T, 2_000_000) = 40 * 2**16
+         and then Registers.Ssp_Of (T, 1_000_000) = 2**24);
    end Check_Timing;
 
 begin

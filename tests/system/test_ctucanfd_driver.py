@@ -17,9 +17,9 @@ from ravenchart.toolchain import ROOT
 SPAN = 0x4000
 """Bytes from one core of a card to the next."""
 
-DEVICE_ID, MODE, STATUS, COMMAND, BTR = 0x00, 0x04, 0x08, 0x0C, 0x24
+DEVICE_ID, MODE, STATUS, COMMAND, BTR, BTR_FD = 0x00, 0x04, 0x08, 0x0C, 0x24, 0x28
 FAULT_STATE, REC_TEC, RX_STATUS, RX_DATA = 0x2C, 0x30, 0x68, 0x6C
-TX_STATUS, TX_COMMAND, TX_PRIORITY, TXTB1 = 0x70, 0x74, 0x78, 0x100
+TX_STATUS, TX_COMMAND, TX_PRIORITY, TRV_DELAY, TXTB1 = 0x70, 0x74, 0x78, 0x80, 0x100
 CORE, EMPTY, SENT, READY = 0x0202CAFD, 0x8888, 0x4444, 0x1111
 ACTIVE, PASSIVE, OFF = 1 << 16, 1 << 17, 1 << 18
 SET_READY = {n: 0x2 | 0x100 << n for n in range(4)}
@@ -71,18 +71,32 @@ def came(driver: Driver, card: Card, offset: int, word: int) -> bool:
     return driver.echo.came(lambda: card[offset] == word, LIMIT)
 
 
-def test_the_core_is_given_its_bit_rate_and_enabled(program: Path, card: Card) -> None:
+def test_the_core_is_given_its_bit_rates_and_enabled(program: Path, card: Card) -> None:
     with running(program, card) as driver:
         driver.stands(lambda now: now.state == "ERROR_ACTIVE", "ERROR_ACTIVE")
         assert card[BTR] == 0xA012_8A3B
-        assert card[MODE] == 1 << 22 | 1 << 24 | 1 << 9
+        assert card[BTR_FD] == 10 << 27 | 1 << 19 | 10 << 13 | 10 << 7 | 29
+        assert card[TRV_DELAY] == 40 << 16
+        assert card[MODE] == 1 << 22 | 1 << 9 | 1 << 4
 
 
-def test_a_bit_rate_that_the_clock_does_not_give_is_refused(
+def test_on_a_classic_bus_the_core_passes_over_fd_frames(
     program: Path, card: Card, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("RAVENCHART_CTUCANFD_CLOCK", "80000000")
-    monkeypatch.setenv("RAVENCHART_CTUCANFD_BITRATE", "300000")
+    monkeypatch.setenv("CAN_ECHO_CLASSIC", "1")
+    with running(program, card) as driver:
+        assert card[MODE] == 1 << 22 | 1 << 24 | 1 << 9
+        assert card[BTR_FD] == 0
+        card[RX_DATA] = 4 << 18 | 3 << 11 | 1 << 7
+        card[RX_STATUS] = 1 << 4
+        assert driver.settled().received == 0
+
+
+@pytest.mark.parametrize("clock", ["33333333", "5000000"])
+def test_bit_rates_that_the_clock_does_not_give_are_refused(
+    clock: str, program: Path, card: Card, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RAVENCHART_CTUCANFD_CLOCK", clock)
     words = "error: can: the bit rate cannot be had from the clock; trying again"
     with started(program, f"{card.path}:1", name="ctucanfd") as driver:
         assert driver.echo.came(lambda: words in driver.echo.said, LIMIT)
@@ -159,11 +173,12 @@ def test_any_words_in_the_receive_buffer_are_taken(program: Path, card: Card) ->
         assert driver.settled().state == "ERROR_ACTIVE"
 
 
-def test_fd_frames_are_passed_over(program: Path, card: Card) -> None:
+def test_fd_frames_are_answered_with_all_their_bytes(program: Path, card: Card) -> None:
+    layout = 19 << 11 | 1 << 9 | 1 << 7 | 15
     with running(program, card) as driver:
-        card[RX_DATA] = 4 << 18 | 3 << 11 | 1 << 7
-        card[RX_STATUS] = 1 << 4
-        assert driver.settled().received == 0
+        receive(driver, card, layout)
+        words = [card[TXTB1 + 4 * word] for word in range(20)]
+        assert words == [layout, 1 << 18, 0, 0] + 16 * [layout]
 
 
 def test_an_overrun_is_counted_and_cleared(program: Path, card: Card) -> None:

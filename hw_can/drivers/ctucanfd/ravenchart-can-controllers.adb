@@ -30,7 +30,6 @@ package body Ravenchart.Can.Controllers
 is
    use type Ada.Real_Time.Time;
    use type Ctu_Registers.Buffer_State;
-   use type Ctu_Registers.Hertz;
    use type Queueing.Put_Status;
    use type Queueing.Take_Status;
 
@@ -40,6 +39,12 @@ is
    --  More than a bus of 1 Mbit/s brings in a millisecond: 21.
 
    Looks_A_Second : constant := 1_000;
+
+   Nominal : constant Registers.Hertz := Registers.Hertz (Setting.Bit_Rate);
+
+   Data_Rate : constant Registers.Hertz :=
+     (if Setting.Data_Rate = 0
+      then Nominal else Registers.Hertz (Setting.Data_Rate));
 
    package Transmit is new Queues
      (Element_Type => Any_Frames.Any_Frame,
@@ -99,7 +104,9 @@ is
    --  No more than the last value.
 
    procedure Take_Queued
-     (F : out Frame; P : in out Progress; Status : out Queueing.Take_Status)
+     (F      : out Any_Frames.Any_Frame;
+      P      : in out Progress;
+      Status : out Queueing.Take_Status)
    with Global => (In_Out => (Transmit.State, Asked));
    --  The oldest frame of the transmit queue, if there is one.
 
@@ -115,7 +122,7 @@ is
    procedure Configure (P : in out Progress)
    with
      Global => (In_Out => (Ctu_Core.Registers, Ctu_Hosts.Console));
-   --  Give it its bit rate, and let it join the bus.
+   --  Give it its bit rates, and let it join the bus.
 
    procedure Note_Errors (S : in out Standing; P : in out Progress)
    with Global => (In_Out => Ctu_Core.Registers);
@@ -146,7 +153,9 @@ is
    -----------------
 
    procedure Take_Queued
-     (F : out Frame; P : in out Progress; Status : out Queueing.Take_Status)
+     (F      : out Any_Frames.Any_Frame;
+      P      : in out Progress;
+      Status : out Queueing.Take_Status)
    is
       Is_Asked : constant Boolean := Asked;
    begin
@@ -158,7 +167,7 @@ is
          Transmit.Take (F, Status);
          P.Queued := Status = Queueing.Taken;
       else
-         F      := Null_Frame;
+         F      := Any_Frames.Null_Any_Frame;
          Status := Queueing.Empty;
       end if;
    end Take_Queued;
@@ -168,7 +177,7 @@ is
    -------------
 
    procedure Give_Up (P : in out Progress; Counts : in out Counters) is
-      F      : Frame;
+      F      : Any_Frames.Any_Frame;
       Status : Queueing.Take_Status;
    begin
       for Nth in 1 .. Transmit_Depth loop
@@ -212,26 +221,34 @@ is
    ---------------
 
    procedure Configure (P : in out Progress) is
-      Rate   : constant Registers.Hertz := Ctu_Hosts.Bit_Rate;
+      Clock  : constant Registers.Hertz := Ctu_Hosts.Clock;
       Timing : Registers.Bit_Timing;
-      Found  : Boolean := False;
+      Data   : Registers.Bit_Timing;
+      Found  : Boolean;
+      Other  : Boolean;
    begin
-      if Rate in 1 .. 2**30 then
-         Registers.Choose_Timing (Ctu_Hosts.Clock, Rate, Timing, Found);
-         if Found then
-            Ctu_Core.Write (Registers.Btr, Registers.Btr_Of (Timing));
+      Registers.Choose_Timing
+        (Clock, Nominal, Registers.Quanta_Count'Last, Timing, Found);
+      Registers.Choose_Timing
+        (Clock, Data_Rate, Registers.Data_Quanta, Data, Other);
+      if Found and then (Other or else not Setting.Takes_Fd) then
+         Ctu_Core.Write (Registers.Btr, Registers.Btr_Of (Timing));
+         if Setting.Takes_Fd then
+            Ctu_Core.Write (Registers.Btr_Fd, Registers.Btr_Of (Data));
             Ctu_Core.Write
-              (Registers.Mode_Settings, Registers.Classic_Mode);
-            Ctu_Hosts.Announce;
-            P.Core     := Running;
-            P.Retry_In := Looks_A_Second;
+              (Registers.Trv_Delay, Registers.Ssp_Of (Data, Data_Rate));
          end if;
-      end if;
-      if not Found then
+         Ctu_Core.Write
+           (Registers.Mode_Settings,
+            (if Setting.Takes_Fd
+             then Registers.Fd_Mode else Registers.Classic_Mode));
+         Ctu_Hosts.Announce;
+         P.Core := Running;
+      else
          Ctu_Hosts.Complain (Ctu_Hosts.No_Bit_Rate);
-         P.Core     := Absent;
-         P.Retry_In := Looks_A_Second;
+         P.Core := Absent;
       end if;
+      P.Retry_In := Looks_A_Second;
    end Configure;
 
    -----------------
@@ -264,18 +281,18 @@ is
    procedure Receive_Frames (Counts : in out Counters) is
       State : Registers.Word;
       Item  : Ctu_Frames.Image;
-      F     : Frame;
+      F     : Any_Frames.Any_Frame;
    begin
       for Nth in 1 .. Frames_At_Once loop
          Ctu_Core.Read (Registers.Rx_Status_Settings, State);
          exit when Registers.Frames_Waiting (State) = 0;
          Ctu_Core.Read_Frame (Item);
-         if not Ctu_Frames.Is_Fd (Item) then
-            F := Ctu_Frames.Frame_Of (Item);
-            if Accepts (F.Id, F.Format) then
-               Counts.Received := Next (Counts.Received);
-               Receive.Put (F);
-            end if;
+         F := Ctu_Frames.Any_Frame_Of (Item);
+         if Any_Frames.Fits (F, Setting)
+           and then Accepts (Any_Frames.Id (F), Any_Frames.Format (F))
+         then
+            Counts.Received := Next (Counts.Received);
+            Receive.Put (F);
          end if;
       end loop;
       Ctu_Core.Read (Registers.Status, State);
@@ -292,7 +309,7 @@ is
    procedure Send_Frames (P : in out Progress; Counts : in out Counters) is
       Buffers : Registers.Word;
       Slot    : Registers.Buffer;
-      F       : Frame;
+      F       : Any_Frames.Any_Frame;
       Status  : Queueing.Take_Status;
    begin
       Ctu_Core.Read (Registers.Tx_Status, Buffers);

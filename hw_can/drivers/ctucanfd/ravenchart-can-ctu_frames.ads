@@ -8,6 +8,7 @@
 --  Timing       constant
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Fd_Frames;
 
 package Ravenchart.Can.Ctu_Frames
@@ -164,5 +165,19 @@ is
             Fd_Frames.Byte (Fd_Frame_Of (Image_Of'Result), B)
             = Fd_Frames.Byte (F, B));
    --  What is written to a transmit buffer to send F, at once.
+
+   --  Frames of either family
+
+   function Any_Frame_Of (I : Image) return Any_Frames.Any_Frame
+   is (if Is_Fd (I)
+       then Any_Frames.To_Any (Fd_Frame_Of (I))
+       else Any_Frames.To_Any (Frame_Of (I)))
+   with Global => null;
+
+   function Image_Of (F : Any_Frames.Any_Frame) return Image
+   is (case F.Family is
+         when Any_Frames.Classic  => Image_Of (F.Plain),
+         when Any_Frames.Flexible => Image_Of (F.Fd))
+   with Global => null;
 
 end Ravenchart.Can.Ctu_Frames;

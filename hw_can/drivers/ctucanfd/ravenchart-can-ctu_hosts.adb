@@ -180,13 +180,6 @@ is
       end if;
    end On_Bus_Error;
 
-   --------------
-   -- Bit_Rate --
-   --------------
-
-   function Bit_Rate return Ctu_Registers.Hertz
-   is (Number (Setting ("RAVENCHART_CTUCANFD_BITRATE", "500000")));
-
    -----------
    -- Clock --
    -----------

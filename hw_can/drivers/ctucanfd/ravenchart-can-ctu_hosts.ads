@@ -22,12 +22,7 @@ is
 
    type Obstacle is (No_Device, No_Core, No_Bit_Rate);
    --  The file is not there or cannot be mapped; what is there is no CTU
-   --  CAN FD; the bit rate cannot be had from the clock.
-
-   function Bit_Rate return Ctu_Registers.Hertz
-   with Global => null;
-   --  What RAVENCHART_CTUCANFD_BITRATE says, in bits per second; 500_000
-   --  where it is not set, and 0 where it is no number.
+   --  CAN FD; the bit rates cannot be had from the clock.
 
    function Clock return Ctu_Registers.Hertz
    with Global => null;

@@ -7,7 +7,10 @@ is
    -------------------
 
    procedure Choose_Timing
-     (Clock, Rate : Hertz; T : out Bit_Timing; Found : out Boolean)
+     (Clock, Rate : Hertz;
+      Most        : Quanta_Count;
+      T           : out Bit_Timing;
+      Found       : out Boolean)
    is
       Count : Hertz;
    begin
@@ -15,7 +18,7 @@ is
       Found := False;
       for Prescaler in Hertz range 1 .. 255 loop
          Count := Clock / (Prescaler * Rate);
-         if Count in Quanta_Count
+         if Count in Quanta_Count'First .. Most
            and then Prescaler * Rate * Count = Clock
          then
             T :=

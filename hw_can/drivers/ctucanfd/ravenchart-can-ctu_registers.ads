@@ -30,6 +30,7 @@ is
    Tx_Status           : constant Register := 16#070# / 4;
    Tx_Command          : constant Register := 16#074# / 4;
    Tx_Priority         : constant Register := 16#078# / 4;
+   Trv_Delay           : constant Register := 16#080# / 4;
 
    Span : constant := 16#4000#;
    --  Bytes from one core to the next, on a card with several.
@@ -167,6 +168,9 @@ is
    subtype Quanta_Count is Hertz range 8 .. 155;
    --  Time quanta of a bit: with so many, no field below is too small.
 
+   Data_Quanta : constant Quanta_Count := 100;
+   --  Of a bit of the data phase: with so many, no field of BTR_FD is.
+
    type Bit_Timing is record
       Prescaler   : Hertz range 1 .. 255 := 1;
       Propagation : Hertz range 0 .. 127 := 0;
@@ -181,19 +185,22 @@ is
    --  Of a bit; the first one is the synchronization segment.
 
    procedure Choose_Timing
-     (Clock, Rate : Hertz; T : out Bit_Timing; Found : out Boolean)
+     (Clock, Rate : Hertz;
+      Most        : Quanta_Count;
+      T           : out Bit_Timing;
+      Found       : out Boolean)
    with
      Global => null,
      Pre    => Rate in 1 .. 2**30,
      Post   =>
        (if Found
         then T.Prescaler * Rate * Quanta (T) = Clock
-          and then Quanta (T) in Quanta_Count
+          and then Quanta (T) in Quanta_Count'First .. Most
           and then 5 * T.Phase_2 <= Quanta (T)
           and then 5 * (T.Phase_2 + 1) > Quanta (T));
-   --  The timing that gives exactly Rate, with most quanta, and the sample
-   --  point at 80 % or behind it by less than a quantum. None is Found
-   --  where Clock is no such multiple of Rate.
+   --  The timing that gives exactly Rate, with as many quanta as there can
+   --  be up to Most, and the sample point at 80 % or behind it by less than
+   --  a quantum. None is Found where Clock is no such multiple of Rate.
 
    function Btr_Of (T : Bit_Timing) return Word
    is (Word (T.Propagation)
@@ -202,6 +209,21 @@ is
        or Interfaces.Shift_Left (Word (T.Prescaler), 19)
        or Interfaces.Shift_Left (Word (T.Phase_2), 27))
    with Global => null;
-   --  BTR; of BTR_FD too, while PROP and PH1 are below 64 and 32.
+   --  BTR; with up to Data_Quanta, BTR_FD too.
+
+   Normal_Sampling : constant Word := 2**24;  --  SSP_SRC
+
+   function Ssp_Of (T : Bit_Timing; Rate : Hertz) return Word
+   is (if Rate > 1_000_000
+       then Interfaces.Shift_Left
+              (Word (Hertz'Min
+                       (T.Prescaler * (Quanta (T) - T.Phase_2), 127)),
+               16)
+       else Normal_Sampling)
+   with Global => null;
+   --  TRV_DELAY: where a sender samples the bits of its data phase. Above
+   --  1 Mbit/s that is as much behind the bit as it comes back late, which
+   --  the core measures, and the part of a bit before its sample point
+   --  (SSP_OFFSET, in clocks: transmitter delay compensation, ISO 11898-1).
 
 end Ravenchart.Can.Ctu_Registers;
