@@ -34,7 +34,7 @@ MODULES = ("virtio_pci", "9pnet_virtio", "9p", "can-raw", "vcan", "sch_tbf", "kv
 MODE = "checks"
 PROGRAMS = {
     "socketcan": ("can_echo.adb",),
-    "ctucanfd": ("can_echo.adb", "test_ctu_cores.adb"),
+    "ctucanfd": ("can_echo.adb", "test_ctu_cores.adb", "test_ctu_driver.adb"),
 }
 """What is built with each driver."""
 
@@ -111,6 +111,10 @@ def steps(python: str, programs: Path) -> tuple[Step, ...]:
         Step(
             "registers-ctucanfd",
             ("env", f"RAVENCHART_CTUCANFD={own}", *fact, str(ctucanfd / "test_ctu_cores")),
+        ),
+        Step(
+            "frames-ctucanfd",
+            ("env", f"RAVENCHART_CTUCANFD={own}", *fact, str(ctucanfd / "test_ctu_driver")),
         ),
     )
 

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import can
 
+from .bus_records import FD_LENGTHS
 from .echo import Echo, Standing
 from .loopback.cases import SETTLING, Case, Failed, Skipped, exact, frame
 from .loopback.ends import Ends, Setup, opened
@@ -93,10 +94,15 @@ class Driver:
 
 @contextmanager
 def started(
-    program: Path, channel: str, *, emulated: bool = False, name: str = "socketcan"
+    program: Path,
+    channel: str,
+    *,
+    emulated: bool = False,
+    name: str = "socketcan",
+    **environment: str,
 ) -> Iterator[Driver]:
     """The program on ``channel`` for the time of a block."""
-    echo = Echo(program, {VARIABLES[name]: channel})
+    echo = Echo(program, {VARIABLES[name]: channel, **environment})
     try:
         yield Driver(program, channel, echo, emulated, name)
     finally:
@@ -210,16 +216,46 @@ def _filter(ends: Ends, driver: Driver) -> str:
     return "3 frames refused, 2 accepted and counted"
 
 
-def _fd(ends: Ends, driver: Driver) -> str:
+def _fd(ends: Ends) -> str:
     near = ends.setup.channel
     if (INTERFACES / near / "mtu").read_text().strip() != FD_UNIT:
         raise Skipped("the interface is set up for classic CAN")
     setup = Setup("socketcan", near, "socketcan", near, fd=True)
+    sent = [
+        can.Message(
+            arbitration_id=0x300 + 4 * length,
+            is_extended_id=False,
+            is_fd=True,
+            bitrate_switch=switch,
+            data=bytes(range(1, length + 1)),
+        )
+        for switch in (False, True)
+        for length in sorted(FD_LENGTHS)
+    ]
     with opened("socketcan", near, setup) as bus:
-        bus.send(can.Message(arbitration_id=0x200, is_extended_id=False, is_fd=True, data=b"12"))
-        if (answer := bus.recv(SETTLING)) is not None:
-            raise Failed(f"an FD frame was answered: {answer}")
-    return "passed over; then " + _answered(ends, [frame(0x204)])
+        got = []
+        for one in sent:
+            bus.send(one)
+            got.append(bus.recv(ends.patience))
+    said = exact([_next(one) for one in sent], [one for one in got if one is not None])
+    return f"{said}; then " + _answered(ends, [frame(0x204)])
+
+
+def _classic(ends: Ends, driver: Driver) -> str:
+    near = ends.setup.channel
+    if (INTERFACES / near / "mtu").read_text().strip() != FD_UNIT:
+        raise Skipped("the interface is set up for classic CAN")
+    setup = Setup("socketcan", near, "socketcan", near, fd=True)
+    with (
+        started(driver.program, driver.channel, name=driver.name, CAN_ECHO_CLASSIC="1") as other,
+        opened("socketcan", near, setup) as bus,
+    ):
+        other.announced(1)
+        before = other.settled().received
+        bus.send(can.Message(arbitration_id=0x400, is_extended_id=False, is_fd=True, data=b"12"))
+        bus.send(frame(0x404))
+        other.stands(lambda now: now.received == before + 1, f"received={before + 1}")
+    return "an FD frame passed over, the classic one behind it received"
 
 
 def _reports(ends: Ends, driver: Driver) -> str:
@@ -328,7 +364,7 @@ def _of_all(driver: Driver) -> tuple[Case, ...]:
         Case("every byte value", _every_byte),
         Case("burst", lambda ends: _burst(ends, driver)),
         Case("acceptance filter", lambda ends: _filter(ends, driver)),
-        Case("FD frames", lambda ends: _fd(ends, driver)),
+        Case("FD frames", lambda ends: _fd(ends)),
     )
 
 
@@ -336,6 +372,7 @@ def _of_socketcan(driver: Driver) -> tuple[Case, ...]:
     return (
         Case("interface without room", lambda ends: _full(ends, driver)),
         Case("error reports", lambda ends: _reports(ends, driver)),
+        Case("FD frames on a classic bus", lambda ends: _classic(ends, driver)),
         Case("interface down and up", lambda ends: _down(ends, driver)),
         Case("interface gone and there again", lambda ends: _gone(ends, driver)),
     )

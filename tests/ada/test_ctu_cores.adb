@@ -2,7 +2,6 @@
 --  registers: every length, format and bit rate, each sent once the one
 --  before has come. Both cores are free: no driver has them.
 
-with Ada.Real_Time;
 with Ctu_Pair;
 with Facts;
 with Interfaces;
@@ -15,7 +14,6 @@ procedure Test_Ctu_Cores is
    use Ravenchart.Can;
    use Ravenchart.Can.Ctu_Frames;
    use Ravenchart.Can.Fd_Frames;
-   use type Ada.Real_Time.Time;
    use type Interfaces.Unsigned_32;
 
    package Near renames Ctu_Pair.Near;
@@ -26,17 +24,6 @@ procedure Test_Ctu_Cores is
    --  The literal alone would be hidden by package Standard.
 
    Bits : constant Interfaces.Unsigned_64 := 16#8877_6655_4433_2211#;
-
-   generic
-      with procedure Read
-        (From : Registers.Register; Value : out Registers.Word);
-      with procedure Write
-        (To : Registers.Register; Value : Registers.Word);
-   procedure Start (Good : out Boolean);
-   --  Is it a core with its buffers? Let it join the bus, for FD frames.
-
-   procedure Come (I : out Image; Good : out Boolean);
-   --  The next frame at the far core, waited for not longer than a second.
 
    procedure Cross (Sent : Image; I : out Image; Good : out Boolean);
    --  Send a frame from the first buffer, and take it at the other core.
@@ -51,56 +38,6 @@ procedure Test_Ctu_Cores is
    --  The four buffers, ready at once, are sent from the oldest on.
 
    -----------
-   -- Start --
-   -----------
-
-   procedure Start (Good : out Boolean) is
-      Id, Buffers : Registers.Word;
-      Timing      : Registers.Bit_Timing;
-      Found       : Boolean;
-   begin
-      Read (Registers.Device_Id_Version, Id);
-      Write (Registers.Mode_Settings, Registers.Reset);
-      Read (Registers.Tx_Status, Buffers);
-      Registers.Choose_Timing
-        (100_000_000, 500_000, Registers.Quanta_Count'Last, Timing, Found);
-      Write (Registers.Btr, Registers.Btr_Of (Timing));
-      Good := Registers.Is_Core (Id)
-        and then Registers.Has_Buffers (Buffers)
-        and then Found;
-      Registers.Choose_Timing
-        (100_000_000, 2_000_000, Registers.Data_Quanta, Timing, Found);
-      Write (Registers.Btr_Fd, Registers.Btr_Of (Timing));
-      Write (Registers.Mode_Settings, Registers.Fd_Mode);
-      Write (Registers.Tx_Priority, Registers.Priorities (1));
-      Good := Good and then Found;
-   end Start;
-
-   procedure Start_Near is new Start (Near.Read, Near.Write);
-
-   procedure Start_Far is new Start (Far.Read, Far.Write);
-
-   ----------
-   -- Come --
-   ----------
-
-   procedure Come (I : out Image; Good : out Boolean) is
-      Limit : constant Ada.Real_Time.Time :=
-        Ada.Real_Time.Clock + Ada.Real_Time.Seconds (1);
-      State : Registers.Word;
-   begin
-      I := (others => <>);
-      loop
-         Far.Read (Registers.Rx_Status_Settings, State);
-         Good := Registers.Frames_Waiting (State) > 0;
-         exit when Good or else Ada.Real_Time.Clock > Limit;
-      end loop;
-      if Good then
-         Far.Read_Frame (I);
-      end if;
-   end Come;
-
-   -----------
    -- Cross --
    -----------
 
@@ -108,7 +45,7 @@ procedure Test_Ctu_Cores is
    begin
       Near.Write_Frame (1, Sent);
       Near.Write (Registers.Tx_Command, Registers.Set_Ready (1));
-      Come (I, Good);
+      Ctu_Pair.Come (I, Good);
    end Cross;
 
    --------------
@@ -189,7 +126,7 @@ procedure Test_Ctu_Cores is
          end loop;
          Near.Write (Registers.Tx_Command, Order);
          for Nth in 1 .. Identifier (4) loop
-            Come (I, Here);
+            Ctu_Pair.Come (I, Here);
             Good := Good and then Here and then Id_Of (I) = 16#40# - Nth;
          end loop;
       end loop;
@@ -201,8 +138,8 @@ begin
    Near.Open (Opened);
    Far.Open (Other);
    Facts.Check ("there are registers", Opened and then Other);
-   Start_Near (Good);
-   Start_Far (Right);
+   Ctu_Pair.Start_Near (Good);
+   Ctu_Pair.Start_Far (Right);
    Facts.Check ("there are two cores", Good and then Right);
    for Format in Frame_Format loop
       for Kind in Frame_Kind loop
