@@ -1,5 +1,6 @@
---  The slcan line protocol for classic CAN: frames and commands as lines of
---  ASCII that end in a carriage return.
+--  The slcan line protocol: frames and commands as lines of ASCII that end in
+--  a carriage return. CAN FD frames have lines too, d, D, b and B, as
+--  adapters and python-can write them.
 --
 --  Guarantees   total: any bytes in any order are taken; a bad or overlong
 --               line is rejected as a whole, and the next one is read from
@@ -8,10 +9,13 @@
 --  Timing       Feed is linear in the length of a line, Format_Line too
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 
 package Ravenchart.Can.Slcan
   with SPARK_Mode, Pure
 is
+   use type Any_Frames.Any_Frame;
+   use type Any_Frames.Frame_Family;
    use type Interfaces.Unsigned_8;
 
    Carriage_Return : constant Interfaces.Unsigned_8 := 13;
@@ -20,9 +24,9 @@ is
    Bell : constant Interfaces.Unsigned_8 := 7;
    --  What an adapter says instead when it refuses a line.
 
-   Line_Limit : constant := 27;
-   --  The longest line: T, 8 digits of identifier, 1 of length, 16 of data,
-   --  and the carriage return.
+   Line_Limit : constant := 139;
+   --  The longest line: D, 8 digits of identifier, 1 of the length code, 128
+   --  of data, and the carriage return.
 
    subtype Line_Length is Natural range 0 .. Line_Limit;
    --  Bytes of a line.
@@ -56,25 +60,30 @@ is
      (P      : in out Parser;
       Byte   : Interfaces.Unsigned_8;
       Result : out Outcome;
-      F      : out Frame)
+      F      : out Any_Frames.Any_Frame)
    with
      Global => null,
      Post   =>
        (Result = Incomplete) = (Byte /= Carriage_Return)
        and then (if Byte = Carriage_Return then Pending (P) = 0)
-       and then (if Result /= Frame_Line then F = Null_Frame);
+       and then (if Result /= Frame_Line then F = Any_Frames.Null_Any_Frame);
    --  Read one byte. F is the frame of a Frame_Line.
 
    procedure Format_Line
-     (F : Frame; Line : out Line_Bytes; Last : out Line_Length)
+     (F    : Any_Frames.Any_Frame;
+      Line : out Line_Bytes;
+      Last : out Line_Length)
    with
      Global => null,
      Post   =>
        Last =
-         (if F.Format = Standard then 6 else 11)
-         + (if F.Kind = Data then 2 * F.Length else 0)
+         (if Any_Frames.Format (F) = Standard then 6 else 11)
+         + (if F.Family = Any_Frames.Flexible then 2 * F.Fd.Length
+            elsif F.Plain.Kind = Data then 2 * F.Plain.Length
+            else 0)
        and then Line (Last) = Carriage_Return;
-   --  The line that stands for F, its carriage return included.
+   --  The line that stands for F, its carriage return included. It does not
+   --  tell of the sender's error state.
 
 private
 

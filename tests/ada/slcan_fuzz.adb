@@ -4,17 +4,21 @@
 --  frames, and a quarter such lines with a byte changed. The program stops
 --  with "not ok" where a line is taken for a frame that is written otherwise,
 --  or the line of a frame for anything else. It shows
---  HEX/OUTCOME[/FORMAT/KIND/ID/LENGTH/PAYLOAD], then the number of frames.
+--  HEX/OUTCOME[/FORMAT/KIND/ID/LENGTH/PAYLOAD], then the number of frames;
+--  KIND of CAN FD frames is DATA_FD, their PAYLOAD the sum of their words.
 
 with Ada.Command_Line;
 with Ada.Text_IO;
 with Facts;
 with Interfaces;
-with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Slcan;
 
 procedure Slcan_Fuzz is
    use Ravenchart.Can;
+   use type Any_Frames.Any_Frame;
+   use type Any_Frames.Frame_Family;
    use type Interfaces.Unsigned_8;
    use type Interfaces.Unsigned_64;
    use type Slcan.Outcome;
@@ -24,11 +28,14 @@ procedure Slcan_Fuzz is
    Longest : constant := Slcan.Line_Limit + 6;
    --  Of the strings: some are too long for a line.
 
+   Short : constant := 32;
+   --  Half of them have no more, as commands and classic frames.
+
    type Byte_String is array (Positive range 1 .. Longest) of Byte_Value;
 
    type Drawing is (Any_Bytes, Bytes_Of_Lines, Changed_Line, Whole_Line);
 
-   Alphabet : constant String := "tTrR0123456789ABCDEFabcdefOCSVNsMm";
+   Alphabet : constant String := "tTrRdDbB0123456789ABCDEFabcdefOCSVNsMm";
 
    Strings : constant Natural :=
      Natural'Value (Ada.Command_Line.Argument (1));
@@ -38,7 +45,7 @@ procedure Slcan_Fuzz is
    Parser : Slcan.Parser;
    Text   : Byte_String := (others => 0);
    Length : Natural := 0;
-   Sent   : Frame;
+   Sent   : Any_Frames.Any_Frame;
    --  Whose line Text is, or was before it was changed.
    Line   : Byte_String := (others => 0);
    Count  : Natural := 0;
@@ -62,15 +69,18 @@ procedure Slcan_Fuzz is
    function Byte_Of_Lines return Byte_Value
    is (Character'Pos (Alphabet (1 + Below (Alphabet'Length))));
 
-   function Any_Frame return Frame;
+   function Random_Frame return Any_Frames.Any_Frame;
 
    procedure Draw (How : Drawing);
 
    procedure Expect (Fact : String; Holds : Boolean);
    --  Stop where it does not hold.
 
-   procedure Judge (Result : Slcan.Outcome; F : Frame);
+   procedure Judge (Result : Slcan.Outcome; F : Any_Frames.Any_Frame);
    --  Line has ended.
+
+   function Content (F : Any_Frames.Any_Frame) return String;
+   --  Kind, identifier, length and payload.
 
    function Hex return String;
    --  The bytes of Line.
@@ -87,23 +97,33 @@ procedure Slcan_Fuzz is
       return Seed * 16#2545_F491_4F6C_DD1D#;
    end Random;
 
-   ---------------
-   -- Any_Frame --
-   ---------------
+   ------------------
+   -- Random_Frame --
+   ------------------
 
-   function Any_Frame return Frame is
+   function Random_Frame return Any_Frames.Any_Frame is
       Format : constant Frame_Format :=
         Frame_Format'Val (Below (2));
       Id     : constant Identifier :=
         Identifier
           (Below (if Format = Extended then 2**29 else 2**11));
    begin
-      if Below (2) = 0 then
-         return Remote_Frame (Id, Format, Below (9));
-      else
-         return Data_Frame (Id, Format, Below (9), Random);
-      end if;
-   end Any_Frame;
+      case Below (4) is
+         when 0 =>
+            return Any_Frames.To_Any (Remote_Frame (Id, Format, Below (9)));
+         when 1 =>
+            return Any_Frames.To_Any
+              (Data_Frame (Id, Format, Below (9), Random));
+         when others =>
+            return Any_Frames.To_Any
+              (Fd_Frames.Fd_Data_Frame
+                 (Id, Format,
+                  Fd_Frames.Length_Of (Fd_Frames.Length_Code (Below (16))),
+                  Words => (Random, Random, Random, Random,
+                            Random, Random, Random, Random),
+                  Rate  => Fd_Frames.Bit_Rate_Use'Val (Below (2))));
+      end case;
+   end Random_Frame;
 
    ----------
    -- Draw --
@@ -113,7 +133,7 @@ procedure Slcan_Fuzz is
       Whole : Slcan.Line_Bytes;
       Last  : Slcan.Line_Length;
    begin
-      Length := Below (Longest + 1);
+      Length := Below ((if Below (2) = 0 then Short else Longest) + 1);
       case How is
          when Any_Bytes =>
             for I in 1 .. Length loop
@@ -124,7 +144,7 @@ procedure Slcan_Fuzz is
                Text (I) := Byte_Of_Lines;
             end loop;
          when Changed_Line | Whole_Line =>
-            Sent := Any_Frame;
+            Sent := Random_Frame;
             Slcan.Format_Line (Sent, Whole, Last);
             Length := Last - 1;
             for I in 1 .. Length loop
@@ -165,11 +185,29 @@ procedure Slcan_Fuzz is
       return Written;
    end Hex;
 
+   -------------
+   -- Content --
+   -------------
+
+   function Content (F : Any_Frames.Any_Frame) return String is
+      Sum : Interfaces.Unsigned_64 := 0;
+   begin
+      for Word of Any_Frames.Words (F) loop
+         Sum := Sum + Word;
+      end loop;
+      return
+        (if F.Family = Any_Frames.Flexible
+         then "DATA_FD/" & F.Fd.Id'Image & "/" & F.Fd.Length'Image & "/"
+              & Sum'Image
+         else F.Plain.Kind'Image & "/" & F.Plain.Id'Image & "/"
+              & F.Plain.Length'Image & "/" & Payload (F.Plain)'Image);
+   end Content;
+
    -----------
    -- Judge --
    -----------
 
-   procedure Judge (Result : Slcan.Outcome; F : Frame) is
+   procedure Judge (Result : Slcan.Outcome; F : Any_Frames.Any_Frame) is
       Again : Slcan.Line_Bytes;
       Last  : Slcan.Line_Length;
 
@@ -182,8 +220,9 @@ procedure Slcan_Fuzz is
          Frames := Frames + 1;
          Expect
            ("a frame is one",
-            F.Length'Valid and then F.Id'Valid
-            and then Fits (F.Id, F.Format));
+            F.Plain.Length'Valid and then F.Plain.Id'Valid
+            and then F.Fd.Length'Valid and then F.Fd.Id'Valid
+            and then Fits (Any_Frames.Id (F), Any_Frames.Format (F)));
          Slcan.Format_Line (F, Again, Last);
          Expect
            ("a frame is written as it was read",
@@ -192,22 +231,20 @@ procedure Slcan_Fuzz is
             and then (for all I in 2 .. Count =>
                         Again (I) = Capital (Line (I))));
       else
-         Expect ("no frame, no data", F = Null_Frame);
+         Expect ("no frame, no data", F = Any_Frames.Null_Any_Frame);
       end if;
       if Lines <= Shown then
          Ada.Text_IO.Put_Line
            (Hex & "/" & Result'Image
             & (if Result /= Slcan.Frame_Line then ""
-               else "/" & F.Format'Image & "/" & F.Kind'Image & "/"
-                    & F.Id'Image & "/" & F.Length'Image & "/"
-                    & Interfaces.Unsigned_64'Image (Payload (F))));
+               else "/" & Any_Frames.Format (F)'Image & "/" & Content (F)));
       end if;
    end Judge;
 
    How    : Drawing;
    Byte   : Byte_Value;
    Result : Slcan.Outcome;
-   F      : Frame;
+   F      : Any_Frames.Any_Frame;
 begin
    for Unused in 1 .. Strings loop
       How := Drawing'Val (Below (4));

@@ -8,20 +8,23 @@ from __future__ import annotations
 
 import os
 import re
+import struct
 import subprocess
 
 import pytest
+from can.util import dlc2len
 
 from ravenchart import toolchain
 from ravenchart.toolchain import ROOT
 
 STRINGS = 10_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 200_000
 SHOWN = 50_000
-LONGEST = 26
+LONGEST = 138
 """Bytes of a line before its carriage return."""
 
 FRAME = re.compile(
-    rb"(?:([tr])([0-7][0-9A-Fa-f]{2})|([TR])([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)"
+    rb"(?:([trdb])([0-7][0-9A-Fa-f]{2})|([TRDB])([01][0-9A-Fa-f]{7}))"
+    rb"([0-9A-Fa-f])((?:[0-9A-Fa-f]{2})*)"
 )
 COMMANDS = {b"": "EMPTY_LINE", b"O": "OPEN_CHANNEL", b"C": "CLOSE_CHANNEL",
             b"V": "VERSION_QUERY", b"N": "SERIAL_QUERY"}  # fmt: skip
@@ -40,11 +43,12 @@ def meaning(line: bytes) -> str:
     if found is None:
         return "REJECTED_LINE"
     base, short, extended, long, length, data = found.groups()
-    letter, asked = base or extended, int(length)
-    kind = "DATA" if letter in b"tT" else "REMOTE"
-    if len(data) != (2 * asked if kind == "DATA" else 0):
+    kind = {b"t": "DATA", b"r": "REMOTE"}.get((base or extended).lower(), "DATA_FD")
+    asked = dlc2len(int(length, 16))
+    if len(data) != (0 if kind == "REMOTE" else 2 * asked) or (asked > 8 and kind != "DATA_FD"):
         return "REJECTED_LINE"
-    payload = int.from_bytes(bytes.fromhex(data.decode()), "little")
+    content = bytes.fromhex(data.decode()).ljust(64, b"\0")
+    payload = sum(struct.unpack("<8Q", content)) % 2**64
     form = "STANDARD" if base else "EXTENDED"
     return f"FRAME_LINE/{form}/{kind}/ {int(short or long, 16)}/ {asked}/ {payload}"
 

@@ -81,21 +81,31 @@ def running(program: Path, device: Path, **environment: str) -> Iterator[subproc
 
 def test_it_opens_the_channel_and_speaks_with_the_adapter(program: Path, tmp_path: Path) -> None:
     adapter = Adapter(tmp_path / "adapter")
-    with running(program, adapter.device, RAVENCHART_CAN_SPEED="6"):
-        adapter.heard("C\rS6\rO\r")
+    with running(program, adapter.device, RAVENCHART_CAN_SPEED="4"):
+        adapter.heard("C\rS4\rY2\rO\r")
         adapter.say("\r\r")
         adapter.say("t1233AABBCC\r")
         adapter.heard("t1243AABBCC\r")
+        adapter.say("b1239" + 24 * "A" + "\r")
+        adapter.heard("b1249" + 24 * "A" + "\r")
         adapter.say("z\rT000000070\rT000012330\r")  # the filter refuses the first
         adapter.heard("T000012340\r")
         adapter.say("Z\r\x07r1232\r")
         adapter.heard("r1242\r")
 
 
+def test_on_a_classic_bus_a_line_of_can_fd_is_refused(program: Path, tmp_path: Path) -> None:
+    adapter = Adapter(tmp_path / "adapter")
+    with running(program, adapter.device, CAN_ECHO_CLASSIC="1"):
+        adapter.heard("C\rS6\rO\r")
+        adapter.say("d1230\rt1230\r")
+        adapter.heard("t1240\r")
+
+
 def test_a_refusal_is_counted_and_no_frame_is_lost_by_it(program: Path, tmp_path: Path) -> None:
     adapter = Adapter(tmp_path / "adapter")
     with running(program, adapter.device) as process:
-        adapter.heard("C\rO\r")
+        adapter.heard("C\rS6\rY2\rO\r")
         adapter.say("\x07t1230\r")
         adapter.heard("t1240\r")
         assert process.stdout is not None
@@ -109,11 +119,11 @@ def test_a_refusal_is_counted_and_no_frame_is_lost_by_it(program: Path, tmp_path
 def test_an_adapter_that_is_plugged_in_again_is_opened_again(program: Path, tmp_path: Path) -> None:
     adapter = Adapter(tmp_path / "adapter")
     with running(program, adapter.device):
-        adapter.heard("C\rO\r")
+        adapter.heard("C\rS6\rY2\rO\r")
         adapter.unplug()
         time.sleep(0.5)
         adapter.plug_in()
-        adapter.heard("C\rO\r")
+        adapter.heard("C\rS6\rY2\rO\r")
         adapter.say("t0071FF\r")
         adapter.heard("t0081FF\r")
 

@@ -40,7 +40,7 @@ is
 
    type Outgoing is record
       Kind : Line_Kind := Frame_Line;
-      F    : Frame := Null_Frame;
+      F    : Any_Frames.Any_Frame;
    end record;
    --  Answers go the way of the frames, so that one task alone writes.
 
@@ -79,7 +79,8 @@ is
       --  A frame was accepted.
 
       procedure Count_Rejected;
-      --  A line was not understood, or came while the channel was closed.
+      --  A line was not understood, or its frame is not for this bus, or came
+      --  while the channel was closed.
 
       function Is_Idle return Boolean;
       --  The writer uses no client.
@@ -115,7 +116,7 @@ is
    with Global => (In_Out => (Transmit.State, Transmit.Wake_Up));
    --  Queue an answer; when there is no room the client gets none.
 
-   procedure Obey (Result : Slcan.Outcome; F : Frame)
+   procedure Obey (Result : Slcan.Outcome; F : Any_Frames.Any_Frame)
    with
      Global =>
        (In_Out => (Link, Transmit.State, Transmit.Wake_Up,
@@ -219,7 +220,7 @@ is
       pragma Warnings
         (GNATprove, Off, """Status"" is set by*",
          Reason => "the queue counts what it rejects");
-      Transmit.Put ((Kind, Null_Frame), Status);
+      Transmit.Put ((Kind, Any_Frames.Null_Any_Frame), Status);
       pragma Warnings (GNATprove, On, """Status"" is set by*");
    end Put_Answer;
 
@@ -227,15 +228,15 @@ is
    -- Obey --
    ----------
 
-   procedure Obey (Result : Slcan.Outcome; F : Frame) is
+   procedure Obey (Result : Slcan.Outcome; F : Any_Frames.Any_Frame) is
       Now : Controller_State;
    begin
       case Result is
          when Slcan.Frame_Line =>
             Now := Link.State_Now;
-            if Now = Stopped then
+            if Now = Stopped or else not Any_Frames.Fits (F, Setting) then
                Link.Count_Rejected;
-            elsif Accepts (F.Id, F.Format) then
+            elsif Accepts (Any_Frames.Id (F), Any_Frames.Format (F)) then
                Link.Count_Received;
                Receive.Put (F);
             end if;
@@ -263,7 +264,7 @@ is
       Bytes  : Tcp_Sockets.Chunk;
       Last   : Tcp_Sockets.Chunk_Length;
       Result : Slcan.Outcome;
-      F      : Frame;
+      F      : Any_Frames.Any_Frame;
    begin
       loop
          Tcp_Sockets.Receive (Client, Bytes, Last);
@@ -361,7 +362,7 @@ is
       end if;
       loop
          if Serial then
-            Tcp_Sockets.Open_Device (Client);
+            Tcp_Sockets.Open_Device (Setting, Client);
          else
             Tcp_Sockets.Accept_Client (Server, Client);
          end if;

@@ -27,6 +27,12 @@ is
    function Setting (Name : String) return String;
    --  What the environment says; nothing when it is not set.
 
+   function Speed_Command (Rate : Nominal_Rate) return String;
+   --  The command S of slcan; nothing where it has no digit for Rate.
+
+   function Data_Speed_Command (Bus : Bus_Setting) return String;
+   --  The command Y of slcan adapters with CAN FD; nothing without need.
+
    procedure Read_Port
      (Variable : String;
       Default  : Interfaces.Unsigned_16;
@@ -196,18 +202,50 @@ is
       Wanted := Setting ("RAVENCHART_CAN_DEVICE") /= "";
    end Ask_For_Device;
 
+   -------------------
+   -- Speed_Command --
+   -------------------
+
+   function Speed_Command (Rate : Nominal_Rate) return String is
+      Usual : constant array (Character range '0' .. '8') of Nominal_Rate :=
+        (10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000,
+         800_000, 1_000_000);
+   begin
+      for Digit in Usual'Range loop
+         if Usual (Digit) = Rate then
+            return "S" & Digit & ASCII.CR;
+         end if;
+      end loop;
+      return "";
+   end Speed_Command;
+
+   ------------------------
+   -- Data_Speed_Command --
+   ------------------------
+
+   function Data_Speed_Command (Bus : Bus_Setting) return String
+   is (if Bus.Takes_Fd
+         and then Bus.Data_Rate in 1_000_000 .. 8_000_000
+         and then Bus.Data_Rate mod 1_000_000 = 0
+       then "Y" & Character'Val
+                    (Character'Pos ('0') + Bus.Data_Rate / 1_000_000)
+            & ASCII.CR
+       else "");
+
    -----------------
    -- Open_Device --
    -----------------
 
-   procedure Open_Device (Device : out Socket) is
+   procedure Open_Device (Bus : Bus_Setting; Device : out Socket) is
       Path    : constant String := Setting ("RAVENCHART_CAN_DEVICE");
       Speed   : constant String := Setting ("RAVENCHART_CAN_SPEED");
       C_Path  : constant String := Path & ASCII.NUL;
       Line    : aliased Line_Settings := (others => 0);
       Rate    : constant String :=
-        (if Speed = "" then "" else "S" & Speed & ASCII.CR);
-      Opening : constant String := "C" & ASCII.CR & Rate & "O" & ASCII.CR;
+        (if Speed = "" then Speed_Command (Bus.Bit_Rate)
+         else "S" & Speed & ASCII.CR);
+      Opening : constant String :=
+        "C" & ASCII.CR & Rate & Data_Speed_Command (Bus) & "O" & ASCII.CR;
       File    : C_Int;
       Result  : C_Int;
    begin

@@ -44,12 +44,13 @@ is
    with Global => (In_Out => Network);
    --  Does RAVENCHART_CAN_DEVICE name a serial line, to be used instead?
 
-   procedure Open_Device (Device : out Socket)
+   procedure Open_Device (Bus : Bus_Setting; Device : out Socket)
    with Global => (In_Out => Network);
    --  Open that line as it is set, without echo and translation; tell the
-   --  slcan adapter there to open its channel, at the rate of the digit that
-   --  RAVENCHART_CAN_SPEED names (its command S), and announce it on
-   --  standard output.
+   --  slcan adapter there its bit rates and to open its channel, and announce
+   --  it on standard output. Its commands S and Y have digits for usual bit
+   --  rates alone, and Y is told where CAN FD frames switch to a whole number
+   --  of Mbit/s; the digit that RAVENCHART_CAN_SPEED names goes before.
 
    procedure Accept_Client (Server : Socket; Client : out Socket)
    with Global => (In_Out => Network);
