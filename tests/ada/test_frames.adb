@@ -3,12 +3,13 @@
 
 with Facts;
 with Interfaces;
-with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Slcan;
 
 procedure Test_Frames is
    use Ravenchart.Can;
+   use type Any_Frames.Any_Frame;
    use type Interfaces.Unsigned_8;
    use type Interfaces.Unsigned_64;
    use type Slcan.Outcome;
@@ -54,16 +55,17 @@ procedure Test_Frames is
       Line   : Slcan.Line_Bytes;
       Last   : Slcan.Line_Length;
       Result : Slcan.Outcome := Slcan.Incomplete;
-      Back   : Frame := Null_Frame;
+      Back   : Any_Frames.Any_Frame;
    begin
-      Slcan.Format_Line (F, Line, Last);
+      Slcan.Format_Line (Any_Frames.To_Any (F), Line, Last);
       for I in 1 .. Last loop
          if Result /= Slcan.Incomplete then
             return False;
          end if;
          Slcan.Feed (Parser, Line (I), Result, Back);
       end loop;
-      return Result = Slcan.Frame_Line and then Back = F;
+      return Result = Slcan.Frame_Line
+        and then Back = Any_Frames.To_Any (F);
    end Survives;
 
    -------------
@@ -74,7 +76,7 @@ procedure Test_Frames is
       Line : Slcan.Line_Bytes;
       Last : Slcan.Line_Length;
    begin
-      Slcan.Format_Line (F, Line, Last);
+      Slcan.Format_Line (Any_Frames.To_Any (F), Line, Last);
       return Text : String (1 .. Last - 1) do
          for I in Text'Range loop
             Text (I) := Character'Val (Line (I));
@@ -169,7 +171,9 @@ procedure Test_Frames is
       Full   : constant Fd_Bytes := (others => 16#A5#);
       F      : Fd_Frame;
       Cut    : Boolean := True;
+      Given  : Fd_Words;
       Longer : Boolean := True;
+      Whole  : Boolean := True;
    begin
       for Code in Length_Code loop
          F   := Fd_Data_Frame (5, Extended, Length_Of (Code), Full);
@@ -184,6 +188,24 @@ procedure Test_Frames is
          end if;
       end loop;
       Facts.Check ("a CAN FD payload ends with its length", Cut);
+      for Code in Length_Code loop
+         for I in 1 .. 1_000 loop
+            Given := (Random, Random, Random, Random,
+                      Random, Random, Random, Random);
+            F     := Fd_Data_Frame
+              (5, Extended, Length_Of (Code), Given, Switched_Rate);
+            Whole := Whole
+              and then
+                (for all I in Fd_Index =>
+                   Byte (F, I)
+                   = (if I < F.Length then Byte (Given, I) else 0))
+              and then
+                (if F.Length = 64 then Words (F) = Given
+                 else F = Fd_Data_Frame
+                        (5, Extended, F.Length, Words (F), Switched_Rate));
+         end loop;
+      end loop;
+      Facts.Check ("words become bytes and words again", Whole);
       Facts.Check
         ("16 length codes stand for growing lengths up to 64",
          Longer and then Length_Of (15) = 64);
