@@ -1,4 +1,4 @@
-"""The slcan driver as the host of an adapter on a serial line: here one end of a pty."""
+"""The slcan driver by TCP, and as the host of an adapter on a serial line: one end of a pty."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import can
 import pytest
 
 from ravenchart import toolchain
 from ravenchart.toolchain import ROOT
+from tests.support.can_frames import FD_LENGTHS, WAIT
 
 LIMIT = 20.0
 """Seconds within which something must have happened."""
@@ -100,6 +102,37 @@ def test_on_a_classic_bus_a_line_of_can_fd_is_refused(program: Path, tmp_path: P
         adapter.heard("C\rS6\rO\r")
         adapter.say("d1230\rt1230\r")
         adapter.heard("t1240\r")
+
+
+def test_python_can_exchanges_frames_of_both_families_by_tcp(program: Path) -> None:
+    sent = [
+        can.Message(
+            arbitration_id=identifier,
+            is_extended_id=identifier > 0x7FF,
+            is_fd=fd,
+            bitrate_switch=switch,
+            data=bytes(range(length)),
+        )
+        for identifier in (0x123, 0x1FFFFFFB)
+        for fd, switch in ((False, False), (True, False), (True, True))
+        for length in FD_LENGTHS
+        if fd or length <= 8
+    ]
+    environment = {**os.environ, "RAVENCHART_CAN_PORT": "0"}
+    with subprocess.Popen(
+        [program, "3"], env=environment, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        place = next(line for line in process.stdout if line.startswith("can: slcan on ")).split()
+        with can.Bus(interface="slcan", channel=f"socket://{place[-1]}", sleep_after_open=0) as bus:
+            got = []
+            for message in sent:
+                bus.send(message)
+                got.append(bus.recv(WAIT))
+        process.kill()
+    assert [(m.arbitration_id, m.is_fd, m.bitrate_switch, bytes(m.data)) for m in got if m] == [
+        (m.arbitration_id + 1, m.is_fd, m.bitrate_switch, bytes(m.data)) for m in sent
+    ]
 
 
 def test_a_refusal_is_counted_and_no_frame_is_lost_by_it(program: Path, tmp_path: Path) -> None:
