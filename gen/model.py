@@ -92,6 +92,8 @@ class Bus:
     errors: BusErrors | None = None
     data_rate: int | None = None
     """In bit/s, of the data of CAN FD frames; None: that of the rest."""
+    takes_fd: bool = False
+    """There are CAN FD frames on it, or a rate for them."""
     audsley: bool = False
     """Identifiers that the model does not give are found by the analysis; else by deadline."""
 

@@ -28,7 +28,7 @@ from .devices import Devices, Provider, device_type_of
 from .distribution import Carrier, placed
 from .identifiers import identified
 from .interfaces import command_of, declare_vectors
-from .model import Connection, Instance, Shutdown, System
+from .model import Bus, Connection, Instance, Message, Shutdown, System
 from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
 from .remote import calling
 from .schema import ModelFile
@@ -318,7 +318,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         types=_declared(types),
         components=tuple(part.component for part in parts.sound()),
         nodes=nodes.sound(),
-        buses=buses.sound(),
+        buses=tuple(_with_family(bus, carried) for bus in buses.sound()),
         instances=instances.sound(),
         connections=connections,
         messages=tuple(m for m in carried if not m.is_foreign),
@@ -336,6 +336,12 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     )
     system = placed(system)
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
+
+
+def _with_family(bus: Bus, carried: Sequence[Message]) -> Bus:
+    """The bus, once it is known whether CAN FD frames travel on it."""
+    given = any(message.fd and message.bus == bus.name for message in carried)
+    return replace(bus, takes_fd=given or bus.data_rate is not None)
 
 
 def _hears_or_tells(component: str, model: Merged) -> bool:

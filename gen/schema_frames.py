@@ -106,8 +106,8 @@ class MessageForm(Element):
     extended: bool = PydanticField(default=False, description="A 29-bit identifier.")
     format: Literal["classic", "fd"] = PydanticField(
         default="classic",
-        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64: analysed, "
-        "not generated yet.",
+        description="`classic` with up to 8 bytes, or `fd`, a CAN FD frame of up to 64. All "
+        "nodes of its bus must then take CAN FD, also those outside the model.",
     )
     from_: OwnedReference | None = optional(
         "`instance.port` that sends; without it the sender is outside the system.", alias="from"

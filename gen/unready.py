@@ -17,8 +17,3 @@ def unready(system: System) -> Iterator[Diagnostic]:
         if node.cores > 1:
             text = f"{node.name} has {node.cores} cores: several are analysed, not generated yet"
             yield error(UNREADY, node.origin, text, hint="put all processors on one core")
-    for message in system.frames:
-        if message.fd:
-            text = f"{message.name} is a CAN FD frame: CAN FD is analysed, not generated yet"
-            hint = "a payload of up to 8 bytes fits a frame of `format: classic`"
-            yield error(UNREADY, message.origin, text, hint=hint)

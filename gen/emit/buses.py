@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from ..model import Bus, End, Message, System
 from .ada import (
+    FALSE,
     SPARK,
+    TRUE,
+    Aggregate,
+    Arg,
     Call,
     CaseExpr,
     Chain,
@@ -28,13 +32,16 @@ from .ada import (
     member,
     number,
 )
-from .codecs import codec_name
+from .codecs import codec_name, words_of
 from .naming import ada_case, priority, root_package, type_name
 from .remote_calls import received_as
 from .trace_calls import note, traced
 
 DRIVER_STACK = 65_536
 """Bytes of stack for each task of a CAN driver on a host."""
+
+ANY = "Ravenchart.Can.Any_Frames"
+FD = "Ravenchart.Can.Fd_Frames"
 
 
 def _sent(system: System, bus: Bus) -> tuple[Message, ...]:
@@ -89,6 +96,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
                 Receive_Depth=number(bus.receive_depth),
                 Stack_Bytes=number(DRIVER_STACK),
                 Accepts=Ref("Accepts"),
+                Setting=_setting(bus),
             ),
         ),
     ]
@@ -98,8 +106,8 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     withs = ("Ravenchart.Can", "Ravenchart.Can.Controllers", "System")
     units = [Unit(header, withs, Package(name, tuple(items), (SPARK,)))]
     if sent:
-        bodies = tuple(_send_body(system, m) for m in sent)
-        context = {f"{root}.Codecs", f"{root}.Health_Counts", "Ravenchart.Health"}
+        bodies = tuple(_send_body(system, bus, m) for m in sent)
+        context = {f"{root}.Codecs", f"{root}.Health_Counts", "Ravenchart.Health", ANY, FD}
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
         units.append(
@@ -110,20 +118,40 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     return units
 
 
+def _setting(bus: Bus) -> Expr:
+    """How the controller is configured."""
+    settings = {
+        "Bit_Rate": number(bus.bit_rate),
+        "Data_Rate": number(bus.data_rate or 0),
+        "Takes_Fd": TRUE if bus.takes_fd else FALSE,
+    }
+    return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
+
+
 def _send_spec(system: System, message: Message) -> Subprogram:
     return Subprogram(
         f"Send_{ada_case(message.name)}", (Param("Item", "in", type_name(system, message.type)),)
     )
 
 
-def _send_body(system: System, message: Message) -> Subprogram:
-    frame = call(
-        "Ravenchart.Can.Data_Frame",
-        Id=number(message.identifier),
-        Format=_format(message),
-        Length=number(message.length),
-        Payload=call(f"Codecs.Pack_{codec_name(message)}", Ref("Item")),
-    )
+def _frame(bus: Bus, message: Message) -> Expr:
+    """The frame that carries an item."""
+    packed: Expr = call(f"Codecs.Pack_{codec_name(message)}", Ref("Item"))
+    head = {
+        "Id": number(message.identifier),
+        "Format": _format(message),
+        "Length": number(message.length),
+    }
+    if not message.fd:
+        return call("Ravenchart.Can.Data_Frame", **head, Payload=packed)
+    if words_of(message) == 1:
+        packed = Aggregate((Arg("0", packed), Arg("others", number(0))))
+    rate = Ref(f"{FD}.{'Constant' if bus.data_rate is None else 'Switched'}_Rate")
+    return call(f"{FD}.Fd_Data_Frame", **head, Words=packed, Rate=rate)
+
+
+def _send_body(system: System, bus: Bus, message: Message) -> Subprogram:
+    frame = call(f"{ANY}.To_Any", _frame(bus, message))
     lost: list[Stmt] = [
         Do(
             "Health_Counts.Counters.Record_Fault",
@@ -167,8 +195,6 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     declarations: list[Decl] = [
         UseType("Ravenchart.Can.Identifier"),
         UseType("Ravenchart.Can.Frame_Format"),
-        UseType("Ravenchart.Can.Frame_Kind"),
-        UseType("Ravenchart.Can.Data_Length"),
         Object("Valid", "Boolean"),
     ]
     for message in received:
@@ -177,8 +203,8 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         matches = Chain(
             "and then",
             (
-                equal(Ref("Frame.Id"), number(message.identifier)),
-                equal(Ref("Frame.Format"), _format(message)),
+                equal(call(f"{ANY}.Id", Ref("Frame")), number(message.identifier)),
+                equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
             ),
         )
         puts = tuple(
@@ -187,25 +213,23 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         )
         unpack = Do(
             f"Codecs.Unpack_{codec_name(message)}",
-            arguments(call("Ravenchart.Can.Payload", Ref("Frame")), Ref(item), Ref("Valid")),
+            arguments(_data(message), Ref(item), Ref("Valid")),
         )
-        good = Chain(
-            "and then",
-            (
-                Ref("Valid"),
-                equal(Ref("Frame.Kind"), Ref("Ravenchart.Can.Data")),
-                equal(Ref("Frame.Length"), number(message.length)),
-            ),
-        )
+        family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
+        carried = call(f"{ANY}.Carries", Ref("Frame"), family, number(message.length))
+        good = Chain("and then", (Ref("Valid"), carried))
         deliver = (*note(system, "Arrived", message.name, "message"), *puts)
         rows.append((matches, (unpack, If(((good, deliver),)))))
-    declarations = [d for d in declarations if d != UseType("Ravenchart.Can.Data_Length")]
     body: tuple[Decl, ...] = (
-        Object("Frame", "Ravenchart.Can.Frame", Ref("Ravenchart.Can.Null_Frame")),
-        Subprogram("Wait", body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"))),)),
+        Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
+        Subprogram(
+            "Wait",
+            declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
+            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref("Unused_Stamp"))),),
+        ),
         Subprogram("Run_Receive", declarations=tuple(declarations), body=(If(tuple(rows)),)),
     )
-    context = {f"{root}.Codecs"}
+    context = {f"{root}.Codecs", ANY}
     context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
@@ -213,3 +237,11 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         Unit(header, (), Package(name, spec, (SPARK,))),
         Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
     ]
+
+
+def _data(message: Message) -> Expr:
+    """The data of a frame, as the codec of a message takes them."""
+    if not message.fd:
+        return call(f"{ANY}.Payload", Ref("Frame"))
+    words = f"{ANY}.Words (Frame)"
+    return Ref(f"{words} (0)" if words_of(message) == 1 else words)

@@ -11,11 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Set
 from dataclasses import dataclass
+from fractions import Fraction
 
 from ..claims import Claim, Claims
 from ..identifiers import leading
 from ..model import Bus, Message, Reception, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
+from .certificate_frames import explained, length_terms, rate_terms, span
 from .certificate_terms import (
     ONE,
     SLOW,
@@ -51,16 +53,8 @@ def _of(system: System, bus: Bus) -> list[Message]:
 def bus_terms(system: System, bus: Bus) -> list[Decl]:
     """What is known of a bus and its messages."""
     own = ada_case(bus.name)
-    words = (
-        f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. Of a message, "
-        "Stuffed: bits that stuffing can lengthen by a quarter; Bits: the longest frame, with 10 "
-        "bits that are not stuffed and 3 to the next frame."
-    )
-    items: list[Decl] = [
-        Comment(words),
-        stated(f"{own}_Bit_Rate", bus.bit_rate),
-        named(f"{own}_Bit", ceiling(number(10**9), Ref(f"{own}_Bit_Rate"))),
-    ]
+    words = f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. Of a message, "
+    items: list[Decl] = [Comment(words + explained(bus)), *rate_terms(bus)]
     if bus.errors is not None:
         hit = f"[{bus.name}] errors: so many at once, one more every T, bits lost to each"
         items += [
@@ -70,29 +64,24 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
             stated(f"{own}_Error_Bits", ERROR_BITS),
         ]
     for message in _of(system, bus):
-        items += _terms(message, own)
+        items += _terms(message, bus)
     return items
 
 
-def _terms(message: Message, bus: str) -> list[Decl]:
+def _terms(message: Message, bus: Bus) -> list[Decl]:
     """What is known of a message."""
     own = name_of(message.element)
-    exposed = 54 if message.extended else 34
     width = 29 if message.extended else 11
     sender = "somebody outside" if message.source is None else str(message.source)
     words = (
         f"[{message.element}] {width}-bit identifier {message.identifier:#x}, {message.length} "
-        f"bytes from {sender}"
+        f"bytes{' of CAN FD' if message.fd else ''} from {sender}"
     )
-    stuffed = Ref(f"{own}_Stuffed")
-    longest = plus(stuffed, number(13), Chain("/", (Chain("-", (stuffed, number(1))), number(4))))
     items: list[Decl] = [
         Comment(words),
         stated(f"{own}_T", message.period),
         stated(f"{own}_D", message.limit),
-        named(f"{own}_Stuffed", Ref(f"{exposed} + 8 * {message.length}")),
-        named(f"{own}_Bits", longest),
-        named(f"{own}_C", ceiling(times(Ref(f"{own}_Bits"), Ref("10**9")), Ref(f"{bus}_Bit_Rate"))),
+        *length_terms(message, bus),
     ]
     if message.source is None:
         items.append(stated(f"{own}_J", 0))
@@ -108,6 +97,7 @@ def _terms(message: Message, bus: str) -> list[Decl]:
 class _Level:
     """What goes before a message, itself included, and what can go behind."""
 
+    bus: Bus
     message: Message
     before: list[Message]
     behind: list[Message]
@@ -116,19 +106,22 @@ class _Level:
     @property
     def blocking(self) -> Expr:
         """The longest frame that may have begun."""
-        longest = max(self.behind, key=_bits, default=None)
+        longest = max(self.behind, key=self._span, default=None)
         return number(0) if longest is None else Ref(f"{name_of(longest.element)}_C")
 
     @property
     def longest(self) -> str:
         """The longest frame that an error may spoil."""
-        return name_of(max(self.before, key=_bits).element)
+        return name_of(max(self.before, key=self._span).element)
 
-    def lost(self, bus: Bus, window: Expr) -> list[Expr]:
+    def _span(self, message: Message) -> Fraction:
+        return span(message, self.bus)
+
+    def lost(self, window: Expr) -> list[Expr]:
         """The time lost to errors within a window."""
-        if bus.errors is None:
+        if self.bus.errors is None:
             return []
-        line = ada_case(bus.name)
+        line = ada_case(self.bus.name)
         count = plus(Ref(f"{line}_Error_Burst - 1"), ceiling(window, Ref(f"{line}_Error_T")))
         bits = times(Ref(f"{line}_Error_Bits"), Ref(f"{line}_Bit"))
         return [times(count, plus(bits, Ref(f"{self.longest}_C")))]
@@ -149,19 +142,14 @@ class _Level:
         )
 
 
-def _bits(message: Message) -> int:
-    """The length of the longest frame, in bits, but for what all frames have."""
-    return 10 * message.length + (25 if message.extended else 0)
-
-
 def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> list[Decl]:
     """The instances of each message, and what they show of its response; then those handed over."""
     order = _of(system, bus)
     items = _waits(system, bus, order, claims)
     for number_, message in enumerate(order, 1):
         reach = len(order) if message.source is not None else number_
-        level = _Level(message, order[:reach], order[reach:], system.queue)
-        items += _of_message(bus, level, claims)
+        level = _Level(bus, message, order[:reach], order[reach:], system.queue)
+        items += _of_message(level, claims)
     for message in order:
         for one in system.receptions(message):
             if one.element in handed:
@@ -178,7 +166,7 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     works = [
         times(within(name_of(m.element), busiest), Ref(f"{name_of(m.element)}_C")) for m in order
     ]
-    lost = _Level(order[0], order, [], system.queue).lost(bus, busiest)
+    lost = _Level(bus, order[0], order, [], system.queue).lost(busiest)
     problem = "can be busy longer than claimed"
     items = [
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
@@ -197,10 +185,10 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     return items
 
 
-def _of_message(bus: Bus, level: _Level, claims: Claims) -> list[Decl]:
+def _of_message(level: _Level, claims: Claims) -> list[Decl]:
     """The claim about one message."""
     message, claim = level.message, claims.of(level.message.element)
-    own, line = name_of(message.element), ada_case(bus.name)
+    own, line = name_of(message.element), ada_case(level.bus.name)
 
     def rivals(window: Expr, others: list[Message]) -> list[Expr]:
         return [
@@ -212,11 +200,11 @@ def _of_message(bus: Bus, level: _Level, claims: Claims) -> list[Decl]:
         others = [m for m in level.before if m is not message]
         earlier = [times(number(instance), Ref(f"{own}_C"))] if instance else []
         until = plus(window, Ref(f"{line}_Bit"))
-        hit = level.lost(bus, plus(window, Ref(f"{own}_C")))
+        hit = level.lost(plus(window, Ref(f"{own}_C")))
         return plus(level.blocking, *earlier, *rivals(until, others), *hit)
 
     def busy(window: Expr) -> Expr:
-        return plus(level.blocking, *rivals(window, level.before), *level.lost(bus, window))
+        return plus(level.blocking, *rivals(window, level.before), *level.lost(window))
 
     words = f"[{message.element}] what can delay it: frames that go before it"
     if level.behind:

@@ -49,6 +49,7 @@ from .coding import (
     WORD,
     Coding,
     all_of,
+    as_bits,
     container,
     literal_name,
     placed,
@@ -59,6 +60,9 @@ from .naming import ada_case, default_value, scalar, type_name
 
 WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
 """The words of a CAN FD frame."""
+
+FD_WORDS = 8
+"""How many there are."""
 
 
 def codec_name(message: Message) -> str:
@@ -89,7 +93,9 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
         spec.append(UseType(NUMBER))
     codings = {c.name.lower(): c for codec in codecs for c in codec.codings.values()}
     spec += [c.spec() for c in codings.values()]
-    body: list[Decl] = [c.body() for c in codings.values()]
+    counted = any(c.is_wide_number for c in codings.values())
+    body: list[Decl] = [as_bits()] if counted else []
+    body += [c.body() for c in codings.values()]
     for codec in codecs:
         spec += codec.spec()
         body += codec.body()
@@ -114,6 +120,11 @@ class _Codec:
         self.frame_type = WORD if self.words == 1 else WORDS
         self.label = message.type.name if self.name == ada_case(message.type.name) else message.name
         self.selector = next((s for s in self.signals if s.selects), None)
+
+    @property
+    def _joined(self) -> str:
+        """What makes a frame of raw values."""
+        return f"{self.frame}_Of_{self.name}"
 
     def _raw_name(self, signal: Signal) -> str:
         return f"{self.name}_{ada_case(signal.name)}_Raw"
@@ -255,7 +266,7 @@ class _Codec:
 
     def _join(self) -> Subprogram:
         """The words of all raw values: bits alone, which is what provers of bit vectors like."""
-        name = f"Word_Of_{self.name}"
+        name = self._joined
         params = tuple(Param(self._local(s), "in", container(s)) for s in self.signals)
         selected = self._selected_local()
         fits: list[Expr] = []
@@ -277,7 +288,8 @@ class _Codec:
         joined = words[0]
         if self.words > 1:
             parts = [Arg(str(index), word) for index, word in enumerate(words)]
-            joined = Aggregate((*parts, Arg("others", number(0))))
+            rest = () if self.words == FD_WORDS else (Arg("others", number(0)),)
+            joined = Aggregate((*parts, *rest))
         return Subprogram(
             name,
             params,
@@ -294,7 +306,7 @@ class _Codec:
             if there is not None:
                 taken = IfExpr(((there, taken),), number(0))
             declarations.append(Object(self._local(s), container(s), taken, constant=True))
-        word = call(f"Word_Of_{self.name}", *(Ref(self._local(s)) for s in self.signals))
+        word = call(self._joined, *(Ref(self._local(s)) for s in self.signals))
         return Subprogram(
             f"Pack_{self.name}",
             (Param("Item", "in", self.ada_type),),

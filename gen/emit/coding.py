@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from ..model import System
 from ..signals import Signal, automatic
-from ..terms import EnumerationType
+from ..terms import EnumerationType, IntegerType
 from .ada import (
     TRUE,
     Aspect,
@@ -37,6 +37,8 @@ from .naming import ada_case, type_name
 
 WORD = "Interfaces.Unsigned_64"
 NUMBER = "Ravenchart.Number"
+AS_BITS = "Whole_As_Bits"
+"""A number in as many bits as it has: by itself, which provers are slow to see elsewhere."""
 
 
 def container(signal: Signal) -> str:
@@ -83,6 +85,11 @@ class Coding:
         self.ada_type = type_name(system, signal.type)
         self.container = container(signal)
 
+    @property
+    def is_wide_number(self) -> bool:
+        """Does it need `as_bits`?"""
+        return self.container == WORD and isinstance(self.signal.type, IntegerType)
+
     def valid(self, raw: Expr) -> Expr:
         """Do these bits stand for a value?"""
         low, high = self.signal.raw_range
@@ -125,9 +132,12 @@ class Coding:
             position = call(f"{self.ada_type}'Pos", Ref("Item"))
             return replace(made, expression=call(self.container, position))
         #  provers go from integers to bits in steps: a number, its bits, what they count
-        last = (1 << self.signal.width) - 1
-        whole = Object("Whole", f"{NUMBER} range 0 .. {last:_}", self._whole(), constant=True)
-        raw = Object("Raw", self.container, call(self.container, Ref("Whole")), constant=True)
+        last = f"{(1 << self.signal.width) - 1:_}"
+        made_bits = self.container
+        if self.is_wide_number:
+            last, made_bits = f"2**{self.signal.width} - 1", AS_BITS
+        whole = Object("Whole", f"{NUMBER} range 0 .. {last}", self._whole(), constant=True)
+        raw = Object("Raw", self.container, call(made_bits, Ref("Whole")), constant=True)
         kept = Pragma("Assert", (equal(call(NUMBER, Ref("Raw")), Ref("Whole")),))
         return replace(made, declarations=(whole, raw), body=(kept, Return(Ref("Raw"))))
 
@@ -171,6 +181,21 @@ class Coding:
         if low < 0 <= high:
             return IfExpr(((Chain(">=", (counted, number(offset))), above),), below)
         return below if high < 0 else above
+
+
+def as_bits() -> Subprogram:
+    """`AS_BITS`."""
+    whole = Ref("Whole")
+    return Subprogram(
+        AS_BITS,
+        (Param("Whole", "in", NUMBER),),
+        WORD,
+        aspects=(
+            Aspect("Pre", Chain(">=", (whole, number(0)))),
+            Aspect("Post", equal(call(NUMBER, Ref(f"{AS_BITS}'Result")), whole)),
+        ),
+        expression=call(WORD, whole),
+    )
 
 
 def _more(term: Expr, addend: int) -> Expr:

@@ -11,12 +11,12 @@ accepted, and a sum over all that was unpacked and packed.
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from gen.emit.ada import Ref
-from gen.emit.codecs import codec_name, words_of
+from gen.emit.codecs import WORDS, codec_name, words_of
 from gen.emit.coding import literal_name
 from gen.emit.naming import ada_case, default_value, type_name
 from gen.model import Message, System
@@ -59,10 +59,11 @@ def main_text(system: System, frames: int) -> str:
     """The program."""
     name = ada_case(system.name)
     return f"""
-with Ada.Text_IO; with Interfaces; with {name}.Codecs;
+with Ada.Text_IO; with Interfaces; with Ravenchart.Can.Fd_Frames; with {name}.Codecs;
 procedure Fuzzer is
-   use {name}; use type Interfaces.Unsigned_64;
+   use {name}; use type Interfaces.Unsigned_64; use type {WORDS};
    subtype Bits is Interfaces.Unsigned_64;
+   subtype Words is {WORDS};
    Wrong : exception;
    Seed : Bits := 16#9E37_79B9_7F4A_7C15#;
    Sum  : Bits := 0;
@@ -73,15 +74,32 @@ procedure Fuzzer is
       Seed := Seed xor Interfaces.Shift_Left (Seed, 17);
       return Seed;
    end Random;
-   function Drawn (Near : Bits; Length : Natural) return Bits is
+   function Room (Length, Word : Natural) return Bits is  --  a mask of the bytes in that word
+     (if Length >= 8 * Word + 8 then Bits'Last
+      elsif Length <= 8 * Word then 0
+      else Interfaces.Shift_Left (1, 8 * (Length - 8 * Word)) - 1);
+   function Drawn (Near : Words; Length : Natural) return Words is
       Found : constant Bits := Random;
       Place : constant Natural := Natural (Found / 2 mod Bits'Max (1, Bits (8 * Length)));
-      Whole : constant Bits :=
-        (if Length = 8 then Bits'Last else Interfaces.Shift_Left (1, 8 * Length) - 1);
+      Made  : Words := Near;
    begin
-      return
-        (if Found mod 2 = 0 then Random else Near xor Interfaces.Shift_Left (1, Place)) and Whole;
+      if Found mod 2 = 1 then
+         Made (Place / 64) := Made (Place / 64) xor Interfaces.Shift_Left (1, Place mod 64);
+      end if;
+      for I in Made'Range loop
+         if Found mod 2 = 0 then
+            Made (I) := Random;
+         end if;
+         Made (I) := Made (I) and Room (Length, I);
+      end loop;
+      return Made;
    end Drawn;
+   procedure Add (Frame : Words; Length : Natural) is
+   begin
+      for I in 0 .. (Length - 1) / 8 loop
+         Sum := (Sum xor Frame (I)) * 16#100_0000_01B3#;
+      end loop;
+   end Add;
    procedure Expect (Fact : Boolean) is
    begin
       if not Fact then
@@ -100,8 +118,8 @@ end Fuzzer;
 
 
 def _procedure(system: System, message: Message, frames: int) -> str:
-    assert words_of(message) == 1
     codec, of_type = codec_name(message), type_name(system, message.type)
+    part = " (0)" if words_of(message) == 1 else ""
     in_range = " and then ".join(f"{_item(signal)}'Valid" for signal in message.signals)
     default = default_value(system, message.type)
     assert isinstance(default, Ref)
@@ -109,23 +127,26 @@ def _procedure(system: System, message: Message, frames: int) -> str:
    procedure Fuzz_{ada_case(message.name)} is
       use type {of_type};
       Item : {of_type}; Valid : Boolean;
-      Frame, Again, Near, Mask : Bits := 0;
+      Frame, Again, Near, Mask : Words := (others => 0);
       Accepted : Natural := 0;
    begin
       for I in 1 .. {frames} loop
          Frame := Drawn (Near, {message.length});
-         Codecs.Unpack_{codec} (Frame, Item, Valid);
+         Codecs.Unpack_{codec} (Frame{part}, Item, Valid);
          if Valid then
             Expect ({in_range});
             {_mask(system, message)}
-            Again := Codecs.Pack_{codec} (Item);
-            Expect (Again = (Frame and Mask));
+            Again{part} := Codecs.Pack_{codec} (Item);
+            for I in Mask'Range loop
+               Mask (I) := Mask (I) and Frame (I);
+            end loop;
+            Expect (Again = Mask);
             Near := Frame;
             Accepted := Accepted + 1;
-            Sum := (Sum xor Again) * 16#100_0000_01B3#;
+            Add (Again, {message.length});
          else
             Expect (Item = {default.text});
-            Sum := (Sum xor Frame) * 16#100_0000_01B3#;
+            Add (Frame, {message.length});
          end if;
       end loop;
       Tell ("{message.name}", Accepted);
@@ -139,17 +160,19 @@ def _item(signal: Signal) -> str:
 
 def _mask(system: System, message: Message) -> str:
     """What sets Mask to the bits of the signals that are in the frame."""
-    common = _bits(signal for signal in message.signals if not signal.pages)
-    text = f"Mask := {common};"
+    text = "Mask := (others => 0);"
     selector = next((s for s in message.signals if s.selects), None)
     for signal in message.signals:
+        added = _added(signal)
         if selector is not None and signal.pages:
             values = [literal_name(system, selector, selector.value(p)) for p in signal.pages]
-            text += f" if {_item(selector)} in {' | '.join(values)} then"
-            text += f" Mask := Mask or {_bits([signal])}; end if;"
+            added = f" if {_item(selector)} in {' | '.join(values)} then {added} end if;"
+        text += added
     return text
 
 
-def _bits(signals: Iterable[Signal]) -> str:
-    """The bits of signals in a frame, as a mask."""
-    return f"16#{sum(1 << bit for signal in signals for bit in signal.bits()):X}#"
+def _added(signal: Signal) -> str:
+    """What adds the bits of a signal to Mask."""
+    bits = sum(1 << bit for bit in signal.bits())
+    words = ((index, bits >> 64 * index & (1 << 64) - 1) for index in range(8))
+    return " ".join(f"Mask ({i}) := Mask ({i}) or 16#{word:X}#;" for i, word in words if word)

@@ -58,10 +58,6 @@ def _cases(system: System, message: Message) -> tuple[str, str]:
 
 def main_text(system: System) -> str:
     """The program."""
-    wide = any(words_of(m) > 1 for m in system.messages)
-    withs = "with Ravenchart.Can.Fd_Frames;" if wide else ""
-    words = WORDS if wide else "Word_Array"
-    declared = "" if wide else "type Word_Array is array (0 .. 7) of Interfaces.Unsigned_64;"
     packs, unpacks = zip(*(_cases(system, m) for m in system.messages), strict=True)
     arms = [
         "\n".join(f"when {index} => {text}" for index, text in enumerate(texts))
@@ -69,12 +65,11 @@ def main_text(system: System) -> str:
     ]
     return f"""
 with Ada.Text_IO; with Ada.Long_Long_Integer_Text_IO; with Interfaces;
-with {ada_case(system.name)}.Codecs; {withs}
+with Ravenchart.Can.Fd_Frames; with {ada_case(system.name)}.Codecs;
 procedure Runner is
    use Ada.Text_IO; use Ada.Long_Long_Integer_Text_IO; use {ada_case(system.name)};
    use type Interfaces.Unsigned_64;
-   {declared}
-   F : {words} := (others => 0);
+   F : {WORDS} := (others => 0);
    Kind : Character;
    Number, N : Long_Long_Integer;
    procedure Put_Bytes (Length : Natural) is

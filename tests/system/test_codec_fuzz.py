@@ -20,6 +20,7 @@ FRAMES = 1_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 5_000
 MODELS = [
     ROOT / "tests" / "feature" / "signals" / "model.yaml",
     ROOT / "tests" / "feature" / "pages" / "model.yaml",
+    ROOT / "tests" / "feature" / "flexible" / "model.yaml",
     ROOT / "examples" / "cartesian_robot" / "model.yaml",
 ]
 

@@ -25,6 +25,7 @@ from tests.support.elsewhere import needed
 CASES = {
     "signals": ROOT / "tests" / "feature" / "signals",
     "pages": ROOT / "tests" / "feature" / "pages",
+    "flexible": ROOT / "tests" / "feature" / "flexible",
     "robot": ROOT / "examples" / "cartesian_robot",
 }
 

@@ -1,15 +1,15 @@
-"""CAN FD in models: laid out, checked and analysed; not generated yet."""
+"""CAN FD in models: laid out, checked, analysed and generated."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
 
 from analysis.timing import analyse
+from gen.generate import generate
 from gen.model import System
-from ravenchart.__main__ import OK, WRONG, main
+from ravenchart import steps
 from tests.support.pump import PUMP, loaded
 
 FIELDS = [f"part_{letter}" for letter in "abcdefghijklmnopqrst"]
@@ -56,20 +56,42 @@ def test_a_frame_of_up_to_eight_bytes_may_be_fd_too() -> None:
     assert message.length == 2
 
 
-def test_an_fd_model_is_checked_and_analysed_and_not_generated(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def files_of(text: str, tmp_path: Path) -> dict[str, str]:
     model = tmp_path / "model.yaml"
-    model.write_text(FAST, encoding="utf-8")
-    assert main(["check", str(model)]) == OK
-    assert main(["analyse", str(model), "--html", str(tmp_path / "report.html")]) == OK
-    assert "327" in (tmp_path / "report.html").read_text(encoding="utf-8")
-    capsys.readouterr()
-    for command in ("generate", "build", "run"):
-        assert main([command, str(model)]) == WRONG
-        told = capsys.readouterr().err
-        assert re.search(r"valve_out is a CAN FD frame: CAN FD is analysed, not gen.*RV-0804", told)
-    assert not (tmp_path / "generated").exists()
+    model.write_text(text, encoding="utf-8")
+    checked = steps.check(model)
+    return generate(checked.system, steps.claims(checked))
+
+
+@pytest.mark.parametrize(("text", "rate"), [(FAST, "Switched"), (WIDE, "Constant")])
+def test_a_frame_is_sent_at_the_data_rate_where_there_is_one(
+    text: str, rate: str, tmp_path: Path
+) -> None:
+    body = files_of(text, tmp_path)["pump_house-can_bus.adb"]
+    assert f"Rate => Ravenchart.Can.Fd_Frames.{rate}_Rate" in body
+    assert "Words => Codecs.Pack_Report (Item)" in body
+
+
+FOREIGN = PUMP.replace(
+    "  level_in:", "  far: {bus: can_bus, id: 9, bytes: 48, format: fd, period: 1 s}\n  level_in:"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "setting"),
+    [
+        (PUMP, "(Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => False)"),
+        (FAST, "(Bit_Rate => 500_000, Data_Rate => 2_000_000, Takes_Fd => True)"),
+        (WIDE, "(Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => True)"),
+        #  a classic controller would destroy the frames that others exchange
+        (FOREIGN, "(Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => True)"),
+    ],
+)
+def test_the_controller_takes_fd_where_such_frames_are_on_its_bus(
+    text: str, setting: str, tmp_path: Path
+) -> None:
+    spec = files_of(text, tmp_path)["pump_house-can_bus.ads"]
+    assert f"Setting => {setting}" in " ".join(spec.split())
 
 
 @pytest.mark.parametrize("rate", ["5 kbit/s", "20 Mbit/s", "fast"])

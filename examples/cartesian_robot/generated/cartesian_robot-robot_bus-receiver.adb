@@ -9,36 +9,43 @@ with Cartesian_Robot.Joint_X;
 with Cartesian_Robot.Joint_Y;
 with Cartesian_Robot.Joint_Z;
 with Cartesian_Robot.Trace;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Traces;
 
 package body Cartesian_Robot.Robot_Bus.Receiver
 with SPARK_Mode
 is
-   Frame : Ravenchart.Can.Frame := Ravenchart.Can.Null_Frame;
+   Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
+     Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
    procedure Wait is
+      Unused_Stamp : Ravenchart.Nanoseconds;
    begin
-      Controller.Wait_Frame (Frame);
+      Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
    procedure Run_Receive is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
-      use type Ravenchart.Can.Frame_Kind;
       Valid : Boolean;
       Robot_Command_Item : Cartesian_Robot.Robot_Order;
       X_Feedback_Item : Cartesian_Robot.Drive_Feedback;
       Y_Feedback_Item : Cartesian_Robot.Drive_Feedback;
       Z_Feedback_Item : Cartesian_Robot.Drive_Feedback;
    begin
-      if Frame.Id = 128 and then Frame.Format = Ravenchart.Can.Standard then
+      if Ravenchart.Can.Any_Frames.Id (Frame) = 128
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
+      then
          Codecs.Unpack_Robot_Order
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Robot_Command_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 8
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 8)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
@@ -46,15 +53,19 @@ is
                0);
             Coordinator.Put_Command (Robot_Command_Item);
          end if;
-      elsif Frame.Id = 288 and then Frame.Format = Ravenchart.Can.Standard
+      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 288
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
       then
          Codecs.Unpack_Drive_Feedback
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             X_Feedback_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 6
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 6)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
@@ -62,15 +73,19 @@ is
                0);
             Joint_X.Put_Feedback (X_Feedback_Item);
          end if;
-      elsif Frame.Id = 289 and then Frame.Format = Ravenchart.Can.Standard
+      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 289
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
       then
          Codecs.Unpack_Drive_Feedback
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Y_Feedback_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 6
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 6)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
@@ -78,15 +93,19 @@ is
                0);
             Joint_Y.Put_Feedback (Y_Feedback_Item);
          end if;
-      elsif Frame.Id = 290 and then Frame.Format = Ravenchart.Can.Standard
+      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 290
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
       then
          Codecs.Unpack_Drive_Feedback
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Z_Feedback_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 6
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 6)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,

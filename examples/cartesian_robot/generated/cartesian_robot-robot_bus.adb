@@ -6,6 +6,7 @@ with Cartesian_Robot.Codecs;
 with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Trace;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -17,11 +18,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 384,
-            Format => Ravenchart.Can.Standard,
-            Length => 6,
-            Payload => Codecs.Pack_Robot_Report (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 384,
+               Format => Ravenchart.Can.Standard,
+               Length => 6,
+               Payload => Codecs.Pack_Robot_Report (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -43,11 +45,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 272,
-            Format => Ravenchart.Can.Standard,
-            Length => 3,
-            Payload => Codecs.Pack_Drive_Set_Point (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 272,
+               Format => Ravenchart.Can.Standard,
+               Length => 3,
+               Payload => Codecs.Pack_Drive_Set_Point (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -69,11 +72,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 273,
-            Format => Ravenchart.Can.Standard,
-            Length => 3,
-            Payload => Codecs.Pack_Drive_Set_Point (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 273,
+               Format => Ravenchart.Can.Standard,
+               Length => 3,
+               Payload => Codecs.Pack_Drive_Set_Point (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -95,11 +99,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 274,
-            Format => Ravenchart.Can.Standard,
-            Length => 3,
-            Payload => Codecs.Pack_Drive_Set_Point (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 274,
+               Format => Ravenchart.Can.Standard,
+               Length => 3,
+               Payload => Codecs.Pack_Drive_Set_Point (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

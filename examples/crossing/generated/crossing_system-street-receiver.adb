@@ -6,6 +6,7 @@ with Crossing_System.Codecs;
 with Crossing_System.Elements;
 with Crossing_System.School;
 with Crossing_System.Trace;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Traces;
 
 package body Crossing_System.Street.Receiver
@@ -16,29 +17,35 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   Frame : Ravenchart.Can.Frame := Ravenchart.Can.Null_Frame;
+   Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
+     Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
    procedure Wait is
+      Unused_Stamp : Ravenchart.Nanoseconds;
    begin
-      Controller.Wait_Frame (Frame);
+      Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
    procedure Run_Receive is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
-      use type Ravenchart.Can.Frame_Kind;
       Valid : Boolean;
       Order_Item : Crossing_System.Order;
       Button_Item : Crossing_System.Press;
    begin
-      if Frame.Id = 256 and then Frame.Format = Ravenchart.Can.Standard then
+      if Ravenchart.Can.Any_Frames.Id (Frame) = 256
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
+      then
          Codecs.Unpack_Order
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Order_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 1
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 1)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
@@ -46,15 +53,19 @@ is
                0);
             School.Put_Order (Order_Item);
          end if;
-      elsif Frame.Id = 272 and then Frame.Format = Ravenchart.Can.Standard
+      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 272
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
       then
          Codecs.Unpack_Press
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Button_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 1
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 1)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,

@@ -6,6 +6,7 @@ with Crossing_System.Codecs;
 with Crossing_System.Elements;
 with Crossing_System.Health_Counts;
 with Crossing_System.Trace;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -22,11 +23,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 288,
-            Format => Ravenchart.Can.Standard,
-            Length => 1,
-            Payload => Codecs.Pack_Car_Light (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 288,
+               Format => Ravenchart.Can.Standard,
+               Length => 1,
+               Payload => Codecs.Pack_Car_Light (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -48,11 +50,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 289,
-            Format => Ravenchart.Can.Standard,
-            Length => 1,
-            Payload => Codecs.Pack_Walk_Light (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 289,
+               Format => Ravenchart.Can.Standard,
+               Length => 1,
+               Payload => Codecs.Pack_Walk_Light (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -74,11 +77,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 290,
-            Format => Ravenchart.Can.Standard,
-            Length => 1,
-            Payload => Codecs.Pack_Boolean (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 290,
+               Format => Ravenchart.Can.Standard,
+               Length => 1,
+               Payload => Codecs.Pack_Boolean (Item))),
          Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Sign_Message, 0);
       if Status /= Ravenchart.Can.Queued then

@@ -6,6 +6,7 @@ with Infusion_System.Codecs;
 with Infusion_System.Elements;
 with Infusion_System.Health_Counts;
 with Infusion_System.Trace;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -22,11 +23,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 257,
-            Format => Ravenchart.Can.Standard,
-            Length => 2,
-            Payload => Codecs.Pack_Portion (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 257,
+               Format => Ravenchart.Can.Standard,
+               Length => 2,
+               Payload => Codecs.Pack_Portion (Item))),
          Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
       if Status /= Ravenchart.Can.Queued then
@@ -45,11 +47,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 273,
-            Format => Ravenchart.Can.Standard,
-            Length => 3,
-            Payload => Codecs.Pack_View (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 273,
+               Format => Ravenchart.Can.Standard,
+               Length => 3,
+               Payload => Codecs.Pack_View (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

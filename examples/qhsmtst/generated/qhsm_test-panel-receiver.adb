@@ -6,6 +6,7 @@ with Qhsm_Test.Codecs;
 with Qhsm_Test.Elements;
 with Qhsm_Test.Test;
 with Qhsm_Test.Trace;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Traces;
 
 package body Qhsm_Test.Panel.Receiver
@@ -16,28 +17,34 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   Frame : Ravenchart.Can.Frame := Ravenchart.Can.Null_Frame;
+   Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
+     Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
    procedure Wait is
+      Unused_Stamp : Ravenchart.Nanoseconds;
    begin
-      Controller.Wait_Frame (Frame);
+      Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
    procedure Run_Receive is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
-      use type Ravenchart.Can.Frame_Kind;
       Valid : Boolean;
       Key_Item : Qhsm_Test.Key;
    begin
-      if Frame.Id = 256 and then Frame.Format = Ravenchart.Can.Standard then
+      if Ravenchart.Can.Any_Frames.Id (Frame) = 256
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
+      then
          Codecs.Unpack_Key
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Key_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 1
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 1)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,

@@ -30,5 +30,6 @@ is
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
-      Accepts => Accepts);
+      Accepts => Accepts,
+      Setting => (Bit_Rate => 125_000, Data_Rate => 0, Takes_Fd => False));
 end Qhsm_Test.Panel;

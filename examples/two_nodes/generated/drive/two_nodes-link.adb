@@ -2,6 +2,7 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 with Two_Nodes.Codecs;
@@ -22,11 +23,12 @@ is
       Status : Ravenchart.Can.Send_Status;
    begin
       Controller.Send
-        (Ravenchart.Can.Data_Frame
-           (Id => 2,
-            Format => Ravenchart.Can.Standard,
-            Length => 3,
-            Payload => Codecs.Pack_Servo_Report (Item)),
+        (Ravenchart.Can.Any_Frames.To_Any
+           (Ravenchart.Can.Data_Frame
+              (Id => 2,
+               Format => Ravenchart.Can.Standard,
+               Length => 3,
+               Payload => Codecs.Pack_Servo_Report (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

@@ -2,6 +2,7 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Traces;
 with Two_Nodes.Codecs;
 with Two_Nodes.Elements;
@@ -16,28 +17,34 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   Frame : Ravenchart.Can.Frame := Ravenchart.Can.Null_Frame;
+   Frame : Ravenchart.Can.Any_Frames.Any_Frame :=
+     Ravenchart.Can.Any_Frames.Null_Any_Frame;
 
    procedure Wait is
+      Unused_Stamp : Ravenchart.Nanoseconds;
    begin
-      Controller.Wait_Frame (Frame);
+      Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
    procedure Run_Receive is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
-      use type Ravenchart.Can.Frame_Kind;
       Valid : Boolean;
       Servo_Report_Item : Two_Nodes.Servo_Report;
    begin
-      if Frame.Id = 2 and then Frame.Format = Ravenchart.Can.Standard then
+      if Ravenchart.Can.Any_Frames.Id (Frame) = 2
+         and then Ravenchart.Can.Any_Frames.Format (Frame)
+           = Ravenchart.Can.Standard
+      then
          Codecs.Unpack_Servo_Report
-           (Ravenchart.Can.Payload (Frame),
+           (Ravenchart.Can.Any_Frames.Payload (Frame),
             Servo_Report_Item,
             Valid);
          if Valid
-            and then Frame.Kind = Ravenchart.Can.Data
-            and then Frame.Length = 3
+            and then Ravenchart.Can.Any_Frames.Carries
+                (Frame,
+                 Ravenchart.Can.Any_Frames.Classic,
+                 3)
          then
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,

@@ -30,7 +30,8 @@ is
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
-      Accepts => Accepts);
+      Accepts => Accepts,
+      Setting => (Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => False));
 
    procedure Send_Supervisor_Order (Item : Two_Nodes.Servo_Order);
    --  [supervisor_order] hand one frame to the controller; never blocks.
