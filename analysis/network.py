@@ -89,7 +89,7 @@ def _frame(message: Message, bus: model.Bus, system: System) -> Frame:
         deadline=message.limit,
         cost=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
         queue=system.queue(message),
-        reloaded=message.source is not None,
+        reloaded=system.queue(message) != "",
     )
 
 

@@ -84,6 +84,7 @@ def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
         Ns(form.driver_wcet),
         None if form.errors is None else BusErrors(Ns(form.errors.period), form.errors.burst),
         form.data_rate,
+        by_priority=form.buffers == "priority",
         audsley=form.identifiers == "audsley",
     )
 

@@ -94,6 +94,8 @@ class Bus:
     """In bit/s, of the data of CAN FD frames; None: that of the rest."""
     takes_fd: bool = False
     """There are CAN FD frames on it, or a rate for them."""
+    by_priority: bool = False
+    """A controller offers the most urgent of its frames, not the oldest."""
     audsley: bool = False
     """Identifiers that the model does not give are found by the analysis; else by deadline."""
 
@@ -437,8 +439,10 @@ class System:
         return self.nodes[0].name if len(self.nodes) == 1 else self.instance(end.instance).node
 
     def queue(self, message: Message) -> str:
-        """The queue of the controller that sends a message; "" for one from outside."""
-        return "" if message.source is None else f"{self.sender(message)}.{message.bus}"
+        """The first-in first-out queue of the controller that sends a message; "" for none."""
+        if message.source is None or self.bus(message.bus).by_priority:
+            return ""
+        return f"{self.sender(message)}.{message.bus}"
 
     def node(self, name: str) -> Node:
         """The node called ``name``; KeyError where there is none."""

@@ -7,12 +7,19 @@ from collections.abc import Iterator
 from .calls import callers
 from .commands import Remote
 from .diagnostics import Diagnostic, error
+from .quantities import shown
 from .remote import is_across, obstacle
 from .resolve import Resolved
 from .terms import Origin
 
 ABSENT = "RV-0802"
 """What cannot reach from one node to another yet."""
+
+ROOM = "RV-0617"
+"""Transmit buffers by priority that do not hold what a node sends."""
+
+BUFFERS = 8
+"""Transmit buffers that the drivers with buffers by priority fill."""
 
 
 def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -78,7 +85,35 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
                 yield error("RV-0707", processor.origin, text, hint=hint)
 
 
+def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
+    """By priority, each message that a node sends has a transmit buffer for itself."""
+    system = resolved.system
+    for bus in system.buses:
+        if not bus.by_priority:
+            continue
+        if bus.transmit_depth > BUFFERS:
+            text = f"{bus.name} has {bus.transmit_depth} transmit buffers by priority, and a"
+            text += f" controller {BUFFERS} at most"
+            hint = f"write `transmit_depth: {BUFFERS}` or less"
+            yield error(ROOM, bus.origin, text, hint=hint)
+        sent = [m for m in system.messages if m.bus == bus.name and m.source is not None]
+        for node in system.nodes:
+            own = [m for m in sent if system.sender(m) == node.name]
+            if len(own) > bus.transmit_depth:
+                text = f"{node.name} sends {len(own)} messages on {bus.name}, and its controller"
+                text += f" has {bus.transmit_depth} transmit buffers by priority"
+                hint = "raise `transmit_depth`, or write `buffers: fifo`"
+                yield error(ROOM, bus.origin, text, hint=hint)
+        for message in sent:
+            if message.limit > message.period:
+                text = f"{message.name} may take longer than its period, so two of it may wait,"
+                text += f" and {bus.name} has one transmit buffer by priority for each message"
+                hint = f"give it a deadline of {shown(message.period)} or less"
+                yield error(ROOM, message.origin, text, hint=hint)
+
+
 NODE_RULES = (
+    buffers_hold_what_is_sent,
     calls_can_be_carried,
     servers_call_once,
     cores_exist,

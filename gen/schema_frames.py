@@ -41,6 +41,12 @@ class BusForm(Element):
     )
     receive_depth: int = key("Received frames that wait at most, 1 to 1024.", ge=1, le=1024)
     transmit_depth: int = key("Frames to send that wait at most, 1 to 1024.", ge=1, le=1024)
+    buffers: Literal["fifo", "priority"] = PydanticField(
+        default="fifo",
+        description="Which of a controller's frames goes to the bus first. `fifo`: the one that "
+        "was sent first. `priority`: the most urgent; a node then sends at most as many messages "
+        "as it has transmit buffers (`transmit_depth`, 8 at most), each within its period.",
+    )
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
     data_rate: DataRate | None = optional(
         "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "

@@ -209,6 +209,7 @@ def _prove(options: argparse.Namespace) -> int:
     checked = _checked(options)
     _written(steps.write_program(checked))
     driver = options.driver or steps.default_driver(checked)
+    steps.check_driver(checked, driver)
     made = steps.programs_of(checked)
     if options.record is not None and len(made) > 1:
         raise Refused("ravenchart: error: --record is for a system with one node")

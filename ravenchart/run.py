@@ -75,7 +75,8 @@ def run_model(request: RunRequest, console: Console | None = None) -> bool:
     first = request.controllers[0]
     try:
         with out.status("start the controller") as status:
-            if len(request.controllers) > 1:
+            by_priority = any(one.by_priority for one in request.analysis.system.buses)
+            if len(request.controllers) > 1 or by_priority:
                 outcome = run_nodes(
                     request.controllers,
                     request.analysis,
@@ -379,6 +380,8 @@ def _bus_words(
     Raises ScenarioError where the scenario cuts off a node that there is not.
     """
     words = [f"bitrate={analysis.system.buses[0].bit_rate}"]
+    if analysis.system.buses[0].by_priority:
+        words.append("buffer=priority")
     numbers = {controller.node.lower(): n for n, controller in enumerate(controllers, 1)}
     for event in plan.bus_events if plan else ():
         at = round(event.at * 1e9)

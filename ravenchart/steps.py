@@ -211,8 +211,12 @@ class Program:
         return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(self.home(driver))}
 
     def build(self, mode: str = "checks", driver: str | None = None) -> Path:
-        """Compile it; the path of the executable. ToolFailed with the compiler's words."""
+        """Compile it; the path of the executable. ToolFailed with the compiler's words.
+
+        Refused where ``driver`` cannot do what the model wants.
+        """
         chosen = driver or default_driver(self.checked)
+        check_driver(self.checked, chosen)
         variables = self.scenario(mode, chosen)
         options = ["-p", "-q", "-j0", "-P", self.project.name]
         toolchain.run("gprbuild", options, self.project.parent, variables)
@@ -241,7 +245,30 @@ def build_home(checked: Checked, driver: str) -> Path:
 
 
 def default_driver(checked: Checked) -> str:
-    """For one node with a bus slcan: python-can talks to it. For several what joins a bus."""
-    if len(checked.system.nodes) > 1:
+    """For one node with a bus slcan: python-can talks to it. For several what joins a bus.
+
+    So does one whose transmit buffers are by priority: an slcan adapter has none.
+    """
+    if len(checked.system.nodes) > 1 or _by_priority(checked):
         return "bus"
     return "slcan" if checked.system.buses else "loopback"
+
+
+BY_PRIORITY = ("loopback", "bus")
+"""Drivers behind which a controller can offer the most urgent of its frames."""
+
+
+def _by_priority(checked: Checked) -> str | None:
+    """A bus whose controllers have transmit buffers by priority, if there is one."""
+    return next((bus.name for bus in checked.system.buses if bus.by_priority), None)
+
+
+def check_driver(checked: Checked, driver: str) -> None:
+    """Refused where the driver cannot do what the model wants."""
+    bus = _by_priority(checked)
+    if bus is not None and driver not in BY_PRIORITY:
+        raise Refused(
+            f"ravenchart: error: the driver {driver} sends frames in the order in which they come, "
+            f"and {bus} has `buffers: priority`\n  hint: take one of "
+            f"{', '.join(BY_PRIORITY)}, or write `buffers: fifo`"
+        )

@@ -3,8 +3,9 @@
 A frame waits for the longest one that goes behind it and has begun, for what goes
 before it, and for errors; a bit later than it could begin, arbitration is over. All
 instances of the busy period count. Frames that a node sends share a first-in
-first-out queue, of which the driver may hand over one by one: any frame may go before
-each of them, and to others it is as late as it may have waited.
+first-out queue, unless its buffers are by priority; of a queue the driver may hand over
+one by one: any frame may go before each of them, and to others it is as late as it may
+have waited.
 """
 
 from __future__ import annotations
@@ -147,7 +148,7 @@ def bus_claims(system: System, bus: Bus, claims: Claims, handed: Set[str]) -> li
     order = _of(system, bus)
     items = _waits(system, bus, order, claims)
     for number_, message in enumerate(order, 1):
-        reach = len(order) if message.source is not None else number_
+        reach = len(order) if system.queue(message) else number_
         level = _Level(bus, message, order[:reach], order[reach:], system.queue)
         items += _of_message(level, claims)
     for message in order:

@@ -1,7 +1,8 @@
 --  A CAN controller. Its body is a driver, chosen by the project file.
 --
---  Guarantees   frames leave in the order sent and arrive in the order
---               received; what does not fit is counted
+--  Guarantees   frames leave in the order sent, or where the driver's
+--               transmit buffers are by priority the most urgent first, and
+--               arrive in the order received; what does not fit is counted
 --  Tasking      Send, Read_State and Read_Counters by any task up to
 --               Transmit_Ceiling; one caller of Wait_Frame, up to
 --               Receive_Ceiling

@@ -61,7 +61,7 @@ def changed(text: str, name: str, by: int) -> str:
     return made
 
 
-def random_system(seed: int) -> System:
+def random_system(seed: int, *, by_priority: bool = False) -> System:
     """Processors with rows of different periods, messages in and out, overheads and errors."""
     draw = random.Random(seed)
     processors = [_processor(draw, number) for number in range(draw.randint(1, 4))]
@@ -92,7 +92,7 @@ def random_system(seed: int) -> System:
     node = replace(made.nodes[0], context_switch=Ns(5_000), critical_section=Ns(4_000))
     if draw.random() < 0.5:
         node = replace(node, release=Ns(3_000), tick=Tick(Ns(MS // 2), Ns(10_000)))
-    one_bus = replace(made.buses[0], driver_wcet=Ns(30_000))
+    one_bus = replace(made.buses[0], driver_wcet=Ns(30_000), by_priority=by_priority)
     if draw.random() < 0.5:
         one_bus = replace(one_bus, errors=BusErrors(Ns(20 * MS), draw.randint(1, 2)))
     whole = completed(replace(made, nodes=(node,), buses=(one_bus,), processors=tuple(processors)))

@@ -127,6 +127,20 @@ def test_fd_frames_of_every_length_go_from_program_to_program(echo: Path) -> Non
         ]
 
 
+@pytest.mark.parametrize(("buffers", "last"), [("fifo", True), ("priority", False)])
+def test_a_more_urgent_frame_goes_first_from_buffers_by_priority(
+    buffers: str, last: bool, echo: Path
+) -> None:
+    with started("bitrate=10000", f"buffer={buffers}") as channel, node(echo, 0, channel) as a:
+        a.wait_for("ERROR_ACTIVE")
+        with RavenchartBus(channel) as bus:
+            order_burst(bus, 7)
+            bus.send(can.Message(arbitration_id=0x40, is_extended_id=False))
+            found = [message.arbitration_id for message in taken(bus, 8)]
+    assert sorted(found) == [0x41] + 7 * [0x102]
+    assert (found[-1] == 0x41) == last
+
+
 def test_the_filter_refuses_what_it_does_not_accept(echo: Path) -> None:
     with started() as channel, node(echo, 0, channel) as a:
         a.wait_for("ERROR_ACTIVE")

@@ -69,11 +69,12 @@ def test_a_wcet_past_its_slack_cannot_be_claimed_away(robot_text: str, tmp_path:
     assert "supervision can miss its deadline" in said
 
 
-def test_random_systems_are_certified_to_the_nanosecond(tmp_path: Path) -> None:
-    """Rows of different periods, several jobs and instances, ticks, errors, queues."""
+@pytest.mark.parametrize("by_priority", [False, True])
+def test_random_systems_are_certified_to_the_nanosecond(by_priority: bool, tmp_path: Path) -> None:
+    """Rows of different periods, several jobs and instances, ticks, errors, transmit buffers."""
     made = several = 0
     for seed in range(60):
-        found = analyse(random_system(seed))
+        found = analyse(random_system(seed, by_priority=by_priority))
         if not found.found.met:
             continue
         text = certificate(found)

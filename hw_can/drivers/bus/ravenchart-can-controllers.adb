@@ -8,7 +8,8 @@
 --               writer, which waits for the transmit queue
 --  Timing       that of the server and of TCP: nothing here is real-time
 --  Assumptions  ASM-005, the socket calls do what their spec says; the
---               server offers a node's oldest frame first (its default)
+--               server offers a node's oldest frame first, its default, or
+--               the most urgent of up to Most_Open (buffers by priority)
 --
 --  RAVENCHART_BUS_PORT and RAVENCHART_BUS_NAME say which server, and who
 --  joins. Sent counts what the bus has acknowledged, Rejected_Lines the
