@@ -113,6 +113,11 @@ def serve(told: Sequence[str]) -> int:
             return server.wait()
 
 
+def uneven(rate: int) -> str:
+    """Why the server refuses a bit rate."""
+    return f"a bit at {rate} bit/s is no whole number of ns"
+
+
 def _number(first: int, last: int) -> Callable[[str], int]:
     def read(text: str) -> int:
         if not (text.isascii() and text.isdigit() and first <= int(text) <= last):
@@ -126,7 +131,7 @@ def _rate(first: int, last: int) -> Callable[[str], int]:
     def read(text: str) -> int:
         rate = _number(first, last)(text)
         if rate and SECOND % rate:
-            raise argparse.ArgumentTypeError(f"a bit at {rate} bit/s is no whole number of ns")
+            raise argparse.ArgumentTypeError(uneven(rate))
         return rate
 
     return read

@@ -375,12 +375,18 @@ def run_nodes(
 def _bus_words(
     analysis: Analysis, controllers: Sequence[Controller], plan: Scenario | None
 ) -> list[str]:
-    """What the bus server is told: its bit rate, and what happens on the bus when.
+    """What the bus server is told: its bit rates, and what happens on the bus when.
 
-    Raises ScenarioError where the scenario cuts off a node that there is not.
+    Raises BenchError where it cannot have such a rate, and ScenarioError where the scenario
+    cuts off a node that there is not.
     """
-    words = [f"bitrate={analysis.system.buses[0].bit_rate}"]
-    if analysis.system.buses[0].by_priority:
+    line = analysis.system.buses[0]
+    data_rate = (line.data_rate or line.bit_rate) if line.takes_fd else 0
+    for rate in (line.bit_rate, data_rate):
+        if rate and bus.SECOND % rate:
+            raise BenchError(f"error: {line.name}: {bus.uneven(rate)}")
+    words = [f"bitrate={line.bit_rate}", f"data_bitrate={data_rate}"]
+    if line.by_priority:
         words.append("buffer=priority")
     numbers = {controller.node.lower(): n for n, controller in enumerate(controllers, 1)}
     for event in plan.bus_events if plan else ():

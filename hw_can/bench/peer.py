@@ -35,6 +35,7 @@ class Codec:
         """The messages of ``database``."""
         self._database = database
         self._names = {(m.frame_id, m.is_extended_frame): m.name for m in database.messages}
+        self._switched = _switches(database)
 
     @staticmethod
     def from_file(path: Path) -> Codec:
@@ -45,6 +46,11 @@ class Codec:
             raise BenchError(f"{path.name} cannot be read: {fault}") from None
         assert isinstance(database, Database)
         return Codec(database)
+
+    @property
+    def has_fd(self) -> bool:
+        """There are CAN FD frames among the messages."""
+        return any(m.is_fd for m in self._database.messages)
 
     def fields(self, name: str) -> tuple[str, ...]:
         """The fields of a message; BenchError when the DBC has none of that name."""
@@ -63,15 +69,22 @@ class Codec:
         return can.Message(
             arbitration_id=message.frame_id,
             is_extended_id=message.is_extended_frame,
+            is_fd=message.is_fd,
+            bitrate_switch=message.is_fd and self._switched,
             data=data,
         )
 
     def decode(self, frame: can.Message) -> tuple[str, Values] | None:
-        """Name and values of a frame; None for an unknown identifier; BenchError for bad data."""
+        """Name and values of a frame; BenchError for bad data.
+
+        None for an unknown identifier, and for a frame of the other format, classic or FD.
+        """
         name = self._names.get((frame.arbitration_id, frame.is_extended_id))
         if name is None or frame.is_remote_frame or frame.is_error_frame:
             return None
         message = self._message(name)
+        if frame.is_fd != message.is_fd:
+            return None
         try:
             decoded = message.decode(bytes(frame.data), decode_choices=True)
         except (CodecFault, ValueError) as fault:
@@ -118,7 +131,8 @@ class Peer:
     def join(channel: str, codec: Codec) -> Peer:
         """A peer that is a node of the bus behind ``host:port``; BenchError where there is none."""
         try:
-            return Peer(can.Bus(interface="ravenchart", channel=channel, name="bench"), codec)
+            bus = can.Bus(interface="ravenchart", channel=channel, name="bench", fd=codec.has_fd)
+            return Peer(bus, codec)
         except (can.CanError, OSError) as fault:
             raise BenchError(f"no bus at {channel}: {fault}") from None
 
@@ -179,6 +193,13 @@ class Peer:
             raise BenchError(f"the controller left the bus: {fault}") from None
         except (ValueError, IndexError) as fault:
             raise BenchError(f"the controller sent a malformed slcan line: {fault}") from None
+
+
+def _switches(database: Database) -> bool:
+    """Does the database say that CAN FD frames switch the bit rate (BRS)?"""
+    specifics = database.dbc
+    kind = specifics.attribute_definitions.get("CANFD_BRS") if specifics is not None else None
+    return kind is not None and kind.default_value == "1"
 
 
 def _plain(value: object) -> Value:

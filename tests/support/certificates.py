@@ -16,6 +16,7 @@ from gen.emit.certificate import emit_certificate
 from gen.emit.naming import ada_case
 from gen.generate import HEADER
 from gen.model import BusErrors, End, Message, Processor, Reception, Slot, System, Task, Tick, Work
+from gen.signals import FD_SIZES
 from gen.statechart import Timing
 from gen.terms import Ns
 from tests.support.systems import HERE, bus, message, system
@@ -62,7 +63,10 @@ def changed(text: str, name: str, by: int) -> str:
 
 
 def random_system(seed: int, *, by_priority: bool = False) -> System:
-    """Processors with rows of different periods, messages in and out, overheads and errors."""
+    """Processors with rows of different periods, messages in and out, overheads and errors.
+
+    In every third system some frames are CAN FD, with switched rate or without.
+    """
     draw = random.Random(seed)
     processors = [_processor(draw, number) for number in range(draw.randint(1, 4))]
     made = system([], (), [bus("bus", draw.choice([50_000, 125_000, 250_000]))])
@@ -104,7 +108,21 @@ def random_system(seed: int, *, by_priority: bool = False) -> System:
         releaser = sender_name or one.element
         times = (one.period, Ns(0), one.limit, one_bus.driver_wcet)
         tasks.append(Task(element, HERE, "cpu", *times, top, released_by=releaser))
-    return replace(whole, tasks=tuple(tasks), messages=tuple(one for one, _ in messages))
+    made = replace(whole, tasks=tuple(tasks), messages=tuple(one for one, _ in messages))
+    return made if seed % 3 else _with_fd(made, random.Random(-seed))
+
+
+def _with_fd(made: System, draw: random.Random) -> System:
+    """The system with some frames in the other format."""
+    data_rate = draw.choice([None, 1_000_000, 8_000_000])
+    longest = 16 if data_rate is None else 64
+    sizes = [size for size in FD_SIZES if size <= longest]
+    messages = (
+        replace(one, fd=True, length=draw.choice(sizes)) if draw.random() < 0.6 else one
+        for one in made.messages
+    )
+    buses = (replace(made.buses[0], data_rate=data_rate, takes_fd=True),)
+    return replace(made, buses=buses, messages=tuple(messages))
 
 
 def _processor(draw: random.Random, number: int) -> Processor:

@@ -71,8 +71,8 @@ def test_a_wcet_past_its_slack_cannot_be_claimed_away(robot_text: str, tmp_path:
 
 @pytest.mark.parametrize("by_priority", [False, True])
 def test_random_systems_are_certified_to_the_nanosecond(by_priority: bool, tmp_path: Path) -> None:
-    """Rows of different periods, several jobs and instances, ticks, errors, transmit buffers."""
-    made = several = 0
+    """Rows of different periods, several jobs, errors, CAN FD, transmit buffers of both kinds."""
+    made = several = flexible = 0
     for seed in range(60):
         found = analyse(random_system(seed, by_priority=by_priority))
         if not found.found.met:
@@ -82,10 +82,11 @@ def test_random_systems_are_certified_to_the_nanosecond(by_priority: bool, tmp_p
         assert said == "", (seed, said)
         made += 1
         several += "_W_2" in text
+        flexible += "_Head" in text and "_Data_Rate" in text
         for ending in ("_R", "_Busy", r"_W(?:_\d+)?"):
             for number in numbers(text, ending)[seed % 3 :: 3]:
                 assert compiled(changed(text, number, -1), tmp_path), (seed, number)
-    assert made >= 20 and several >= 3, (made, several)
+    assert made >= 20 and several >= 3 and flexible >= 3, (made, several, flexible)
 
 
 def test_two_hundred_tasks_add_under_ten_seconds_to_a_build(tmp_path: Path) -> None:
