@@ -138,6 +138,7 @@ def simulation(system: System) -> dict[str, str]:
 
     def others() -> list[Made]:
         found = [
+            *emit_devices(reduced, maker.header),
             *emit_instances(reduced, maker.header, noted=True),
             *emit_without_tasks(reduced, maker.header),
             emit_simulation(reduced, maker.header),

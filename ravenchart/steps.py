@@ -154,14 +154,19 @@ def write_program(checked: Checked) -> Written:
         if (folder / gone).parent != folder:
             with suppress(OSError):  # it is not empty, or was never there
                 (folder / gone).parent.rmdir()
+    write_first_versions(checked)
+    units = (checked.folder / name for name in user_units(checked.system))
+    missing = tuple(unit for unit in units if not unit.is_file())
+    return Written(folder, len(files), changed, missing)
+
+
+def write_first_versions(checked: Checked) -> None:
+    """Make the folders of what the user writes, and simulated devices that are not there yet."""
     for place in source_folders(checked.system):
         (checked.folder / place).mkdir(parents=True, exist_ok=True)
     for name, text in simulated_drivers(checked.system).items():
         if not (checked.folder / name).exists():
             replace_file(checked.folder / name, text)
-    units = (checked.folder / name for name in user_units(checked.system))
-    missing = tuple(unit for unit in units if not unit.is_file())
-    return Written(folder, len(files), changed, missing)
 
 
 def _is_inside(name: str) -> bool:
