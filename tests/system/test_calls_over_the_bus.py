@@ -92,6 +92,7 @@ def test_both_programs_are_proved_without_a_warning(name: str, tmp_path: Path) -
             made.proof_folders("bus")[:1],
             (made.generated,),
             warnings="error",
+            units=made.proved_units(),
         )
         assert proof.clean, proof.summary()
         assert proof.checks > 100
