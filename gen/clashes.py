@@ -19,7 +19,7 @@ from .derive import programs
 from .diagnostics import Diagnostic, error
 from .emit.ada_text import WIDTH, print_unit
 from .emit.naming import ada_case
-from .generate import Made, program
+from .generate import Made, program, simulated_units
 from .model import System
 from .terms import EnumerationType, Origin
 
@@ -28,8 +28,8 @@ PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"}
 
 
 def _units(system: System) -> tuple[Made, ...]:
-    """The units of the program; claims are numbers, not names."""
-    return program(system, Claims(), system)
+    """The units of the program and its simulated devices; claims are numbers, not names."""
+    return (*program(system, Claims(), system), *simulated_units(system))
 
 
 def _clashing(system: System) -> Iterator[tuple[str, str]]:
@@ -109,8 +109,9 @@ def _culprits(system: System, text: str, unit: str) -> list[_Element]:
     words = f"_{text.lower()}_"
     near = [e for e in _elements(system) if f"_{e.name.lower()}_" in words]
     parts = unit.lower().split(".")
-    instances = {i.name.lower(): i.component.name.lower() for i in system.instances}
-    owners = {instances.get(part, part) for part in parts}
+    kinds = {i.name.lower(): i.component.name.lower() for i in system.instances}
+    kinds |= {d.name.lower(): d.type.name.lower() for d in system.devices if d.type is not None}
+    owners = {kinds.get(part, part.removesuffix("_states")) for part in parts}
     apt = [e for e in near if e.owner.lower() in owners or not e.owner]
     apt = apt or near
     longest = max((len(e.name) for e in apt), default=0)
@@ -123,16 +124,19 @@ LONG_NAME = 24
 
 def _too_long(system: System) -> Iterator[Diagnostic]:
     """An error when long names, joined as the program joins them, do not fit its lines."""
-    if all(len(e.name) <= LONG_NAME for e in _elements(system)):
+    long = [e for e in _elements(system) if len(e.name) > LONG_NAME]
+    if not long:
         return
     reported: set[Origin] = set()
     for made in (made for part in programs(system) for made in _units(part)):
-        for line in print_unit(made.unit, made.text).splitlines():
+        text = print_unit(made.unit, made.text)
+        for line in text.splitlines():
             if len(line) <= WIDTH:
                 continue
-            everything = list(_elements(system))
-            apt = [e for e in everything if e.name.lower() in line.lower()]
-            found = max(apt or everything, key=lambda e: len(e.name))
+            #  where names stand below each other, the longest makes all their lines long
+            apt = [e for e in long if e.name.lower() in line.lower()]
+            apt = apt or [e for e in long if e.name.lower() in text.lower()]
+            found = max(apt or long, key=lambda e: len(e.name))
             if found.origin in reported:
                 continue
             reported.add(found.origin)

@@ -166,6 +166,7 @@ CODES: Mapping[str, str] = {
     "RV-1005": "A value in a file of events is missing, unwanted, or not one of its type.",
     "RV-1006": "A file of events does not end with the last instant.",
     "RV-1007": "A simulation came to a pseudostate from which no segment leads on.",
+    "RV-1008": "The interpreter is to execute commands of devices or tasks, which it cannot.",
     "RV-1101": "No data lead into a state.",
     "RV-1102": "No data let a transition fire.",
     "RV-1103": "Two transitions with one source and trigger can both fire; the first does.",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TypeVar
 
 from .calls import device_types
 from .claims import Claims
+from .commands import DeviceType
 from .component import Component
 from .derive import programs
 from .emit.ada import Package, Unit
@@ -137,6 +138,7 @@ def simulation(system: System) -> dict[str, str]:
 
     def others() -> list[Made]:
         found = [
+            *emit_devices(reduced, maker.header),
             *emit_instances(reduced, maker.header, noted=True),
             *emit_without_tasks(reduced, maker.header),
             emit_simulation(reduced, maker.header),
@@ -255,11 +257,19 @@ def source_folders(system: System) -> tuple[str, ...]:
 
 def simulated_drivers(system: System) -> dict[str, str]:
     """File name below the model's folder to text: first versions, for the user to go on with."""
+    return {
+        f"simulated/{kind.name.lower()}/{unit.file_name}": print_unit(unit)
+        for kind, unit in _simulated(system)
+    }
+
+
+def simulated_units(system: System) -> tuple[Made, ...]:
+    """The same as units that are read."""
+    return tuple(_Maker(system).made([unit for _, unit in _simulated(system)]))
+
+
+def _simulated(system: System) -> Iterator[tuple[DeviceType, Unit]]:
     header = SIMULATED.format(system=system.name)
-    files: dict[str, str] = {}
     for kind in device_types(system):
-        if kind.simulated:
-            for unit in simulated_driver(system, kind, header):
-                name = f"simulated/{kind.name.lower()}/{unit.file_name}"
-                files[name] = print_unit(unit)
-    return files
+        for unit in simulated_driver(system, kind, header) if kind.simulated else ():
+            yield kind, unit

@@ -143,7 +143,10 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
 
 def _check_units(model: Merged, system: str, findings: Findings) -> None:
     """Names that become child units of the system must differ from each other and from others."""
-    taken: dict[str, tuple[str, str, Origin]] = {}
+    taken = {
+        f"{name}_states".lower(): ("state of the device type", name, form.origin)
+        for name, form in model.entries("device_types")
+    }
     for section, kind in (
         ("components", "component"),
         ("buses", "bus"),
@@ -168,7 +171,7 @@ def _check_units(model: Merged, system: str, findings: Findings) -> None:
             if known[0] != kind:
                 message = f"the {kind} `{name}` is named like the {known[0]} `{known[1]}`"
                 notes = [(known[2], f"the {known[0]} is here")]
-                hint = "components, buses, instances and processors become units: rename one"
+                hint = "both become units of the generated program: rename one"
                 findings.error("RV-0304", form.origin, message, notes=notes, hint=hint)
 
 

@@ -218,7 +218,10 @@ def _prove(options: argparse.Namespace) -> int:
         roots = (one.generated, checked.folder / "user")
         folders = one.proof_folders(driver)
         variables = one.scenario("checks", driver)
-        proof = proving.prove(one.project, variables, folders, roots, whole=options.whole)
+        units = one.proved_units()
+        proof = proving.prove(
+            one.project, variables, folders, roots, whole=options.whole, units=units
+        )
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean

@@ -138,6 +138,7 @@ def _example(name: str) -> Iterator[Target]:
             made.proof_folders(driver)[:1],
             (made.generated, checked.folder / "user") if made.folder else (checked.folder,),
             whole=False,
+            units=made.proved_units(),
         )
 
 

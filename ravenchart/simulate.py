@@ -19,14 +19,14 @@ from gen.diagnostics import Diagnostic, error, render
 from gen.distribution import as_one
 from gen.emit.simulation import numbers
 from gen.emit.simulation import stimuli as stimuli_of_system
-from gen.generate import simulation, user_units
+from gen.generate import simulation, source_folders
 from gen.load import LARGEST, read_file
 from gen.model import System
 from gen.terms import Origin
 from gen.tree import lines_of
 
 from . import toolchain
-from .steps import Checked, Refused, build_home, replace_file
+from .steps import Checked, Refused, build_home, replace_file, write_first_versions
 
 
 def stimuli_of(system: System, path: Path) -> Stimuli:
@@ -68,7 +68,8 @@ def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
 
 def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
     """What the generated program executes."""
-    program = build_simulation(checked.system, checked.folder / "user", _home(checked))
+    write_first_versions(checked)
+    program = build_simulation(checked.system, checked.folder, _home(checked))
     return run_simulation(checked.system, program, stimuli)
 
 
@@ -76,8 +77,11 @@ def _home(checked: Checked) -> Path:
     return build_home(checked, "simulation")
 
 
-def build_simulation(system: System, user: Path, home: Path) -> Path:
-    """Write and compile the program in virtual time below ``home``; its path."""
+def build_simulation(system: System, folder: Path, home: Path) -> Path:
+    """Write and compile the program in virtual time below ``home``; its path.
+
+    The sources that are not generated are below the ``folder`` of the model.
+    """
     source = home / "source"
     source.mkdir(parents=True, exist_ok=True)
     files = simulation(system)
@@ -87,7 +91,8 @@ def build_simulation(system: System, user: Path, home: Path) -> Path:
     for name, text in files.items():
         replace_file(source / name, text)
     project = next(name for name in files if name.endswith(".gpr"))
-    given = {"RAVENCHART_USER": str(user.resolve())} if user_units(system) else {}
+    places = [str((folder / place).resolve()) for place in source_folders(system)]
+    given = {"RAVENCHART_USER": ",".join(places)} if places else {}
     toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project], source, given)
     return home / project.removesuffix(".gpr")
 
@@ -113,8 +118,11 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Reco
 
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
     """The trace of a model under the stimuli of a file, one step a line."""
-    if checked.system.bindings:
-        raise Refused(f"{checked.path}: error: a simulation has no devices and no commands yet")
+    bindings = checked.system.bindings
+    if interpreter and bindings:
+        message = "the interpreter knows no drivers: it executes no models with bindings"
+        hint = "leave out `--interpreter`: the program in virtual time has them"
+        raise Refused(render(error("RV-1008", bindings[0].origin, message, hint=hint), {}))
     stimuli = stimuli_of(checked.system, events)
     if interpreter:
         records = simulated_by_interpreter(checked.system, stimuli)

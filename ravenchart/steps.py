@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import hashlib
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -154,14 +155,19 @@ def write_program(checked: Checked) -> Written:
         if (folder / gone).parent != folder:
             with suppress(OSError):  # it is not empty, or was never there
                 (folder / gone).parent.rmdir()
+    write_first_versions(checked)
+    units = (checked.folder / name for name in user_units(checked.system))
+    missing = tuple(unit for unit in units if not unit.is_file())
+    return Written(folder, len(files), changed, missing)
+
+
+def write_first_versions(checked: Checked) -> None:
+    """Make the folders of what the user writes, and simulated devices that are not there yet."""
     for place in source_folders(checked.system):
         (checked.folder / place).mkdir(parents=True, exist_ok=True)
     for name, text in simulated_drivers(checked.system).items():
         if not (checked.folder / name).exists():
             replace_file(checked.folder / name, text)
-    units = (checked.folder / name for name in user_units(checked.system))
-    missing = tuple(unit for unit in units if not unit.is_file())
-    return Written(folder, len(files), changed, missing)
 
 
 def _is_inside(name: str) -> bool:
@@ -221,6 +227,24 @@ class Program:
         options = ["-p", "-q", "-j0", "-P", self.project.name]
         toolchain.run("gprbuild", options, self.project.parent, variables)
         return self.home(chosen) / f"{self.checked.stem}_main"
+
+    def proved_units(self) -> tuple[str, ...]:
+        """The files that are proved, where bodies of components of other programs lie beside them.
+
+        Empty where there are none of these: then all are. A build takes only what it needs.
+        """
+        part = next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
+        folders = [self.checked.folder / place for place in source_folders(part)]
+        files = {p.name: p for home in (self.generated, *folders) for p in home.glob("*.ad[sb]")}
+        bodies = {name for name in files if name.endswith(".adb")}
+        specs = {name for name in files.keys() - bodies if f"{name[:-1]}b" not in bodies}
+        others = {
+            name
+            for name in bodies
+            if f"{name[:-1]}s" not in files
+            and re.search(r"^package body", files[name].read_text(encoding="utf-8"), re.M)
+        }
+        return tuple(sorted((bodies | specs) - others)) if others else ()
 
     def proof_folders(self, driver: str) -> tuple[Path, Path]:
         """Where gnatprove leaves its results: for the program, and for the runtime."""

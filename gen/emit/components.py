@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..component import Activity, Component, Direction, Port
+from ..component import Activity, Component, Data, Direction, Port
 from ..model import System
 from ..statechart import RAISED_PER_STEP, Region
-from ..terms import Type, always
+from ..terms import RecordType, Type, always, named
 from .ada import (
     FALSE,
     SPARK,
@@ -152,7 +152,11 @@ def activity_params(system: System, component: Component, activity: Activity) ->
         if name not in activity.writes
     ]
     params += [
-        Param(ada_case(name), _write_mode(activity, name), reading_type(system, component, name))
+        Param(
+            ada_case(name),
+            _write_mode(activity, named(component.data, name)),
+            reading_type(system, component, name),
+        )
         for name in activity.writes
     ]
     for port in component.ports:
@@ -210,11 +214,14 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
     return tuple(units)
 
 
-def _write_mode(activity: Activity, data: str) -> str:
+def _write_mode(activity: Activity, data: Data) -> str:
     """``in out`` for what is read as well, or not always set; ``out`` otherwise."""
     if activity.flow is None:
-        return "in out" if data in activity.reads else "out"
-    sure = data in always(activity.flow) and data not in flow_names(activity.flow)
+        return "in out" if data.name in activity.reads else "out"
+    parts = {data.name}
+    if isinstance(data.type, RecordType):
+        parts = {f"{data.name}.{field.name}" for field in data.type.fields}
+    sure = parts <= always(activity.flow) and data.name not in flow_names(activity.flow)
     return "out" if sure else "in out"
 
 

@@ -49,6 +49,7 @@ from .remote_calls import (
     caller_number,
     heard,
     replies,
+    reply_to,
     sent_call,
     value_of,
 )
@@ -278,7 +279,7 @@ def serving_params(system: System, component: Component, activity: str) -> Itera
         yield Param(request_param(provided), "in", f"{package}.Request")
         for one in provided.requests:
             if one.reply is not None:
-                yield Param(reply_param(one.name), "in out", type_name(system, one.reply))
+                yield Param(reply_param(one.name), "out", type_name(system, one.reply))
 
 
 def put_spec(instance: Instance, provided: Provided) -> Subprogram:
@@ -305,17 +306,31 @@ def asked(system: System, instance: Instance, provided: Provided) -> list[Decl]:
         Object("Taken", "Ravenchart.Queueing.Take_Status"),
         UseType("Ravenchart.Queueing.Take_Status"),
     ]
-    for one in provided.requests:
-        if one.reply is not None:
-            start = default_value(system, one.reply)
-            found.append(Object(reply_param(one.name), type_name(system, one.reply), start))
+    rooms = _rooms(system, instance, provided)
+    found += [Object(room, type_name(system, of_type)) for _, room, of_type in rooms]
     return found
 
 
-def asked_args(provided: Provided) -> list[Arg]:
+def asked_args(system: System, instance: Instance, provided: Provided) -> list[Arg]:
     """What the activity that serves an interface is given besides; see `serving_params`."""
-    replies = [reply_param(one.name) for one in provided.requests if one.reply is not None]
-    return [Arg(request_param(provided), Ref("Asked")), *(Arg(r, Ref(r)) for r in replies)]
+    rooms = _rooms(system, instance, provided)
+    given = (Arg(parameter, Ref(room)) for parameter, room, _ in rooms)
+    return [Arg(request_param(provided), Ref("Asked")), *given]
+
+
+def _rooms(
+    system: System, instance: Instance, provided: Provided
+) -> Iterator[tuple[str, str, Type]]:
+    """For each reply its parameter, the room for it, and its type; some are sent to nobody."""
+    local = callers_of(system, instance.name, provided)
+    afar = calls_from_afar(system, instance.name, provided)
+    wanted = {binding.need.name for binding in local if delivers(system, binding)}
+    backs = (reply_to(system, message) for message in afar)
+    wanted |= {back.call.need.name for back in backs if back is not None and back.call is not None}
+    for one in provided.requests:
+        if one.reply is not None:
+            name = reply_param(one.name)
+            yield name, name if one.name in wanted else f"Unused_{name}", one.reply
 
 
 def served(

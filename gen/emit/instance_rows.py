@@ -306,7 +306,7 @@ class Rows(Site):
         provided = component.served_by(activity.name)
         if provided is not None:
             declarations += asked(self.system, self.instance, provided)
-            args += asked_args(provided)
+            args += asked_args(self.system, self.instance, provided)
         guard: Expr | None = None
         if activity.while_in is not None:
             region = component.region(activity.while_in.region)

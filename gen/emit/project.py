@@ -64,7 +64,7 @@ with "ravenchart.gpr";
 project {name}_Simulation is
 
    User := external_as_list ("RAVENCHART_USER", ",");
-   --  Where the bodies that the user writes are, if there are any.
+   --  Where the sources are that the user writes, if there are any.
 
    for Source_Dirs use
      ("../source", Ravenchart'Project_Dir & "spark_runtime/simulated") & User;

@@ -216,7 +216,7 @@ def replies(
 ) -> Iterator[Stmt]:
     """The replies to other nodes once a request is executed; ``reply`` names what was given."""
     for place, message in enumerate(calls_from_afar(system, instance.name, provided)):
-        back = next((m for m in system.messages if m.call == message.call and m.is_reply), None)
+        back = reply_to(system, message)
         if back is None or back.call is None:
             continue
         need, first = back.call.need, _first(local, place)
@@ -229,6 +229,11 @@ def replies(
         frame = _framed(back, called, Ref(reply(need.name)), need.reply)
         send = f"{ada_case(back.bus)}.Send_{ada_case(back.name)}"
         yield If(((asks, (Do(send, arguments(frame)),)),))
+
+
+def reply_to(system: System, message: Message) -> Message | None:
+    """The message with the replies to the calls of another; None where nobody waits for them."""
+    return next((m for m in system.messages if m.call == message.call and m.is_reply), None)
 
 
 def _first(local: int, place: int) -> int:

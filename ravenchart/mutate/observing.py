@@ -115,8 +115,7 @@ class Simulated(Observer):
     def prepare(self, executable: Path) -> None:
         """Both ways; ToolFailed when interpreter and program already differ."""
         self.real.prepare(executable)
-        user = self.checked.folder / "user"
-        self.program = simulate.build_simulation(self.system, user, self.home)
+        self.program = simulate.build_simulation(self.system, self.checked.folder, self.home)
         if difference := self._difference():
             raise ToolFailed(f"the unbroken program differs: {difference}")
 

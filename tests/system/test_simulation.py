@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -87,6 +88,62 @@ def test_the_command_says_the_same_of_an_example_both_ways(
     assert main([*call, "--json"]) == 0
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert len(lines) == executed.count("\n")
+
+
+def _times(folder: Path, region: str, capsys: pytest.CaptureFixture[str]) -> dict[str, str]:
+    """When each transition of a region was first taken in a second without stimuli, in s."""
+    events = folder / "events.yaml"
+    events.write_text("- {until: 1 s}\n")
+    assert main(["simulate", str(folder / "model.yaml"), "--events", str(events)]) == 0
+    found: dict[str, str] = {}
+    for line in capsys.readouterr().out.splitlines():
+        time, where, *behaviours = line.replace(",", "").split(" ")
+        if where == f"{region}:":
+            for one in behaviours:
+                found.setdefault(one.removesuffix(".effect"), time)
+    return found
+
+
+def test_devices_and_tasks_execute_commands_in_virtual_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "gripper"
+    shutil.copytree(ROOT / "tests" / "nodes" / "gripper", folder)
+    grasp = _times(folder, "grasp_1.Life", capsys)
+    # a reply by event, one looked at, a queued command, and what both fingers of the array give
+    taken = {name: grasp[name] for name in ("calibrated", "known", "close", "has")}
+    assert taken == {"calibrated": "0.020", "known": "0.060", "close": "0.120", "has": "0.140"}
+    # a command of the other node with its reply, and an event of the interface
+    boss = _times(folder, "boss_1.Plan", capsys)
+    taken = {name: boss[name] for name in ("begin_it", "taken", "held")}
+    assert taken == {"begin_it": "0.100", "taken": "0.120", "held": "0.140"}
+
+
+def test_a_simulated_device_is_written_and_then_run_as_the_user_left_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "gripper"
+    shutil.copytree(ROOT / "tests" / "nodes" / "gripper", folder)
+    shutil.rmtree(folder / "simulated")
+    assert "has" in _times(folder, "grasp_1.Life", capsys)
+    driver = folder / "simulated" / "memory" / "gripper_cell-memory.adb"
+    text = driver.read_text()
+    assert text == (ROOT / "tests/nodes/gripper/simulated/memory" / driver.name).read_text()
+    driver.write_text(
+        text.replace("Reply := Device.Calibrate_Reply", "Reply := Gripper_Cell.Badly")
+    )
+    stuck = _times(folder, "grasp_1.Life", capsys)
+    assert "Starting.entry" in stuck and "calibrated" not in stuck
+    assert "Badly" in driver.read_text()
+
+
+def test_the_arm_of_the_surgical_robot_moves_in_virtual_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "robot"
+    shutil.copytree(ROOT / "examples" / "surgical_robot", folder)
+    taken = _times(folder, "supervisor_1.Task_Of_Arm", capsys)
+    assert "there" in taken and "too_late" not in taken
 
 
 def _by_chart(records: Sequence[Record], seeds: Sequence[int]) -> dict[int, list[str]]:

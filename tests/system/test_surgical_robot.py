@@ -11,6 +11,7 @@ import pytest
 
 from gen.generate import generate
 from ravenchart import proving, steps, toolchain
+from ravenchart.__main__ import main
 from ravenchart.toolchain import ROOT
 
 HERE = ROOT / "examples" / "surgical_robot"
@@ -108,24 +109,29 @@ def test_the_level_of_control_is_chosen_by_a_line(level: str, variant: Variant) 
 DEPLOYMENTS = [
     *(("software_control.yaml", LINE, f"Robot: {{facade: {m}}}") for m, _ in SENSED.values()),
     ("model.yaml", "software_control.yaml", "supervisory_control.yaml"),
+    ("model.yaml", "software_control.yaml", "drive_over_can.yaml"),
     ("model.yaml", "software_control.yaml", "interface_only.yaml"),
 ]
 
 
 @pytest.mark.skipif(not LONG, reason="minutes of proof each: `make test-long` proves them all")
-@pytest.mark.parametrize("change", DEPLOYMENTS, ids=[*SENSED, "drives", "interface only"])
+@pytest.mark.parametrize(
+    "change", DEPLOYMENTS, ids=[*SENSED, "drives", "drive over CAN", "interface only"]
+)
 def test_every_deployment_is_proved(change: tuple[str, str, str], variant: Variant) -> None:
     if not toolchain.have("gnatprove"):
         pytest.skip(toolchain.INSTALL_HINT["gnatprove"])
     checked = variant(*change)
     steps.write_program(checked)
     (made,) = steps.programs_of(checked)
+    driver = steps.default_driver(checked)
     proof = proving.prove(
         made.project,
-        made.scenario("checks", "loopback"),
-        made.proof_folders("loopback")[:1],
+        made.scenario("checks", driver),
+        made.proof_folders(driver)[:1],
         (checked.folder,),
         warnings="error",
+        units=made.proved_units(),
     )
     assert proof.clean, proof.summary()
     assert proof.checks > 100
@@ -148,6 +154,40 @@ def test_the_supervisor_is_the_same_over_its_own_servo_loop_and_over_drives(
         glue += _sources(checked, "supervisor_1.adb").values()
     assert seen[0] == seen[1]
     assert "Servo_1.Put_Motion" in glue[0] and "Drives.Hold;" in glue[1]
+
+
+def test_a_drive_over_can_replaces_the_servo_by_a_line(
+    variant: Variant, capsys: pytest.CaptureFixture[str]
+) -> None:
+    checked = variant("model.yaml", "software_control.yaml", "drive_over_can.yaml")
+    assert not checked.warnings
+    assert steps.write_program(checked).missing == ()
+    (made,) = steps.programs_of(checked)
+    made.build()
+    generated = checked.folder / "generated"
+    application = ("supervisor.ads", "supervisor-task_of_arm.ads", "supervisor-task_of_arm.adb")
+    here = {
+        name: (HERE / "generated" / f"surgical_robot-{name}").read_text() for name in application
+    }
+    assert _sources(checked, *application) == here
+    assert _bodies(checked.folder) == _bodies(HERE)
+    assert not list(generated.glob("*servo*"))
+    assert "Drive_1.Put_Motion" in (generated / "surgical_robot-supervisor_1.adb").read_text()
+    flows = (generated / "surgical_robot-can_drive-flows.ads").read_text()
+    assert " Seen : out Surgical_Robot.Angle_X4" in " ".join(flows.split())  # field by field
+    #  the servo's body lies there, and is no part of what is proved
+    proved = made.proved_units()
+    assert "surgical_robot-can_drive-activities.adb" in proved
+    assert not [name for name in proved if "servo" in name]
+    #  what the drive reports is the position that the supervisor waits for
+    events = checked.folder / "events.yaml"
+    moved = "{axis_1: 290, axis_2: -300, axis_3: 100, axis_4: 0}"
+    events.write_text(
+        f"- {{at: 500 ms, put: drive_1.Positions, value: {moved}}}\n- {{until: 1 s}}\n"
+    )
+    assert main(["simulate", str(checked.path), "--events", str(events)]) == 0
+    *_, last = capsys.readouterr().out.splitlines()
+    assert last == "0.500 supervisor_1.Task_Of_Arm: Reaching.exit, there.effect, Holding.entry"
 
 
 def test_generated_files_are_those_in_the_repository() -> None:

@@ -173,11 +173,32 @@ def test_a_command_may_give_anything_in_its_type() -> None:
     assert not findings(system)
 
 
-def test_a_simulation_is_refused(tmp_path: Path) -> None:
+def test_the_interpreter_refuses_a_model_with_bindings(tmp_path: Path) -> None:
     (tmp_path / "model.yaml").write_text(MODEL)
     checked = steps.check(tmp_path / "model.yaml")
-    with pytest.raises(steps.Refused, match="no devices and no commands yet"):
+    with pytest.raises(steps.Refused) as refused:
         simulate.simulated(checked, tmp_path / "events", interpreter=True, as_json=False)
+    line = MODEL.splitlines().index("bindings:") + 2
+    path = tmp_path / "model.yaml"
+    assert str(refused.value) == (
+        f"{path}:{line}:5: error: the interpreter knows no drivers: it executes no models with "
+        f"bindings [RV-1008]\n{path}:{line}:5: hint: leave out `--interpreter`: the program in "
+        "virtual time has them"
+    )
+
+
+def test_a_simulated_device_is_the_users_once_it_is_written(tmp_path: Path) -> None:
+    (tmp_path / "model.yaml").write_text(MODEL)
+    checked = steps.check(tmp_path / "model.yaml")
+    drivers = [tmp_path / name for name in simulated_drivers(checked.system)]
+    drivers[0].parent.mkdir(parents=True)
+    drivers[0].write_text("--  mine\n")
+    steps.write_program(checked)
+    assert drivers[0].read_text() == "--  mine\n"
+    assert all("starting point" in driver.read_text() for driver in drivers[1:])
+    drivers[1].write_text("--  mine, too\n")
+    steps.write_program(checked)
+    assert drivers[1].read_text() == "--  mine, too\n"
 
 
 REQUESTS = (ROOT / "tests" / "feature" / "requests" / "model.yaml").read_text()

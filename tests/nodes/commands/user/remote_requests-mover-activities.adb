@@ -3,10 +3,13 @@ with SPARK_Mode
 is
    procedure Serve
      (Motion_Request  : Mover.Motion_Requests.Request;
-      Home_Reply      : in out Outcome;
-      Get_Limit_Reply : in out Place;
+      Home_Reply      : out Outcome;
+      Get_Limit_Reply : out Place;
       Goal            : in out Place) is
    begin
+      Home_Reply := Unknown;
+      Get_Limit_Reply := 0;
+
       case Motion_Request.Name is
          when Motion_Requests.Set_Goal_Asked =>
             Goal := Motion_Request.Set_Goal;

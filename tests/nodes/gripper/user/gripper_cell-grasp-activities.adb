@@ -3,7 +3,7 @@ with SPARK_Mode
 is
    procedure Serve
      (Work_Request : Grasp.Work_Requests.Request;
-      Grip_Reply   : in out Gripper_Cell.Outcome;
+      Grip_Reply   : out Gripper_Cell.Outcome;
       Wanted       : out Gripper_Cell.Force) is
    begin
       Wanted := Work_Request.Grip;
