@@ -17,6 +17,7 @@ from .devices import (
     Devices,
     Provider,
     found_in,
+    has_tasks,
     name_of,
     offered,
     provided_axes,
@@ -48,6 +49,10 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
             continue
         instance = devices.instances.look_up(owner, at, findings)
         provider = devices.provider(form.to, form.at("to"))
+        if provider is not None and form.has("time_limit") and not has_tasks(provider):
+            message = f"`time_limit` has no meaning for {name_of(provider)}, which has no task"
+            hint = "remove it: a device is called directly"
+            findings.error("RV-1214", form.at_key("time_limit"), message, hint=hint)
         if instance is None:
             continue
         required: Scope[str] = Scope(f"required interface of {instance.component.name}")
