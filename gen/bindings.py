@@ -49,10 +49,6 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
             continue
         instance = devices.instances.look_up(owner, at, findings)
         provider = devices.provider(form.to, form.at("to"))
-        if provider is not None and form.has("time_limit") and not has_tasks(provider):
-            message = f"`time_limit` has no meaning for {name_of(provider)}, which has no task"
-            hint = "remove it: a device is called directly"
-            findings.error("RV-1214", form.at_key("time_limit"), message, hint=hint)
         if instance is None:
             continue
         required: Scope[str] = Scope(f"required interface of {instance.component.name}")
@@ -79,6 +75,11 @@ def bindings_of(
 ) -> tuple[Binding, ...]:
     """What provides each command that an instance requires."""
     made: list[Binding] = []
+    for form, provider in given.values():
+        if provider is not None and form.has("time_limit") and not has_tasks(provider):
+            message = f"`time_limit` has no meaning for {name_of(provider)}, which has no task"
+            hint = "remove it: a device is called directly"
+            findings.error("RV-1214", form.at_key("time_limit"), message, hint=hint)
     for instance in instances:
         unbound: set[str] = set()
         uneven: set[tuple[str, str]] = set()
