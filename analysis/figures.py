@@ -5,7 +5,10 @@ Times are whole ns. A response without a bound is null, with the reason.
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 from . import advice
+from .commands import costs
 from .plain.build import PlainSystem
 from .plain.results import DETAILED, Json, PlainResult, everything, latency_figures
 from .timing import Analysis
@@ -62,6 +65,7 @@ def figures(analysis: Analysis) -> Json:
             }
             for item in system.objects
         ],
+        "commands": [asdict(cost) for cost in costs(analysis)],
         "changes": advice.figures(analysis.advice),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

@@ -17,6 +17,7 @@ from .devices import (
     Devices,
     Provider,
     found_in,
+    has_tasks,
     name_of,
     offered,
     provided_axes,
@@ -74,6 +75,11 @@ def bindings_of(
 ) -> tuple[Binding, ...]:
     """What provides each command that an instance requires."""
     made: list[Binding] = []
+    for form, provider in given.values():
+        if provider is not None and form.has("time_limit") and not has_tasks(provider):
+            message = f"`time_limit` has no meaning for {name_of(provider)}, which has no task"
+            hint = "remove it: a device is called directly"
+            findings.error("RV-1214", form.at_key("time_limit"), message, hint=hint)
     for instance in instances:
         unbound: set[str] = set()
         uneven: set[tuple[str, str]] = set()

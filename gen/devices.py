@@ -190,8 +190,16 @@ class Devices:
     def _array(self, name: str, form: DeviceForm, members: list[Provider]) -> Device | None:
         """Devices of one kind as one: per axis commands are joined, others go to all."""
         pieces: list[Device] = []
+        places: dict[str, str] = {}
         for index, member in enumerate(members):
             at = form.item_at("array", index)
+            for leaf in member.leaves() if isinstance(member, Device) else ():
+                first = places.setdefault(leaf.name, name_of(member))
+                if first != name_of(member):
+                    where = f"in {first}, {name_of(member)}"
+                    message = f"{leaf.name} stands twice in `array`: {where}"
+                    hint = "a piece of equipment has its axes once: remove one of them"
+                    self.findings.error("RV-1210", at, message, hint=hint)
             if not isinstance(member, Device):
                 what = "a facade" if isinstance(member, Facade) else "a task's interface"
                 message = f"{name_of(member)} is {what}, and an array is made of devices"
@@ -300,6 +308,12 @@ def ungathered(provider: Provider, command: str) -> Device | None:
 def provided_axes(provider: Device | Server, command: str) -> int:
     """The number of axes that a provider has."""
     return provider.axes if isinstance(provider, Device) else provider.interface.axes
+
+
+def has_tasks(provider: Provider) -> bool:
+    """Whether a task provides something of it."""
+    members = provider.members if isinstance(provider, Facade) else ()
+    return isinstance(provider, Server) or any(has_tasks(one) for one in members)
 
 
 def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:

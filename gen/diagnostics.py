@@ -190,7 +190,7 @@ CODES: Mapping[str, str] = {
     "RV-1211": "An array is made of other things than devices of one kind.",
     "RV-1212": "Two members of a facade provide a command, or the wrong one is chosen.",
     "RV-1213": "The replies of the members of an array cannot be given as one.",
-    "RV-1214": "A reply or value from another node has no limit of its time.",
+    "RV-1214": "A reply or value from another node has no limit of its time, or a device has one.",
     "RV-1215": "An event stands among commands, or its port does not fit.",
 }
 """Every code with what it says; docs/errors.md is written from this table."""

@@ -261,9 +261,11 @@ def _declare(
                 is_void=need.argument is None,
             )
         members.ports.declare(name, origin, port)
-    if need is not None and need.reply_item is not None and need.reply is not None:
-        last = Data(need.reply_item, origin, need.reply, default(need.reply), is_command=True)
-        members.data.declare(need.reply_item, origin, last)
+        item, last = f"{name}_Reply", None
+        if need is not None and need.reply is not None:
+            last = Data(item, origin, need.reply, default(need.reply), is_command=True)
+        if need is None or last is not None:
+            members.data.declare(item, origin, last)
 
 
 def stand_ins_agree(form: ComponentForm, component: Component, findings: Findings) -> None:

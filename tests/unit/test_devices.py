@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
+from analysis.figures import figures
 from analysis.timing import analyse
 from behaviour.rules import findings
 from gen.claims import Claims
@@ -220,6 +222,19 @@ def test_a_queue_of_requests_has_the_ceiling_of_callers_and_server() -> None:
     assert queue.ceiling == max(p.priority for p in _requests().processors)
 
 
+def test_a_reply_that_nobody_takes_is_given_all_the_same() -> None:
+    spec = "Home_Reply : out Requests_Feature.Outcome"
+    text = " ".join(_text(_requests()).split())
+    assert spec in text and " Home_Reply : Requests_Feature.Outcome;" in text
+    alone = _requests(
+        ("Home: {on_reply: Homed}", "Home: {}"),
+        ("on: Homed, guard: event = Well", "after: 20 ms"),
+        ("Homed: {type: Outcome}, ", ""),
+    )
+    text = " ".join(_text(alone).split())
+    assert spec in text and " Unused_Home_Reply : Requests_Feature.Outcome;" in text
+
+
 def test_a_reply_that_is_looked_at_has_a_board_and_others_have_none() -> None:
     system = _requests()
     assert set(system.object("boss_1.Get_Limit_Reply").users) == {"moving", "planning"}
@@ -236,6 +251,24 @@ def test_who_serves_requests_calls_devices_for_each_of_them() -> None:
     )
     assert _budgets(called)["mover_1.Serve"] == 100_000 + 2 * 4_000
     assert "moving" in called.object("Brake_1").users
+
+
+def test_every_command_is_accounted_for_by_its_binding() -> None:
+    found = json.loads(json.dumps(figures(analyse(_requests()))))["commands"]
+    of = {(one["caller"], one["command"]): one for one in found}
+    assert {key: one["how"] for key, one in of.items()} == {
+        ("boss_1.Plan", "Set_Goal"): "queued",
+        ("boss_1.Plan", "Hold"): "queued",
+        ("boss_1.Plan", "Home"): "queued",
+        ("boss_1.Plan", "Get_Limit"): "queued",
+        ("boss_1.Plan", "Get_Place"): "copied",
+        ("boss_1.Plan", "Reset"): "direct",
+        ("hurry_1.Push", "Set_Goal"): "queued",
+    }
+    # the driver works in the budget of its caller; a queue waits for the server's next execution
+    assert of["boss_1.Plan", "Reset"]["budget"] == 4_000
+    assert of["boss_1.Plan", "Home"]["budget"] == 0
+    assert 20_000_000 < of["boss_1.Plan", "Home"]["executed"] < 26_000_000
 
 
 def test_a_chain_goes_through_a_queue_of_requests() -> None:
