@@ -15,7 +15,7 @@ from .commands import Remote, RemoteRead
 from .identifiers import OPEN
 from .model import Bus, Connection, Instance, Message, Node, Processor, Shutdown, System
 from .names import problem_of
-from .signals import length_of, signals_of
+from .signals import fits_classic, length_of, signals_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,7 @@ class Carrier:
 
     There is one of each output port, called like instance and port, with the period of
     what sends it, unless the model has a message of that port; then it has more targets.
+    What no classic frame can carry is CAN FD where the bus has a rate for that.
     """
 
     instances: Mapping[str, Instance]
@@ -67,6 +68,7 @@ class Carrier:
         if self.bus is None or period is None or problem_of(name) is not None:
             return None
         signals = signals_of(type_)
+        fd = self.bus.data_rate is not None and not fits_classic(signals)
         return Message(
             name=name,
             origin=connection.origin,
@@ -75,10 +77,11 @@ class Carrier:
             extended=False,
             type=type_,
             signals=signals,
-            length=length_of(signals),
+            length=length_of(signals, fd=fd),
             source=end,
             targets=(connection.target,),
             period=period,
+            fd=fd,
         )
 
 

@@ -22,7 +22,7 @@ from .component import Activity
 from .identifiers import OPEN
 from .model import NO_TIME, Chain, End, Message, System
 from .names import problem_of
-from .signals import length_of, signals_of
+from .signals import fits_classic, length_of, signals_of
 from .statechart import Region
 from .terms import BUILT_IN, Field, IntegerType, Ns, Origin, RecordType, Type, named
 
@@ -165,7 +165,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
     )
     providers = {(binding.instance, need.name): remote}
     if need.reply is None or not limit:
-        return _Call(providers, (_laid_out(here),), (), (NUMBER, here.type))
+        return _Call(providers, (_laid_out(here, system),), (), (NUMBER, here.type))
     server_component = system.instance(server.instance).component
     back = replace(
         here,
@@ -176,7 +176,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
         period=named(server_component.activities, str(server.interface.server)).timing.period,
     )
     chain = Chain(call, binding.origin, (call, remote.served, reply), reaction=limit, age=None)
-    messages = (_laid_out(here), _laid_out(back))
+    messages = tuple(_laid_out(one, system) for one in (here, back))
     return _Call(providers, messages, (chain,), (NUMBER, here.type, back.type))
 
 
@@ -247,13 +247,14 @@ def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
         period=Ns(writer.timing.period * every),
         every=every,
     )
-    return _Call(providers, (_laid_out(message),), tuple(chains), ())
+    return _Call(providers, (_laid_out(message, system),), tuple(chains), ())
 
 
-def _laid_out(message: Message) -> Message:
-    """The message as small as its value is."""
+def _laid_out(message: Message, system: System) -> Message:
+    """The message as small as its value is; CAN FD where it must be, and its bus has a rate."""
     signals = signals_of(message.type)
-    return replace(message, signals=signals, length=length_of(signals))
+    fd = system.buses[0].data_rate is not None and not fits_classic(signals)
+    return replace(message, signals=signals, length=length_of(signals, fd=fd), fd=fd)
 
 
 def _numbered(name: str, origin: Origin, carried: Type | None) -> RecordType:

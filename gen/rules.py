@@ -192,7 +192,8 @@ def payloads_fit(resolved: Resolved) -> Iterator[Diagnostic]:
             widths = ", ".join(f"{one.field or item.name} {one.width}" for one in item.signals)
             shortened = widths if len(widths) <= 200 else widths[:197] + "..."
             message = f"{item.name} needs {bits} bits for {item.type.name}, and a frame has {room}"
-            hint = f"narrow its ranges or split it; bits by field: {shortened}"
+            larger = "" if item.fd else ", or let its bus carry CAN FD (`format: fd`, `data_rate`)"
+            hint = f"narrow its ranges or split it{larger}; bits by field: {shortened}"
             notes = [(item.type.origin, f"{item.type.name} is declared here")]
             yield error("RV-0610", item.origin, message, notes=notes, hint=hint)
 

@@ -50,7 +50,8 @@ class BusForm(Element):
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
     data_rate: DataRate | None = optional(
         "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
-        "do not switch unless given."
+        "do not switch unless given. With it, what connections and commands between nodes carry is "
+        "CAN FD where it needs more than 8 bytes."
     )
     identifiers: Literal["deadline", "audsley"] = PydanticField(
         default="deadline",

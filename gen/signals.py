@@ -197,3 +197,8 @@ def length_of(signals: tuple[Signal, ...], *, fd: bool = False) -> int:
 def room_of(*, fd: bool) -> int:
     """Payload of a frame at most, in bits."""
     return 8 * FD_SIZES[-1] if fd else FRAME_BITS
+
+
+def fits_classic(signals: tuple[Signal, ...]) -> bool:
+    """Is a classic frame enough?"""
+    return bits_of(signals) <= FRAME_BITS

@@ -128,7 +128,9 @@ class _Drawing:
         return _framed(f"node {node.name}", f"node {html(node.name, 'b')}{LEFT}", look, items)
 
     def _bus(self, bus: Bus) -> Group:
-        title = f"bus {html(bus.name, 'b')}{LEFT}{_rate(bus.bit_rate)}{LEFT}"
+        rates = _rate(bus.bit_rate)
+        rates += "" if bus.data_rate is None else f", data {_rate(bus.data_rate)}"
+        title = f"bus {html(bus.name, 'b')}{LEFT}{rates}{LEFT}"
         messages = [
             Drawn(_message_name(m), {"label": _message(m)})
             for m in self.system.messages
@@ -278,5 +280,6 @@ def _message_name(message: Message) -> str:
 def _message(message: Message) -> Html:
     digits = 8 if message.extended else 3
     facts = f"0x{message.identifier:0{digits}X}, {shown(message.period)}"
+    facts += ", FD" if message.fd else ""
     cell = f'<td bgcolor="{PAPER}">{html(message.name)}<br/>{facts}</td>'
     return Html(f'<table border="0" cellborder="1" cellspacing="0"><tr>{cell}</tr></table>')

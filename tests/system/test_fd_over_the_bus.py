@@ -40,6 +40,11 @@ def folder(tmp_path: Path) -> Path:
 def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(folder: Path) -> None:
     checked = steps.check(folder / "model.yaml")
     assert not checked.warnings
+    assert {m.name: (m.fd, m.length) for m in checked.system.messages} == {
+        "skin_1_forces": (True, 48),
+        "grip_1_order": (False, 1),
+        "tuning": (True, 12),
+    }
     steps.write_program(checked)
     outcome = run_nodes(
         tuple(controller(made) for made in steps.programs_of(checked)),

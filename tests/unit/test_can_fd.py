@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from analysis.report import render
 from analysis.timing import analyse
+from gen.draw.structure import structure_dot
 from gen.generate import generate
 from gen.model import System
 from ravenchart import steps
@@ -70,6 +72,15 @@ def test_a_frame_is_sent_at_the_data_rate_where_there_is_one(
     body = files_of(text, tmp_path)["pump_house-can_bus.adb"]
     assert f"Rate => Ravenchart.Can.Fd_Frames.{rate}_Rate" in body
     assert "Words => Codecs.Pack_Report (Item)" in body
+
+
+def test_the_report_and_the_picture_say_what_is_can_fd_and_how_fast() -> None:
+    system = system_of_text(FAST)
+    page = render(analyse(system))
+    assert "500 kbit/s, 2000 kbit/s for the data of CAN FD frames" in page
+    assert '<td class="n">48 FD</td>' in page and '<td class="n">2 FD</td>' not in page
+    drawn = structure_dot(system)
+    assert "500 kbit/s, data 2 Mbit/s" in drawn and "20 ms, FD" in drawn
 
 
 FOREIGN = PUMP.replace(

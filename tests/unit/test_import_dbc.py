@@ -88,10 +88,11 @@ def layout(text: str) -> dict[str, object]:
     }
 
 
+@pytest.mark.parametrize("case", ["signals", "flexible"])
 def test_what_is_imported_is_exported_again_as_it_was(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    system = system_of(ROOT / "tests" / "feature" / "signals" / "model.yaml")
+    system = system_of(ROOT / "tests" / "feature" / case / "model.yaml")
     first = emit_dbc(system, system.buses[0])
     (tmp_path / "line.dbc").write_text(first)
     assert main(["import-dbc", str(tmp_path / "line.dbc"), "--node", "board"]) == OK

@@ -280,6 +280,21 @@ def test_one_line_puts_both_on_one_node_and_no_component_changes() -> None:
         assert found == _sources(together, "panel", unit)
 
 
+def test_what_no_classic_frame_can_carry_is_can_fd_where_the_bus_has_a_rate() -> None:
+    rate = (BUS, BUS.replace("500 kbit/s,", "500 kbit/s, data_rate: 2 Mbit/s,"))
+    system = _system(("range: [-1000, 1000]", f"range: {WIDE}"), rate)
+    assert {m.name: (m.fd, m.length) for m in system.messages} == {
+        "boss_1_Set_Goal": (True, 12),
+        "boss_1_Home": (False, 1),
+        "boss_1_Home_Reply": (False, 2),
+        "boss_1_Get_Limit": (False, 2),
+        "boss_1_Get_Limit_Reply": (True, 12),
+        "mover_1_Get_Place": (False, 8),
+    }
+    for made in programs(system):
+        assert all(line.takes_fd for line in made.buses)
+
+
 def test_each_node_has_its_program_and_the_objects_of_its_side() -> None:
     panel, drive = programs(_system())
     assert panel.object("boss_1.Home.call").users == ("planning", "reception_panel")
