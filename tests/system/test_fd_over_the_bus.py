@@ -13,7 +13,7 @@ import pytest
 
 from analysis.observed import Observation, read_map, read_trace
 from hw_can.bench.bus_client import RavenchartBus
-from hw_can.bench.peer import Codec
+from hw_can.bench.peer import BenchError, Codec
 from ravenchart import bus, steps, toolchain
 from ravenchart.__main__ import main
 from ravenchart.demo.process import ControllerProcess
@@ -64,6 +64,16 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(folder: Path
     assert [r.text for r in outcome.observation.of("transition", "skin_1.Life")] == ["tared"]
 
 
+def test_a_rate_that_the_simulated_bus_cannot_have_is_told(folder: Path) -> None:
+    model = folder / "model.yaml"
+    model.write_text(model.read_text().replace("data_rate: 4 Mbit/s", "data_rate: 3 Mbit/s"))
+    checked = steps.check(model)
+    steps.write_program(checked)
+    dbc = folder / "generated" / "link.dbc"
+    with pytest.raises(BenchError, match="link: a bit at 3000000 bit/s is no whole number of ns"):
+        run_nodes((), checked.analysis, dbc, None, 1.0, folder / "report")
+
+
 def changed(frame: can.Message, **fields: object) -> can.Message:
     """The frame with other fields."""
     made = can.Message(
@@ -108,7 +118,7 @@ def palm(folder: Path) -> Callable[[Callable[[RavenchartBus, Codec], None]], Obs
 
     def run(play: Callable[[RavenchartBus, Codec], None]) -> Observation:
         trace = folder / "trace.txt"
-        words = ("port=0", "bitrate=500000", "data_bitrate=2000000")
+        words = ("port=0", "bitrate=500000", "data_bitrate=4000000")
         with bus.running(*words) as (_, channel):
             port = channel.rpartition(":")[2]
             process = ControllerProcess(
