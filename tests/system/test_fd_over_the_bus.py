@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import shutil
+import subprocess
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import can
@@ -37,7 +39,17 @@ def folder(tmp_path: Path) -> Path:
     return copy
 
 
-def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(folder: Path) -> None:
+def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    real = bus.running
+
+    def running(*words: str) -> AbstractContextManager[tuple[subprocess.Popen[str], str]]:
+        told.extend(words)
+        return real(*words)
+
+    monkeypatch.setattr(bus, "running", running)
     checked = steps.check(folder / "model.yaml")
     assert not checked.warnings
     assert {m.name: (m.fd, m.length) for m in checked.system.messages} == {
@@ -54,6 +66,7 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(folder: Path
         0.0,
         folder / "report",
     )
+    assert {"bitrate=500000", "data_bitrate=4000000"} <= set(told)
     #  how long a response takes is for runs on a machine of their own to say
     assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
     assert (outcome.ended.exit_code, outcome.ended.killed) == (0, False)
