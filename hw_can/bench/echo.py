@@ -24,6 +24,9 @@ class Standing:
     rejected: int = 0
     tec: int = 0
     rec: int = 0
+    passive: int = 0
+    off: int = 0
+    back: int = 0
 
 
 class Echo:

@@ -11,12 +11,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
-import yaml
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from gen.diagnostics import error, render
+from gen.terms import Origin
+from gen.tree import grow
 
 from .plant import Axis
+from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
+from .reading import Path as Place
 
 _QUANTITY = re.compile(r"(-?\d+(?:\.\d+)?) ?([a-z/]+)")
 _LENGTHS = {"um": 1e-6, "mm": 1e-3, "m": 1.0}
@@ -25,7 +30,7 @@ _TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 class ScenarioError(Exception):
-    """A scenario that cannot be run: one line for each mistake, with file and line."""
+    """A scenario that cannot be run: every mistake, with file, line, column, code and hint."""
 
 
 def _quantity(value: object, units: Mapping[str, float]) -> float:
@@ -33,7 +38,7 @@ def _quantity(value: object, units: Mapping[str, float]) -> float:
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
     if match is None or match[2] not in units:
         known = [*units]
-        raise ValueError(f"expected a number and one of {', '.join(known)}, such as 5 {known[1]}")
+        raise ValueError(f"a number and one of {', '.join(known)}, such as `5 {known[1]}`")
     return float(match[1]) * units[match[2]]
 
 
@@ -200,9 +205,36 @@ class Mend(_Form):
     mend: Literal[True]
 
 
+class Hold(_Form):
+    """The bus is shorted to one level from that time on: no other gets through."""
+
+    at: Time
+    hold: Literal["dominant", "recessive"]
+
+
+class LetGo(_Form):
+    """The bus is held no more from that time on."""
+
+    at: Time
+    let_go: Literal[True]
+
+
+BusEvent = Cut | Mend | Hold | LetGo
+
+BUS_EVENTS: Mapping[str, type[BusEvent]] = {
+    "cut": Cut,
+    "mend": Mend,
+    "hold": Hold,
+    "let_go": LetGo,
+}
+"""Each event of the bus by the key that tells it from the others."""
+
+
 class TraceCheck(_Form):
     """After the run, the controller's trace must show that a region reached a state.
 
+    Of a bus with `watch`, `node.bus` stands for the controller of a node, and the states are
+    those of its fault confinement.
     With ``within`` the state was entered at most that long after the last arrival at
     the port ``after_last``, or after the one before the longest silence at the port
     ``after_silence``. With ``then`` it went on to that state later.
@@ -230,13 +262,13 @@ class TraceCheck(_Form):
 
 
 class _File(_Form):
-    """The whole file; its steps are checked one by one."""
+    """The whole file; what is inside its lists and mappings is read item by item."""
 
     scenario: str
-    drives: dict[str, DriveForm] = {}
-    bus: list[Cut | Mend] = []
-    steps: Annotated[list[dict[str, Any]], Field(min_length=1)]
-    expect_trace: list[TraceCheck] = []
+    drives: dict[str, Any] = {}
+    bus: list[Any] = []
+    steps: Annotated[list[Any], Field(min_length=1)]
+    expect_trace: list[Any] = []
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,133 +280,123 @@ class Scenario:
     steps: tuple[Step, ...]
     lines: tuple[int, ...]
     trace_checks: tuple[TraceCheck, ...]
-    bus_events: tuple[Cut | Mend, ...] = ()
+    bus_events: tuple[BusEvent, ...] = ()
     """What happens on the bus between several nodes; times in s since it was started."""
+    source: Source | None = None
+    """The file, to say where something stands."""
 
 
 def load_scenario(path: Path) -> Scenario:
     """The scenario in a file; ScenarioError tells everything that is wrong with it."""
     try:
         text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as fault:
-        raise ScenarioError(f"{path}: error: cannot be read: {fault}") from None
-    return parse_scenario(text, path.name)
+    except UnicodeDecodeError:
+        raise _unreadable(path, "it is not UTF-8 text") from None
+    except OSError as fault:
+        raise _unreadable(path, (fault.strerror or str(fault)).lower()) from None
+    return parse_scenario(text, str(path))
+
+
+def _unreadable(path: Path, reason: str) -> ScenarioError:
+    origin = Origin(str(path), 1, 1)
+    return ScenarioError(render(error("RV-1301", origin, f"cannot read {path}: {reason}"), {}))
 
 
 def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
     """The scenario in ``text``; ScenarioError tells everything that is wrong with it."""
-    try:
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
-        content = yaml.safe_load(text)
-    except yaml.MarkedYAMLError as fault:
-        line = fault.problem_mark.line + 1 if fault.problem_mark else 1
-        raise ScenarioError(f"{file}:{line}: error: {fault.problem}") from None
-    if not isinstance(content, dict):
-        raise ScenarioError(f"{file}:1: error: a scenario is a mapping")
-    problems: list[tuple[int, str]] = []
-
-    def note(fault: ValidationError, where: tuple[int | str, ...] = ()) -> None:
-        for item in fault.errors():
-            place = (*where, *item["loc"])
-            name = ".".join(str(part) for part in place)
-            message = item["msg"].removeprefix("Value error, ")
-            problems.append((_line(root, place), f"{name}: {message}"))
-
-    try:
-        form = _File.model_validate(content)
-    except ValidationError as fault:
-        note(fault)
-        raise _failure(file, problems) from None
-    steps: list[Step] = []
-    for index, raw in enumerate(form.steps):
-        kinds = [key for key in raw if key in STEPS]
-        if len(kinds) != 1:
-            line = _line(root, ("steps", index))
-            problems.append((line, f"steps.{index}: exactly one of {', '.join(STEPS)} is wanted"))
-            continue
-        try:
-            steps.append(STEPS[kinds[0]].model_validate(raw))
-        except ValidationError as fault:
-            note(fault, ("steps", index))
-    for place, message in _misfits(form, steps):
-        problems.append((_line(root, place), message))
-    if problems:
-        raise _failure(file, problems)
-    lines = tuple(_line(root, ("steps", index)) for index in range(len(steps)))
-    return Scenario(
+    tree, found = grow(text, file)
+    if tree is None and all(one.code in ("RV-0104", "RV-0203") for one in found):
+        hint = "start with `scenario: A title` and `steps:`"
+        found = [error("RV-1301", Origin(file, 1, 1), "a scenario is a mapping", hint=hint)]
+    if tree is None or found:
+        raise ScenarioError(rendered(found, file, text))
+    source = Source(file, text, tree)
+    form = source.read(_File, tree, ())
+    if form is None:
+        raise ScenarioError(source.told())
+    drives = {name: source.read(DriveForm, v, ("drives", name)) for name, v in form.drives.items()}
+    steps = [_one_of(source, STEPS, raw, ("steps", n)) for n, raw in enumerate(form.steps)]
+    bus = [_one_of(source, BUS_EVENTS, raw, ("bus", n)) for n, raw in enumerate(form.bus)]
+    checks = [
+        source.read(TraceCheck, raw, ("expect_trace", n)) for n, raw in enumerate(form.expect_trace)
+    ]
+    scenario = Scenario(
         form.scenario,
-        form.drives,
-        tuple(steps),
-        lines,
-        tuple(form.expect_trace),
-        tuple(form.bus),
+        {name: one for name, one in drives.items() if one is not None},
+        tuple(one for one in steps if one is not None),
+        tuple(source.at(("steps", index)).line for index in range(len(steps))),
+        tuple(one for one in checks if one is not None),
+        tuple(one for one in bus if one is not None),
+        source,
     )
+    if not source.found:
+        _fit_together(scenario, source)
+    if source.found:
+        raise ScenarioError(source.told())
+    return scenario
 
 
-def _misfits(form: _File, steps: list[Step]) -> Iterator[tuple[tuple[int | str, ...], str]]:
-    """What does not fit together: impossible axes, steps about unknown drives."""
-    for name, drive in form.drives.items():
+Kind = TypeVar("Kind", bound=BaseModel)
+
+
+def _one_of(
+    source: Source, kinds: Mapping[str, type[Kind]], raw: object, path: Place
+) -> Kind | None:
+    """A form that one of its keys tells from the others."""
+    known = ", ".join(f"`{key}`" for key in kinds)
+    if not isinstance(raw, dict):
+        source.wrong(VALUES, path, "this must be a mapping, `{key: value}`", f"one of {known}")
+        return None
+    given = [key for key in raw if key in kinds]
+    if len(given) != 1:
+        found = " and ".join(f"`{key}`" for key in given) or "none of them"
+        message = f"must have exactly one of {known}; found {found}"
+        source.wrong(KEYS, path, message)
+        return None
+    return source.read(kinds[given[0]], raw, path)
+
+
+def _fit_together(scenario: Scenario, source: Source) -> None:
+    """Report impossible axes, steps about unknown drives, times out of order."""
+    for name, drive in scenario.drives.items():
         try:
             drive.axis()
         except ValueError as fault:
-            yield ("drives", name), f"drives.{name}: {fault}"
-    if len(steps) < len(form.steps):
-        return
-    for index, step in enumerate(steps):
-        for name in _drives_of(step):
-            if name not in form.drives:
-                yield ("steps", index), f"steps.{index}: there is no drive {name}"
-    for index, check in enumerate(form.expect_trace):
+            source.wrong(MISFIT, ("drives", name), f"the drive {name} cannot be: {fault}", key=True)
+    known = ", ".join(scenario.drives)
+    hint = f"the drives are {known}" if known else "the scenario has no `drives`"
+    for index, step in enumerate(scenario.steps):
+        for path, name in _drives_of(step):
+            if name not in scenario.drives:
+                message = f"there is no drive `{name}`"
+                source.wrong(UNKNOWN, ("steps", index, *path), message, hint, key=len(path) > 1)
+    for index, check in enumerate(scenario.trace_checks):
         place = ("expect_trace", index)
         if (check.within is None) != (check.port is None):
-            what = "within and after_last or after_silence go together"
-            yield place, f"expect_trace.{index}: {what}"
+            message = "`within` needs one of `after_last` and `after_silence`, and they need it"
+            source.wrong(MISFIT, place, message)
         if check.after_last is not None and check.after_silence is not None:
-            yield place, f"expect_trace.{index}: after_last or after_silence, not both"
-    times = [event.at for event in form.bus]
-    for index, (one, other) in enumerate(pairwise(times), 1):
-        if other <= one:
-            yield ("bus", index), f"bus.{index}: comes no later than the event before it"
+            source.wrong(MISFIT, place, "give `after_last` or `after_silence`, not both")
+    for index, (one, other) in enumerate(pairwise(scenario.bus_events), 1):
+        if other.at <= one.at:
+            message = f"{other.at:g} s is not after {one.at:g} s of the event above"
+            hint = "put the events in order of time"
+            source.wrong(MISFIT, ("bus", index, "at"), message, hint)
 
 
-def _drives_of(step: Step) -> tuple[str, ...]:
-    """The drives that a step names."""
+def _drives_of(step: Step) -> Iterator[tuple[Place, str]]:
+    """The drives that a step names, and where."""
     match step:
         case Expect():
-            return tuple(step.expect)
+            yield from ((("expect", name), name) for name in step.expect)
         case ExpectStop():
-            return (step.expect_stop,)
+            yield ("expect_stop",), step.expect_stop
         case Pull():
-            return (step.pull,)
+            yield ("pull",), step.pull
         case Release():
-            return (step.release,)
+            yield ("release",), step.release
         case StopFeedback() if step.stop_feedback != "all":
-            return (step.stop_feedback,)
-    return ()
-
-
-def _line(node: yaml.Node | None, place: tuple[int | str, ...]) -> int:
-    """The line of the innermost node on the way to ``place``, from 1."""
-    line = 1
-    for part in place:
-        if node is None:
-            break
-        line = node.start_mark.line + 1
-        below: yaml.Node | None = None
-        if isinstance(node, yaml.MappingNode):
-            for key, value in node.value:
-                if key.value == str(part):
-                    below, line = value, key.start_mark.line + 1
-        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int):
-            below = node.value[part]
-            line = node.value[part].start_mark.line + 1
-        node = below
-    return line
-
-
-def _failure(file: str, problems: list[tuple[int, str]]) -> ScenarioError:
-    """One line for each problem, in the order of the file."""
-    return ScenarioError("\n".join(f"{file}:{n}: error: {text}" for n, text in sorted(problems)))
+            yield ("stop_feedback",), step.stop_feedback
 
 
 def _values(fields: Mapping[str, object]) -> str:

@@ -2,10 +2,12 @@
 --
 --  Guarantees   frames leave in the order sent, or where the driver's
 --               transmit buffers are by priority the most urgent first, and
---               arrive in the order received; what does not fit is counted
---  Tasking      Send, Read_State and Read_Counters by any task up to
---               Transmit_Ceiling; one caller of Wait_Frame, up to
---               Receive_Ceiling
+--               arrive in the order received; what does not fit is counted;
+--               the log of faults has every change of state that the driver
+--               is shown (docs/drivers.md), however short
+--  Tasking      Send, Read_State, Read_Faults, Read_Counters and
+--               Request_Recovery by any task up to Transmit_Ceiling; one
+--               caller of Wait_Frame, up to Receive_Ceiling
 --  Timing       constant; only Wait_Frame suspends
 --  Analysis     the driver's tasks at Driver_Priority, and shared objects
 --               at the two ceilings
@@ -13,6 +15,7 @@
 
 with System;
 with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Queueing;
 
 generic
@@ -59,6 +62,16 @@ is
    procedure Read_State (Now : out Controller_State)
    with Global => (Input => State);
    --  How the controller stands on the bus.
+
+   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
+   with Global => (Input => State);
+   --  How it stands, and how often it became error-passive and bus-off.
+
+   procedure Request_Recovery
+   with Global => (In_Out => Wake_Up);
+   --  Ask a controller that is bus-off to recover, where Setting.Recovery is
+   --  On_Request. In any other state there is nothing to recover from, and
+   --  the request is forgotten; one that was made already is still the same.
 
    procedure Read_Counters (C : out Counters)
    with Global => (Input => State);

@@ -110,14 +110,20 @@ is
 
    subtype Nominal_Rate is Bits_Per_Second range 1 .. 1_000_000;
 
+   type Recovery_Policy is (Automatic, On_Request);
+   --  Who asks a controller to leave bus-off: its driver, as soon as it is
+   --  off, or whoever calls Request_Recovery. ISO 11898-1: it is back when
+   --  it has seen 128 sequences of 11 recessive bits since.
+
    type Bus_Setting is record
       Bit_Rate  : Nominal_Rate := 500_000;
       Data_Rate : Bits_Per_Second := 0;
       Takes_Fd  : Boolean := False;
+      Recovery  : Recovery_Policy := Automatic;
    end record;
    --  How a controller is configured: the bit rate, that of the data of CAN
-   --  FD frames with switched rate, 0 where none switches, and whether there
-   --  are CAN FD frames on the bus.
+   --  FD frames with switched rate, 0 where none switches, whether there are
+   --  CAN FD frames on the bus, and how it leaves bus-off.
 
    type Send_Status is (Queued, Rejected_Full);
    --  What became of a frame handed to a controller.

@@ -1,7 +1,8 @@
 --  Driver "loopback": a bus inside the process, with this one node on it,
 --  which receives what it sends.
 --
---  Guarantees   frames come back in the order sent; none is corrupted
+--  Guarantees   frames come back in the order sent; none is corrupted; the
+--               node is error-active, and never has to recover
 --  Tasking      one task, the bus
 --  Timing       a frame takes no time on the bus
 
@@ -13,7 +14,7 @@ package body Ravenchart.Can.Controllers
     SPARK_Mode,
     Refined_State =>
       (State   => (Transmit.State, Receive.State, Status_Board, Bus),
-       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up))
+       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Asked))
 is
    use type Queueing.Put_Status;
 
@@ -35,14 +36,18 @@ is
 
       procedure Count_Received;
 
-      function State_Now return Controller_State;
+      function Faults return Fault_Notices.Fault_Log;
 
       function All_Counts return Counters;
 
    private
-      Now    : Controller_State := Stopped;
+      Log    : Fault_Notices.Fault_Log;
       Counts : Counters;
    end Status_Board;
+
+   Asked : Boolean := False
+   with Atomic;
+   --  True when recovery was requested. It is never needed here.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -56,7 +61,7 @@ is
 
       procedure Begin_Bus is
       begin
-         Now := Error_Active;
+         Log := Fault_Notices.Noted (Log, Error_Active);
       end Begin_Bus;
 
       procedure Count_Sent is
@@ -69,8 +74,8 @@ is
          Counts.Received := Next (Counts.Received);
       end Count_Received;
 
-      function State_Now return Controller_State
-      is (Now);
+      function Faults return Fault_Notices.Fault_Log
+      is (Log);
 
       function All_Counts return Counters
       is (Counts);
@@ -112,9 +117,24 @@ is
    procedure Read_State (Now : out Controller_State)
    with Refined_Global => Status_Board
    is
+      Log : constant Fault_Notices.Fault_Log := Status_Board.Faults;
    begin
-      Now := Status_Board.State_Now;
+      Now := Log.State;
    end Read_State;
+
+   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
+   with Refined_Global => Status_Board
+   is
+   begin
+      Log := Status_Board.Faults;
+   end Read_Faults;
+
+   procedure Request_Recovery
+   with Refined_Global => (Output => Asked)
+   is
+   begin
+      Asked := True;
+   end Request_Recovery;
 
    procedure Read_Counters (C : out Counters)
    with

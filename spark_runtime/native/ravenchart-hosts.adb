@@ -1,4 +1,3 @@
-with Ada.Real_Time;
 with Interfaces.C.Strings;
 with System;
 
@@ -226,7 +225,7 @@ is
    --------------------
 
    function Stop_Requested return Boolean
-   is (Stop_Flag);
+   is (Stop_Flag or else Failures.Stop_Needed);
 
    ---------------
    -- Put_Trace --
@@ -299,18 +298,40 @@ is
       Put_Line ("W " & Image (Long_Long_Integer (Longest)));
    end Put_Host_Latency;
 
+   -------------
+   -- Put_Now --
+   -------------
+
+   procedure Put_Now is
+      Now : Nanoseconds;
+   begin
+      Epochs.Since_Start (Now);
+      Put_Line ("N " & Image (Long_Long_Integer (Now)));
+   end Put_Now;
+
+   ---------------
+   -- Put_Feeds --
+   ---------------
+
+   procedure Put_Feeds (Count : Event_Count) is
+   begin
+      Put_Line ("F " & Image (Long_Long_Integer (Count)));
+   end Put_Feeds;
+
    ------------
    -- Finish --
    ------------
 
    procedure Finish (Success : Boolean) is
+      Failed  : constant Boolean := Failures.Stop_Needed;
       Ignored : C_Int;
    begin
       Put_Line ("END");
       Flush;
       --  What the user's own bodies printed goes out as well.
       Ignored := C_Flush (System.Null_Address);
-      C_Exit (if Success then 0 else 1);
+      Failures.Put_Reasons;
+      C_Exit (if Success and then not Failed then 0 else 1);
    end Finish;
 
 end Ravenchart.Hosts;

@@ -14,8 +14,10 @@ is
       Queue_Overflow,
       Stale_Input,
       Can_Error_Passive,
-      Can_Bus_Off);
-   --  The faults the runtime and the HAL can notice.
+      Can_Bus_Off,
+      Silence);
+   --  The faults the runtime and the HAL can notice. The controller counts
+   --  those of CAN itself (Read_Faults), and a report has those counts.
 
    type Fault_Counts is array (Fault_Kind) of Event_Count;
    --  How often each fault was recorded.

@@ -1,6 +1,7 @@
 with Ada.Real_Time;
 with Ravenchart.Blackboards;
 with Ravenchart.Epochs;
+with Ravenchart.Failures;
 
 package body Ravenchart.Host_Probes
   with
@@ -36,6 +37,7 @@ is
       Worst : Nanoseconds := 0;
       Now   : Ada.Real_Time.Time;
    begin
+      Failures.Register (Name);
       loop
          delay until Due;
          Now  := Ada.Real_Time.Clock;

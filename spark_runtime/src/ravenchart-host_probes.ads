@@ -12,6 +12,8 @@
 with System;
 
 generic
+   Name : String;
+   --  Of the task, where it is reported.
    Period : Positive_Nanoseconds;
    Probe_Priority : System.Priority;
    --  Above every other task of the program.

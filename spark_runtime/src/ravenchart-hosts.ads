@@ -11,10 +11,13 @@
 --  names, and nowhere when it is not set. Lines: E clock, the time of this
 --  machine's real-time clock at Start of Epochs; T time kind element value;
 --  P processor releases misses worst_response; A activity worst_execution;
---  H kind count; L what count; W host_latency; END last. Times are in
+--  H kind count; L what count; W host_latency; N now, the time at which the
+--  statistics were read; F feeds of the watchdog; END last. Times are in
 --  nanoseconds.
 
+with Ada.Real_Time;
 with Ravenchart.Epochs;
+with Ravenchart.Failures;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -32,8 +35,8 @@ is
    --  when the process has no real-time priorities.
 
    function Stop_Requested return Boolean
-   with Volatile_Function, Global => Process;
-   --  Has a signal asked the controller to end?
+   with Volatile_Function, Global => (Process, Failures.State);
+   --  Has a signal asked the controller to end, or is there a failure?
 
    procedure Put_Trace (Item : Traces.Trace_Record)
    with Global => (In_Out => Process);
@@ -65,9 +68,20 @@ is
    with Global => (In_Out => Process);
    --  Write a W line: the longest time the host withheld the processor.
 
-   procedure Finish (Success : Boolean)
+   procedure Put_Now
+   with
+     Global =>
+       (Input  => (Epochs.Start, Ada.Real_Time.Clock_Time),
+        In_Out => Process);
+   --  Write an N line: what follows was read no earlier.
+
+   procedure Put_Feeds (Count : Event_Count)
    with Global => (In_Out => Process);
-   --  Write the END line and end the process: status 0 on Success, else 1.
-   --  Tasks never end by themselves.
+   --  Write an F line: how often the watchdog was fed.
+
+   procedure Finish (Success : Boolean)
+   with Global => (In_Out => (Process, Failures.State));
+   --  Write the END line, the reasons of failures on standard error, and end
+   --  the process: status 0 on Success where there is no failure, else 1.
 
 end Ravenchart.Hosts;

@@ -6,6 +6,11 @@ package body Ravenchart.Measured_Releases
 is
    use type Ada.Real_Time.Time;
 
+   procedure Start_Release (Due : Ada.Real_Time.Time) is
+   begin
+      Monitor.Record_Begin (Epochs.To_Nanoseconds (Due - Epochs.Start));
+   end Start_Release;
+
    procedure Run (Release : Natural; Due : Ada.Real_Time.Time) is
       Times    : Monitor.Execution_Times := (others => 0);
       Before   : Nanoseconds;
@@ -37,5 +42,10 @@ is
    begin
       Monitor.Read (S);
    end Observe;
+
+   procedure Observe_Progress (Seen : out Liveness.Progress) is
+   begin
+      Monitor.Read_Progress (Seen);
+   end Observe_Progress;
 
 end Ravenchart.Measured_Releases;

@@ -11,6 +11,7 @@
 
 with System;
 with Ada.Real_Time;
+with Ravenchart.Liveness;
 with Ravenchart.Monitors;
 with Ravenchart.Schedules;
 
@@ -38,11 +39,18 @@ is
      (Activity_Id => Activity_Id,
       Ceiling     => Ceiling);
 
+   procedure Start_Release (Due : Ada.Real_Time.Time);
+   --  A release of a sporadic processor begins that was due at Due.
+
    procedure Run (Release : Natural; Due : Ada.Real_Time.Time);
    --  Run the release that was due at Due and record it.
 
    procedure Observe (S : out Monitor.Statistics)
    with Global => (Input => Monitor.State);
    --  What was observed so far.
+
+   procedure Observe_Progress (Seen : out Liveness.Progress)
+   with Global => (Input => Monitor.State);
+   --  How far the processor has come.
 
 end Ravenchart.Measured_Releases;

@@ -4,21 +4,34 @@ is
    protected Observed
      with Priority => Ceiling
    is
+      procedure Start_One (Due : Nanoseconds);
+
       procedure Add
         (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times);
 
       function Summary return Statistics;
 
+      function Position return Liveness.Progress;
+
    private
-      Sum : Statistics;
+      Sum       : Statistics;
+      Under_Way : Boolean     := False;
+      Begun_For : Nanoseconds := 0;
    end Observed;
 
    protected body Observed is
+
+      procedure Start_One (Due : Nanoseconds) is
+      begin
+         Under_Way := True;
+         Begun_For := Due;
+      end Start_One;
 
       procedure Add
         (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times) is
       begin
          Sum.Releases := Next (Sum.Releases);
+         Under_Way    := False;
          if Missed then
             Sum.Misses := Next (Sum.Misses);
          end if;
@@ -33,7 +46,19 @@ is
       function Summary return Statistics
       is (Sum);
 
+      function Position return Liveness.Progress
+      is (Completed => Sum.Releases,
+          Under_Way => Under_Way,
+          Due       => Begun_For);
+
    end Observed;
+
+   procedure Record_Begin (Due : Nanoseconds)
+   with Refined_Global => (In_Out => Observed)
+   is
+   begin
+      Observed.Start_One (Due);
+   end Record_Begin;
 
    procedure Record_Release
      (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times)
@@ -49,5 +74,12 @@ is
    begin
       S := Observed.Summary;
    end Read;
+
+   procedure Read_Progress (Seen : out Liveness.Progress)
+   with Refined_Global => Observed
+   is
+   begin
+      Seen := Observed.Position;
+   end Read_Progress;
 
 end Ravenchart.Monitors;

@@ -6,6 +6,7 @@
 --  Analysis     one shared object, ceiling Ceiling
 
 with System;
+with Ravenchart.Liveness;
 
 generic
    type Activity_Id is (<>);
@@ -29,6 +30,11 @@ is
    end record;
    --  Misses counts the releases that completed after their deadline.
 
+   procedure Record_Begin (Due : Nanoseconds)
+   with Global => (In_Out => State);
+   --  A release that was due at Due from the start has begun: for sporadic
+   --  processors, whose releases nobody knows before.
+
    procedure Record_Release
      (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times)
    with Global => (In_Out => State);
@@ -37,5 +43,9 @@ is
    procedure Read (S : out Statistics)
    with Global => (Input => State);
    --  Copy what was observed so far.
+
+   procedure Read_Progress (Seen : out Liveness.Progress)
+   with Global => (Input => State);
+   --  Copy how far the processor has come; in constant time.
 
 end Ravenchart.Monitors;

@@ -1,5 +1,6 @@
 with Ada.Real_Time;
 with Ravenchart.Epochs;
+with Ravenchart.Failures;
 
 package body Ravenchart.Periodic_Processors
   with SPARK_Mode
@@ -12,6 +13,7 @@ is
       Release : Natural := 0;
       --  The number of the release, as far as the table can tell.
    begin
+      Failures.Register (Name);
       loop
          delay until Due;
          Releases.Run (Release, Due);

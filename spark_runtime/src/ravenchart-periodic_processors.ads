@@ -3,7 +3,7 @@
 --
 --  Guarantees   release K is due at Epochs.Start + Offset + K * Period: no
 --               drift; a late release is run late, never dropped or merged
---  Tasking      Observe by any task up to Task_Priority
+--  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, the activities whose slot names it
 --  Analysis     one task: T = Period, D = Deadline, O = Offset,
 --               P = Task_Priority, C = the largest sum of budgets over the
@@ -11,10 +11,13 @@
 --  Assumptions  ASM-003, the clock stays within the range of Time
 
 with System;
+with Ravenchart.Liveness;
 with Ravenchart.Measured_Releases;
 with Ravenchart.Schedules;
 
 generic
+   Name : String;
+   --  Of the task, where it is reported.
    type Activity_Id is (<>);
    type Table_Type is array (Activity_Id) of Schedules.Slot;
    Table : Table_Type;
@@ -25,6 +28,8 @@ generic
    Offset : Nanoseconds;
    Deadline : Positive_Nanoseconds;
    Task_Priority : System.Priority;
+   Ceiling : System.Any_Priority;
+   --  At least Task_Priority, and that of every caller of Observe.
    Stack_Bytes : Positive;
    with procedure Execute (Activity : Activity_Id);
    --  Run one activity once. Always returns, never suspends.
@@ -39,6 +44,7 @@ generic
 package Ravenchart.Periodic_Processors
   with SPARK_Mode, Elaborate_Body
 is
+   pragma Assert (Name'Length in 1 .. 128);
    pragma Assert (for all Slot of Table => Schedules.Fits (Slot, Cycle));
 
    package Releases is new Measured_Releases
@@ -46,7 +52,7 @@ is
       Table_Type       => Table_Type,
       Table            => Table,
       Deadline         => Deadline,
-      Ceiling          => Task_Priority,
+      Ceiling          => Ceiling,
       Execute          => Execute,
       On_Deadline_Miss => On_Deadline_Miss,
       On_Executed      => On_Executed);
@@ -56,6 +62,10 @@ is
 
    procedure Observe (S : out Statistics) renames Releases.Observe;
    --  What was observed so far.
+
+   procedure Observe_Progress (Seen : out Liveness.Progress)
+   renames Releases.Observe_Progress;
+   --  How far the processor has come.
 
 private
 

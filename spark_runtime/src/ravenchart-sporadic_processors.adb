@@ -1,5 +1,6 @@
 with Ada.Real_Time;
 with Ravenchart.Epochs;
+with Ravenchart.Failures;
 
 package body Ravenchart.Sporadic_Processors
   with SPARK_Mode
@@ -12,6 +13,7 @@ is
       Earliest   : Ada.Real_Time.Time := Epochs.Start;
       Due        : Ada.Real_Time.Time;
    begin
+      Failures.Register (Name);
       loop
          Wait;
          Due := Ada.Real_Time.Clock;
@@ -19,6 +21,7 @@ is
             Due := Earliest;
             delay until Due;
          end if;
+         Releases.Start_Release (Due);
          Releases.Run (0, Due);
          Earliest := Due + Separation;
       end loop;

@@ -3,7 +3,7 @@
 --
 --  Guarantees   two releases are never due closer than Minimum_Separation; a
 --               release that comes earlier is due when the separation is over
---  Tasking      Observe by any task up to Task_Priority
+--  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, all activities
 --  Analysis     one task: T = Minimum_Separation, D = Deadline,
 --               P = Task_Priority, C = sum of the budgets. A response counts
@@ -11,14 +11,19 @@
 --  Assumptions  ASM-003, the clock stays within the range of Time
 
 with System;
+with Ravenchart.Liveness;
 with Ravenchart.Measured_Releases;
 with Ravenchart.Schedules;
 
 generic
+   Name : String;
+   --  Of the task, where it is reported.
    type Activity_Id is (<>);
    Minimum_Separation : Positive_Nanoseconds;
    Deadline : Positive_Nanoseconds;
    Task_Priority : System.Priority;
+   Ceiling : System.Any_Priority;
+   --  At least Task_Priority, and that of every caller of Observe.
    Stack_Bytes : Positive;
    with procedure Wait;
    --  Suspends until the next release.
@@ -35,6 +40,8 @@ generic
 package Ravenchart.Sporadic_Processors
   with SPARK_Mode, Elaborate_Body
 is
+   pragma Assert (Name'Length in 1 .. 128);
+
    type Table_Type is array (Activity_Id) of Schedules.Slot;
    --  Has the form that a release needs.
 
@@ -46,7 +53,7 @@ is
       Table_Type       => Table_Type,
       Table            => Table,
       Deadline         => Deadline,
-      Ceiling          => Task_Priority,
+      Ceiling          => Ceiling,
       Execute          => Execute,
       On_Deadline_Miss => On_Deadline_Miss,
       On_Executed      => On_Executed);
@@ -56,6 +63,10 @@ is
 
    procedure Observe (S : out Statistics) renames Releases.Observe;
    --  What was observed so far.
+
+   procedure Observe_Progress (Seen : out Liveness.Progress)
+   renames Releases.Observe_Progress;
+   --  How far the processor has come.
 
 private
 

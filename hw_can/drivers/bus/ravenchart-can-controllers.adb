@@ -5,7 +5,8 @@
 --               connection ends, and another is tried; frames go to the
 --               server in the order sent, Most_Open ahead of its answers
 --  Tasking      a reader, which joins and takes what the server says, and a
---               writer, which waits for the transmit queue
+--               writer, which waits for the transmit queue and for requests
+--               of recovery
 --  Timing       that of the server and of TCP: nothing here is real-time
 --  Assumptions  ASM-005, the socket calls do what their spec says; the
 --               server offers a node's oldest frame first, its default, or
@@ -14,13 +15,13 @@
 --  RAVENCHART_BUS_PORT and RAVENCHART_BUS_NAME say which server, and who
 --  joins. Sent counts what the bus has acknowledged, Rejected_Lines the
 --  connections that a server made impossible. A node that is bus-off asks for
---  recovery, and its transmit queue waits meanwhile; while there is no
---  server, what is sent is lost.
+--  recovery as its setting says, and its transmit queue waits meanwhile; while
+--  there is no server, what is sent is lost.
 
 with Ada.Real_Time;
 with Ada.Synchronous_Task_Control;
 with Ravenchart.Epochs;
-with Ravenchart.Waiting_Queues;
+with Ravenchart.Queues;
 with Ravenchart.Can.Bus_Members;
 with Ravenchart.Can.Bus_Records.Client_Side;
 with Ravenchart.Can.Received_Frames;
@@ -31,12 +32,13 @@ package body Ravenchart.Can.Controllers
     SPARK_Mode,
     Refined_State =>
       (State   => (Transmit.State, Receive.State, Link, Reader, Writer),
-       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go, Room))
+       Wake_Up => (Receive.Wake_Up, Let_Go, Work, Recovery_Asked))
 is
    use Ada.Synchronous_Task_Control;
    use type Ada.Real_Time.Time;
    use type Bus_Members.Consequence;
    use type Queueing.Put_Status;
+   use type Queueing.Take_Status;
    use type Tcp_Sockets.Socket;
 
    package Client_Side renames Bus_Records.Client_Side;
@@ -44,11 +46,12 @@ is
    subtype Wire_Record is Tcp_Sockets.Octets (Bus_Records.Position);
    --  A record as the socket calls take it.
 
-   package Transmit is new Waiting_Queues
+   package Transmit is new Queues
      (Element_Type => Any_Frames.Any_Frame,
       Null_Element => Any_Frames.Null_Any_Frame,
       Capacity     => Transmit_Depth,
-      Ceiling      => Transmit_Ceiling);
+      Ceiling      => Transmit_Ceiling,
+      Policy       => Queueing.Reject_Newest);
 
    package Receive is new Received_Frames
      (Capacity => Receive_Depth, Ceiling => Receive_Ceiling);
@@ -75,8 +78,15 @@ is
          To     : out Tcp_Sockets.Socket);
       --  May a frame be sent now, under which number, and where to?
 
+      procedure Begin_Recovery
+        (Asked : Boolean;
+         May   : out Boolean;
+         To    : out Tcp_Sockets.Socket);
+      --  Is the server to be asked for recovery now, and where? Asked:
+      --  recovery was requested. Of one bus-off it is asked once.
+
       procedure End_Request;
-      --  Its record was written, or not: the answer, or the end of the
+      --  The record was written, or not: the answer, or the end of the
       --  connection, tells.
 
       procedure Count_Received;
@@ -85,15 +95,18 @@ is
       function Is_Idle return Boolean;
       --  The writer uses no socket.
 
-      function State_Now return Controller_State;
+      function Faults return Fault_Notices.Fault_Log;
 
       function All_Counts return Counters;
 
    private
-      Server : Tcp_Sockets.Socket := Tcp_Sockets.No_Socket;
-      Idle   : Boolean := True;
+      Server  : Tcp_Sockets.Socket := Tcp_Sockets.No_Socket;
+      Idle    : Boolean := True;
       --  False while the writer uses the server's socket.
-      Node   : Bus_Members.Member;
+      Node    : Bus_Members.Member;
+      Log     : Fault_Notices.Fault_Log;
+      Rescued : Boolean := False;
+      --  True when the server was asked for recovery since bus-off.
    end Link;
 
    Welcome_Limit : constant Tcp_Sockets.Patience := 2_000;
@@ -102,8 +115,13 @@ is
    Let_Go : Suspension_Object;
    --  True when the writer may have become idle since the reader looked.
 
-   Room : Suspension_Object;
-   --  True when the writer may be allowed more since it asked.
+   Work : Suspension_Object;
+   --  True when the writer may have more to do, or be allowed more, since it
+   --  looked.
+
+   Recovery_Asked : Boolean := False
+   with Atomic;
+   --  True when recovery was requested since the writer looked.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -115,7 +133,7 @@ is
 
    task Writer
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
-   --  Asks for what is in the transmit queue to be sent.
+   --  Asks for what is in the transmit queue to be sent, and for recovery.
 
    procedure Say_Hello (Server : Tcp_Sockets.Socket; Done : out Boolean)
    with Global => (In_Out => Tcp_Sockets.Network);
@@ -128,15 +146,20 @@ is
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  A frame came over the bus.
 
-   procedure Recover (Server : Tcp_Sockets.Socket; Done : out Boolean)
+   procedure Recover
    with
-     Global => (In_Out => (Let_Go, Tcp_Sockets.Network), Input => Link);
-   --  Ask for the way out of bus-off.
+     Global =>
+       (In_Out => (Link, Let_Go, Recovery_Asked, Tcp_Sockets.Network));
+   --  Ask for the way out of bus-off, if that is due.
+
+   procedure Ask_To_Send (F : Any_Frames.Any_Frame; May : out Permission)
+   with Global => (In_Out => (Link, Let_Go, Tcp_Sockets.Network));
+   --  Ask the server to send F, if that is allowed.
 
    procedure Serve (Server : Tcp_Sockets.Socket; Announced : in out Boolean)
    with
      Global =>
-       (In_Out => (Link, Receive.State, Receive.Wake_Up, Let_Go, Room,
+       (In_Out => (Link, Receive.State, Receive.Wake_Up, Work,
                    Tcp_Sockets.Network),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Say hello, and take what the server says until the connection ends.
@@ -160,12 +183,16 @@ is
       begin
          Server := Tcp_Sockets.No_Socket;
          Bus_Members.Leave (Node);
+         Log     := Fault_Notices.Noted (Log, Stopped);
+         Rescued := False;
       end Detach;
 
       procedure Hear
         (A : Client_Side.Answer; Then_Do : out Bus_Members.Consequence) is
       begin
          Bus_Members.Hear (Node, A, Then_Do);
+         Log     := Fault_Notices.Noted (Log, Bus_Members.State (Node));
+         Rescued := Rescued and then Log.State = Bus_Off;
       end Hear;
 
       procedure Begin_Request
@@ -187,6 +214,22 @@ is
          end if;
       end Begin_Request;
 
+      procedure Begin_Recovery
+        (Asked : Boolean;
+         May   : out Boolean;
+         To    : out Tcp_Sockets.Socket) is
+      begin
+         To  := Server;
+         May :=
+           Log.State = Bus_Off
+           and then not Rescued
+           and then (Asked or else Setting.Recovery = Automatic);
+         if May then
+            Rescued := True;
+            Idle    := False;
+         end if;
+      end Begin_Recovery;
+
       procedure End_Request is
       begin
          Idle := True;
@@ -200,8 +243,8 @@ is
       function Is_Idle return Boolean
       is (Idle);
 
-      function State_Now return Controller_State
-      is (Bus_Members.State (Node));
+      function Faults return Fault_Notices.Fault_Log
+      is (Log);
 
       function All_Counts return Counters
       is (Node.Counts);
@@ -250,12 +293,46 @@ is
    -- Recover --
    -------------
 
-   procedure Recover (Server : Tcp_Sockets.Socket; Done : out Boolean) is
+   procedure Recover is
+      Asked  : constant Boolean := Recovery_Asked;
+      May    : Boolean;
+      Server : Tcp_Sockets.Socket;
+      Done   : Boolean;
    begin
-      --  While the node is bus-off the writer begins nothing.
-      Wait_Idle;
-      Tcp_Sockets.Send (Server, Wire_Record (Client_Side.Recovery), Done);
+      if Asked then
+         Recovery_Asked := False;
+      end if;
+      Link.Begin_Recovery (Asked, May, Server);
+      if May then
+         Tcp_Sockets.Send (Server, Wire_Record (Client_Side.Recovery), Done);
+         if not Done then
+            Tcp_Sockets.Break_Off (Server);
+         end if;
+         Link.End_Request;
+         Set_True (Let_Go);
+      end if;
    end Recover;
+
+   -----------------
+   -- Ask_To_Send --
+   -----------------
+
+   procedure Ask_To_Send (F : Any_Frames.Any_Frame; May : out Permission) is
+      Number : Bus_Members.Request_Number;
+      Server : Tcp_Sockets.Socket;
+      Done   : Boolean;
+   begin
+      Link.Begin_Request (May, Number, Server);
+      if May = Write then
+         Tcp_Sockets.Send
+           (Server, Wire_Record (Client_Side.Request (F, Number)), Done);
+         if not Done then
+            Tcp_Sockets.Break_Off (Server);
+         end if;
+         Link.End_Request;
+         Set_True (Let_Go);
+      end if;
+   end Ask_To_Send;
 
    -----------
    -- Serve --
@@ -286,10 +363,8 @@ is
                end if;
             when Bus_Members.Take_Frame     =>
                Take (A.Came);
-            when Bus_Members.Ask_Recovery   =>
-               Recover (Server, Done);
-            when Bus_Members.Carry_On       =>
-               Set_True (Room);
+            when Bus_Members.Ask_Recovery | Bus_Members.Carry_On =>
+               Set_True (Work);
             when Bus_Members.End_Connection =>
                exit;
          end case;
@@ -343,7 +418,7 @@ is
             --  Close only when it has let go: the system gives the number of
             --  a closed socket to the next one.
             Link.Detach;
-            Set_True (Room);
+            Set_True (Work);
             Tcp_Sockets.Break_Off (Server);
             Wait_Idle;
             Tcp_Sockets.Close (Server);
@@ -357,37 +432,36 @@ is
    ------------
 
    task body Writer is
-      F      : Any_Frames.Any_Frame;
+      F      : Any_Frames.Any_Frame := Any_Frames.Null_Any_Frame;
+      Status : Queueing.Take_Status := Queueing.Empty;
+      --  F has yet to be sent while it is Taken.
       May    : Permission;
-      Number : Bus_Members.Request_Number;
-      Server : Tcp_Sockets.Socket;
-      Done   : Boolean;
    begin
       loop
-         Transmit.Wait (F);
-         loop
-            Link.Begin_Request (May, Number, Server);
-            exit when May /= Wait;
-            Suspend_Until_True (Room);
-         end loop;
-         if May = Write then
-            Tcp_Sockets.Send
-              (Server, Wire_Record (Client_Side.Request (F, Number)), Done);
-            if not Done then
-               Tcp_Sockets.Break_Off (Server);
+         Recover;
+         if Status = Queueing.Empty then
+            Transmit.Take (F, Status);
+         end if;
+         if Status = Queueing.Empty then
+            Suspend_Until_True (Work);
+         else
+            Ask_To_Send (F, May);
+            if May = Wait then
+               Suspend_Until_True (Work);
+            else
+               Status := Queueing.Empty;
             end if;
-            Link.End_Request;
-            Set_True (Let_Go);
          end if;
       end loop;
    end Writer;
 
    procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
-   with Refined_Global => (In_Out => (Transmit.State, Transmit.Wake_Up))
+   with Refined_Global => (In_Out => (Transmit.State, Work))
    is
       Result : Queueing.Put_Status;
    begin
       Transmit.Put (F, Result);
+      Set_True (Work);
       Status :=
         (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
    end Send;
@@ -403,9 +477,25 @@ is
    procedure Read_State (Now : out Controller_State)
    with Refined_Global => Link
    is
+      Log : constant Fault_Notices.Fault_Log := Link.Faults;
    begin
-      Now := Link.State_Now;
+      Now := Log.State;
    end Read_State;
+
+   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
+   with Refined_Global => Link
+   is
+   begin
+      Log := Link.Faults;
+   end Read_Faults;
+
+   procedure Request_Recovery
+   with Refined_Global => (In_Out => Work, Output => Recovery_Asked)
+   is
+   begin
+      Recovery_Asked := True;
+      Set_True (Work);
+   end Request_Recovery;
 
    procedure Read_Counters (C : out Counters)
    with Refined_Global => (Transmit.State, Receive.State, Link)

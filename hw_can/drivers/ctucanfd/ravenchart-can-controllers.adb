@@ -26,7 +26,7 @@ package body Ravenchart.Can.Controllers
     SPARK_Mode,
     Refined_State =>
       (State   => (Transmit.State, Receive.State, Board.State, Poller),
-       Wake_Up => (Receive.Wake_Up, Asked))
+       Wake_Up => (Receive.Wake_Up, Asked, Recovery_Asked))
 is
    use type Ada.Real_Time.Time;
    use type Ctu_Registers.Buffer_State;
@@ -57,7 +57,7 @@ is
      (Capacity => Receive_Depth, Ceiling => Receive_Ceiling);
 
    type Standing is record
-      Now    : Controller_State := Stopped;
+      Log    : Fault_Notices.Fault_Log;
       Counts : Counters;
    end record;
    --  What others are told.
@@ -78,17 +78,23 @@ is
       Core     : Phase := Absent;
       Retry_In : Look_Count := 0;
       Queued   : Boolean := False;
+      Rescued  : Boolean := False;
       Oldest   : Registers.Buffer := 1;
       Pending  : Natural range 0 .. 4 := 0;
    end record;
    --  Looks until a core is looked for, or asked to recover, again; whether
-   --  the transmit queue may hold a frame; and the buffers that wait to be
-   --  sent, from Oldest on.
+   --  the transmit queue may hold a frame; whether recovery was requested
+   --  since the core is bus-off; and the buffers that wait to be sent, from
+   --  Oldest on.
 
    Asked : Boolean := False
    with Atomic;
    --  True when a frame was queued since the transmit queue was found empty;
    --  to look at this costs no lock.
+
+   Recovery_Asked : Boolean := False
+   with Atomic;
+   --  True when recovery was requested since the core was last looked at.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -125,9 +131,10 @@ is
    --  Give it its bit rates, and let it join the bus.
 
    procedure Note_Errors (S : in out Standing; P : in out Progress)
-   with Global => (In_Out => Ctu_Core.Registers);
-   --  How it stands; from bus-off, ask for recovery. One that has just been
-   --  enabled is off too, and needs no more than the bus to be idle.
+   with Global => (In_Out => (Ctu_Core.Registers, Recovery_Asked));
+   --  How it stands; from bus-off, ask for recovery when the setting or a
+   --  request says so. One that has just been enabled is off too, and is
+   --  always asked: it needs no more than the bus to be idle.
 
    procedure Receive_Frames (Counts : in out Counters)
    with
@@ -144,7 +151,7 @@ is
    with
      Global =>
        (In_Out => (Ctu_Core.Registers, Transmit.State, Asked,
-                   Receive.State, Receive.Wake_Up),
+                   Recovery_Asked, Receive.State, Receive.Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  One look at a core that runs.
 
@@ -256,15 +263,28 @@ is
    -----------------
 
    procedure Note_Errors (S : in out Standing; P : in out Progress) is
-      Fault : Registers.Word;
-      Count : Registers.Word;
+      Fault  : Registers.Word;
+      Count  : Registers.Word;
+      Wanted : constant Boolean := Recovery_Asked;
    begin
+      if Wanted then
+         Recovery_Asked := False;
+      end if;
+      P.Rescued :=
+        S.Log.State = Bus_Off and then (Wanted or else P.Rescued);
       Ctu_Core.Read (Registers.Fault_State, Fault);
       Ctu_Core.Read (Registers.Rec_Tec, Count);
-      S.Now := Registers.State_Of (Fault, Before => S.Now);
+      S.Log :=
+        Fault_Notices.Noted
+          (S.Log, Registers.State_Of (Fault, Before => S.Log.State));
       S.Counts.Receive_Errors  := Registers.Receive_Errors (Count);
       S.Counts.Transmit_Errors := Registers.Transmit_Errors (Count);
       if not Registers.Is_Off (Fault) then
+         P.Retry_In := 0;
+      elsif Setting.Recovery = On_Request
+        and then S.Log.State = Bus_Off
+        and then not P.Rescued
+      then
          P.Retry_In := 0;
       elsif P.Retry_In = 0 then
          Ctu_Core.Write (Registers.Command, Registers.Recover);
@@ -353,7 +373,7 @@ is
          Receive_Frames (S.Counts);
          Send_Frames (P, S.Counts);
       else
-         S.Now             := Stopped;
+         S.Log             := Fault_Notices.Noted (S.Log, Stopped);
          S.Counts.Lost_Out :=
            Sum (S.Counts.Lost_Out, Event_Count (P.Pending));
          P                 := (Queued => P.Queued, others => <>);
@@ -415,8 +435,24 @@ is
       S : Standing;
    begin
       Board.Read (S);
-      Now := S.Now;
+      Now := S.Log.State;
    end Read_State;
+
+   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
+   with Refined_Global => Board.State
+   is
+      S : Standing;
+   begin
+      Board.Read (S);
+      Log := S.Log;
+   end Read_Faults;
+
+   procedure Request_Recovery
+   with Refined_Global => (Output => Recovery_Asked)
+   is
+   begin
+      Recovery_Asked := True;
+   end Request_Recovery;
 
    procedure Read_Counters (C : out Counters)
    with Refined_Global => (Transmit.State, Receive.State, Board.State)

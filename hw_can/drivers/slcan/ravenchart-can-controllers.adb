@@ -11,7 +11,8 @@
 --
 --  Commands get no answer except the two queries, as the clients in use
 --  expect none. There is no bus error in slcan: the state is Error_Active
---  while a client has the channel open, and Stopped otherwise.
+--  while a client has the channel open, and Stopped otherwise. So no fault is
+--  ever logged, and an adapter leaves bus-off as its firmware does.
 
 with Ada.Real_Time;
 with Ada.Synchronous_Task_Control;
@@ -26,7 +27,7 @@ package body Ravenchart.Can.Controllers
     SPARK_Mode,
     Refined_State =>
       (State   => (Transmit.State, Receive.State, Link, Reader, Writer),
-       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go))
+       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go, Asked))
 is
    use Ada.Synchronous_Task_Control;
    use type Ada.Real_Time.Time;
@@ -87,6 +88,8 @@ is
 
       function State_Now return Controller_State;
 
+      function Faults return Fault_Notices.Fault_Log;
+
       function All_Counts return Counters;
 
    private
@@ -99,6 +102,10 @@ is
 
    Let_Go : Suspension_Object;
    --  True when the writer may have become idle since the reader looked.
+
+   Asked : Boolean := False
+   with Atomic;
+   --  True when recovery was requested. No command of slcan passes it on.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -204,6 +211,10 @@ is
 
       function State_Now return Controller_State
       is (if Channel = Open then Error_Active else Stopped);
+
+      function Faults return Fault_Notices.Fault_Log
+      is (Fault_Notices.Noted
+            (Fault_Notices.Fault_Log'(others => <>), State_Now));
 
       function All_Counts return Counters
       is (Counts);
@@ -434,6 +445,20 @@ is
    begin
       Now := Link.State_Now;
    end Read_State;
+
+   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
+   with Refined_Global => Link
+   is
+   begin
+      Log := Link.Faults;
+   end Read_Faults;
+
+   procedure Request_Recovery
+   with Refined_Global => (Output => Asked)
+   is
+   begin
+      Asked := True;
+   end Request_Recovery;
 
    procedure Read_Counters (C : out Counters)
    with Refined_Global => (Transmit.State, Receive.State, Link)

@@ -8,7 +8,9 @@
 --  Assumptions  ASM-011, the socket calls do what their spec says
 --
 --  The state follows the error reports: Error_Active when something was
---  sent or received, Stopped while the interface is down or not there.
+--  sent or received, Stopped while the interface is down or not there. The
+--  interface leaves bus-off by its own setting, restart-ms: a raw socket has
+--  no way to ask for it.
 
 with Ada.Real_Time;
 with Ada.Synchronous_Task_Control;
@@ -23,7 +25,7 @@ package body Ravenchart.Can.Controllers
     SPARK_Mode,
     Refined_State =>
       (State   => (Transmit.State, Receive.State, Link, Reader, Writer),
-       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go))
+       Wake_Up => (Transmit.Wake_Up, Receive.Wake_Up, Let_Go, Asked))
 is
    use Ada.Synchronous_Task_Control;
    use type Ada.Real_Time.Time;
@@ -73,7 +75,7 @@ is
       function Is_Idle return Boolean;
       --  The writer uses no socket.
 
-      function State_Now return Controller_State;
+      function Faults return Fault_Notices.Fault_Log;
 
       function All_Counts return Counters;
 
@@ -81,12 +83,16 @@ is
       Bus    : Raw_Sockets.Socket := Raw_Sockets.No_Socket;
       Idle   : Boolean := True;
       --  False while the writer uses the socket.
-      Now    : Controller_State := Stopped;
+      Log    : Fault_Notices.Fault_Log;
       Counts : Counters;
    end Link;
 
    Let_Go : Suspension_Object;
    --  True when the writer may have become idle since the reader looked.
+
+   Asked : Boolean := False
+   with Atomic;
+   --  True when recovery was requested. No call of a socket passes it on.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -134,13 +140,13 @@ is
       procedure Attach (To : Raw_Sockets.Socket) is
       begin
          Bus := To;
-         Now := Error_Active;
+         Log := Fault_Notices.Noted (Log, Error_Active);
       end Attach;
 
       procedure Detach is
       begin
          Bus := Raw_Sockets.No_Socket;
-         Now := Stopped;
+         Log := Fault_Notices.Noted (Log, Stopped);
       end Detach;
 
       procedure Begin_Send (To : out Raw_Sockets.Socket) is
@@ -155,8 +161,8 @@ is
          case Result is
             when Raw_Sockets.Done =>
                Counts.Sent := Next (Counts.Sent);
-               if Now = Stopped then
-                  Now := Error_Active;
+               if Log.State = Stopped then
+                  Log := Fault_Notices.Noted (Log, Error_Active);
                end if;
             when Raw_Sockets.Busy =>
                null;
@@ -164,7 +170,7 @@ is
                Counts.Lost_Out := Next (Counts.Lost_Out);
             when Raw_Sockets.Down | Raw_Sockets.Gone =>
                Counts.Lost_Out := Next (Counts.Lost_Out);
-               Now             := Stopped;
+               Log             := Fault_Notices.Noted (Log, Stopped);
          end case;
       end End_Send;
 
@@ -180,19 +186,21 @@ is
 
       procedure Note_Down is
       begin
-         Now := Stopped;
+         Log := Fault_Notices.Noted (Log, Stopped);
       end Note_Down;
 
       procedure Note_Up is
       begin
-         if Now = Stopped then
-            Now := Error_Active;
+         if Log.State = Stopped then
+            Log := Fault_Notices.Noted (Log, Error_Active);
          end if;
       end Note_Up;
 
       procedure Note_Report (Report : Socket_Frames.Item) is
       begin
-         Now := Socket_Frames.State_After (Report, Now);
+         Log :=
+           Fault_Notices.Noted
+             (Log, Socket_Frames.State_After (Report, Log.State));
          if Socket_Frames.Has_Counters (Report) then
             Counts.Transmit_Errors := Error_Count (Report.Data (6));
             Counts.Receive_Errors  := Error_Count (Report.Data (7));
@@ -202,8 +210,8 @@ is
       function Is_Idle return Boolean
       is (Idle);
 
-      function State_Now return Controller_State
-      is (Now);
+      function Faults return Fault_Notices.Fault_Log
+      is (Log);
 
       function All_Counts return Counters
       is (Counts);
@@ -359,9 +367,24 @@ is
    procedure Read_State (Now : out Controller_State)
    with Refined_Global => Link
    is
+      Log : constant Fault_Notices.Fault_Log := Link.Faults;
    begin
-      Now := Link.State_Now;
+      Now := Log.State;
    end Read_State;
+
+   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
+   with Refined_Global => Link
+   is
+   begin
+      Log := Link.Faults;
+   end Read_Faults;
+
+   procedure Request_Recovery
+   with Refined_Global => (Output => Asked)
+   is
+   begin
+      Asked := True;
+   end Request_Recovery;
 
    procedure Read_Counters (C : out Counters)
    with Refined_Global => (Transmit.State, Receive.State, Link)

@@ -1,0 +1,75 @@
+with Ada.Real_Time;
+with Ravenchart.Blackboards;
+with Ravenchart.Epochs;
+with Ravenchart.Failures;
+with Ravenchart.Liveness;
+
+package body Ravenchart.Supervisors
+  with
+    SPARK_Mode,
+    Refined_State => (State => (Board.State, Supervisor))
+is
+   use type Ada.Real_Time.Time;
+   use type Liveness.Finding;
+
+   package Board is new Blackboards
+     (Element_Type => Event_Count,
+      Initial      => 0,
+      Ceiling      => Ceiling);
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Supervisor
+   with Priority => Task_Priority, Storage_Size => Stack_Bytes;
+   --  Never ends.
+
+   procedure Read (Fed : out Event_Count)
+   with Refined_Global => (Input => Board.State)
+   is
+   begin
+      Board.Read (Fed);
+   end Read;
+
+   task body Supervisor is
+      Step     : constant Ada.Real_Time.Time_Span := Epochs.To_Span (Period);
+      Due      : Ada.Real_Time.Time := Epochs.Start;
+      Reported : array (Processor_Id) of Boolean := (others => False);
+      Elapsed  : Nanoseconds;
+      Silent   : Boolean;
+      Found    : Liveness.Finding;
+      Fed      : Event_Count := 0;
+      Alarm    : Boolean     := False;
+      First    : Nanoseconds := 0;
+      --  When the first silence was found, if there is an Alarm.
+   begin
+      Failures.Register (Name);
+      loop
+         delay until Due;
+         Epochs.Since_Start (Elapsed);
+         for Item in Processor_Id loop
+            if not Reported (Item) then
+               Look (Item, Elapsed, Silent);
+               Liveness.Note (Reported (Item), Silent, Found);
+               if Found = Liveness.Falls_Silent then
+                  if not Alarm then
+                     Alarm := True;
+                     First := Elapsed;
+                  end if;
+                  On_Silence (Item);
+               end if;
+            end if;
+         end loop;
+         if not Alarm then
+            Feed_Watchdog;
+            Fed := Next (Fed);
+            Board.Write (Fed);
+         elsif Elapsed - First >= Patience then
+            Give_Up;
+         end if;
+         Due := Due + Step;
+      end loop;
+   end Supervisor;
+
+end Ravenchart.Supervisors;
