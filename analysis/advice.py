@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from gen.derive import PROBE, SUPERVISOR
+
 from .core import changes, holistic
 from .core.changes import Change, Kind, Met, Part
 from .core.holistic import Network
@@ -76,8 +78,8 @@ def of_model(analysis: Analysis) -> Advice | None:
         elif not task.slots:
             costs[task.element] = [(task.element, "")]
         costs |= {slot.element: [(task.element, slot.element)] for slot in task.slots}
-    probes = {f"{node.name}.probe" for node in system.nodes}
-    free = [t for t in system.tasks if t.released_by is None and t.element not in probes]
+    own = {f"{node.name}.{name}" for node in system.nodes for name in (PROBE, SUPERVISOR)}
+    free = [t for t in system.tasks if t.released_by is None and t.element not in own]
     periods = [task.element for task in free if not task.sporadic]
     periods += [message.element for message in system.messages if message.source is None]
     order = [*(task.element for task in free), *(m.element for m in system.messages)]

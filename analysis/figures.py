@@ -12,6 +12,7 @@ from .commands import costs
 from .plain.build import PlainSystem
 from .plain.results import DETAILED, Json, PlainResult, everything, latency_figures
 from .timing import Analysis
+from .units import ratio
 
 
 def figures(analysis: Analysis) -> Json:
@@ -28,7 +29,7 @@ def figures(analysis: Analysis) -> Json:
         "digest": system.digest,
         "met": analysis.schedulable,
         "load": {
-            name: f"{share.numerator}/{share.denominator}"
+            name: ratio(share)
             for name, share in (
                 *(
                     (core, analysis.utilisation(core))

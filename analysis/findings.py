@@ -10,6 +10,7 @@ from gen.model import Bus, Chain
 from gen.terms import Origin
 
 from .core.can_response import FrameResponse
+from .core.chains import HopLatency
 from .core.responses import Interference, Reason, Response
 from .latencies import Hop, Latency
 from .timing import Analysis
@@ -222,7 +223,15 @@ def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
         gap = chain.gap
         if gap is not None:
             message = f"the chain {chain.name} is broken: no values go from {gap[0]} to {gap[1]}"
-            yield error(NO_WAY, chain.origin, message, hint="name what lies between them")
+            hint = "name what lies between them"
+            event = chain.gap_event
+            if event is not None:
+                name, source, region = event
+                hint = (
+                    f"the event {name} leads from {source} to {region}, and chains follow values: "
+                    f"let {region} read what {source} holds or writes"
+                )
+            yield error(NO_WAY, chain.origin, message, hint=hint)
     for chain, found in analysis.limited:
         pairs = (("reaction", found.reaction, chain.reaction), ("age", found.age, chain.age))
         for what, value, limit in pairs:
@@ -246,20 +255,38 @@ def _late_chain(
             (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
             for name, time in hops[:LARGEST]
         ],
-        hint="let its rows run more often, or in one processor in the order of the chain"
-        if value is not None
-        else "limit the parts of it before and behind that",
+        hint=_chain_hint(found, what, value),
     )
+
+
+def _chain_hint(found: Latency, what: str, value: int | None) -> str:
+    if value is not None:
+        return "let its rows run more often, or in one processor in the order of the chain"
+    if what == "age" and any(_ages(hop) for hop in found.hops):
+        return (
+            "limit the reaction instead; or, if the sender of the message queues one every period "
+            "exactly, give it `sporadic: no`"
+        )
+    return "limit the parts of it before and behind that"
+
+
+def _ages(hop: HopLatency) -> bool:
+    """It is as seldom as what is sporadic, and its last value is used meanwhile."""
+    return hop.renewal is None and not hop.step.keeps and hop.step.hop is not Hop.QUEUED
 
 
 def _unbounded(found: Latency, what: str) -> Iterator[str]:
     """Which hops have no bound, and why."""
+    begun = found.hops[0].step.name
     for before, hop in zip((None, *found.hops), found.hops, strict=False):
         step = hop.step
+        begun = begun if step.hop is Hop.RELEASED else step.name
         if hop.response is None:
             yield f"{step.name} has no bound of its response"
         elif what == "age" and step.keeps:
             yield step.keeps
+        elif what == "age" and _ages(hop):
+            yield f"{begun} is sporadic: its next value may come at any later time"
         elif what == "reaction" and step.waits:
             yield step.waits
         elif step.hop is Hop.QUEUED and hop.wait is None and before:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import networkx as nx
 
 from gen.component import Activity, Component, Direction
-from gen.model import Instance, System, Work
+from gen.model import Instance, System
 from gen.statechart import Region
 
 FLOW = frozenset({"reads", "writes", "sends", "carries"})
@@ -32,7 +32,7 @@ def dependencies(system: System) -> nx.DiGraph[str]:
         node = f"processor {processor.name}"
         graph.add_node(node, kind="processor", label=processor.name)
         for slot in processor.slots:
-            if slot.work is Work.BUS_RECEIVE:
+            if slot.of_bus:
                 graph.add_node(slot.element, kind="row", label=slot.element)
             graph.add_edge(node, slot.element, kind="runs")
     for connection in system.connections:

@@ -90,6 +90,7 @@ def _frame(message: Message, bus: model.Bus, system: System) -> Frame:
         cost=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
         queue=system.queue(message),
         reloaded=system.queue(message) != "",
+        sporadic=message.sporadic,
     )
 
 

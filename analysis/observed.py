@@ -3,8 +3,9 @@
 The file holds one record a line, times in nanoseconds from the controller's start:
 ``E clock``, the machine's clock at that start, ``T time kind element value``, then the
 counts ``P processor releases misses worst_response``, ``A row worst_execution``,
-``H fault count``, ``L what count``, ``W host_latency``, and ``END``. Without ``END`` the
-run was cut off. The map tells what each element number stands for.
+``H fault count``, ``L what count``, ``W host_latency``, ``N now`` before the counts that
+were read then, ``F feeds``, and ``END``. Without ``END`` the run was cut off. The map tells
+what each element number stands for.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class TraceError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One numbered element; ``leaves`` and ``transitions`` are a region's, in order."""
+    """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's."""
 
     number: int
     name: str
@@ -82,11 +83,15 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Releases:
-    """How one processor fared: releases, deadlines missed, longest response."""
+    """How one processor fared: releases, deadlines missed, longest response.
+
+    The counts were read at ``now`` or a little later; None where the trace does not say when.
+    """
 
     releases: int
     misses: int
     worst_response: Ns
+    now: Ns | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +118,10 @@ class Observation:
     """Longest time for which the host withheld the core, where a probe measured it."""
     stolen: Ns | None = None
     """Time that a hypervisor took of the core during the whole run, as its kernel counts it."""
+    now: Ns | None = None
+    """When the counts were read, in the controller's own time."""
+    feeds: int | None = None
+    """How often the supervision fed the watchdog, where there is one."""
     complete: bool = False
     start: Ns = NO_TIME
     """The machine's clock when this controller's time was 0."""
@@ -145,7 +154,7 @@ class Observation:
         return tuple(r for r in self.records if r.kind == kind and r.element.name.lower() == wanted)
 
     def visits(self, region: str) -> tuple[Visit, ...]:
-        """The stays of one region in its leaf states, in order."""
+        """The stays of one region in its leaf states, or of a controller on a bus, in order."""
         stays: list[Visit] = []
         for record in self.of("state", region):
             if stays and stays[-1].state == record.text:
@@ -156,10 +165,10 @@ class Observation:
         return tuple(stays)
 
     def states_visited(self) -> dict[str, tuple[str, ...]]:
-        """For each region of the map the leaf states it was in, each once, in first order."""
+        """The leaf states that each region, and controller, was in, each once, in first order."""
         return {
-            region.name: tuple(dict.fromkeys(v.state for v in self.visits(region.name)))
-            for region in self.map.of_kind("region")
+            element.name: tuple(dict.fromkeys(v.state for v in self.visits(element.name)))
+            for element in (*self.map.of_kind("region"), *self.map.of_kind("bus"))
         }
 
 
@@ -232,7 +241,7 @@ def _take(words: list[str], seen: Observation) -> None:
         case ["E", clock]:
             seen.start = Ns(_count(clock))
         case ["P", number, releases, misses, worst]:
-            counts = Releases(_count(releases), _count(misses), Ns(_count(worst)))
+            counts = Releases(_count(releases), _count(misses), Ns(_count(worst)), seen.now)
             seen.processors[_known(number, seen.map, "processor").name] = counts
         case ["A", number, worst]:
             seen.executions[_known(number, seen.map, "row").name] = Ns(_count(worst))
@@ -242,6 +251,10 @@ def _take(words: list[str], seen: Observation) -> None:
             seen.counts[what] = _count(count)
         case ["W", latency]:
             seen.host_latency = Ns(_count(latency))
+        case ["N", now]:
+            seen.now = Ns(_count(now))
+        case ["F", feeds]:
+            seen.feeds = _count(feeds)
         case ["END"]:
             seen.complete = True
         case _:
@@ -253,8 +266,8 @@ def _record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) 
     if kind.lower() not in KINDS:
         raise ValueError(f"unknown kind {kind!r}")
     name = kind.lower()
-    region = "region" if name in ("state", "transition") else None
-    element = _known(number, trace_map, region)
+    regions = {"state": ("region", "bus"), "transition": ("region",)}.get(name, ())
+    element = _known(number, trace_map, *regions)
     record = Record(Ns(_number(time)), name, element, _number(value))
     choices = {"state": element.leaves, "transition": element.transitions}.get(name)
     if choices is not None and not 0 <= record.value < len(choices):
@@ -262,13 +275,14 @@ def _record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) 
     return record
 
 
-def _known(number: str, trace_map: TraceMap, kind: str | None) -> Element:
-    """The element with that number, of that kind unless None."""
+def _known(number: str, trace_map: TraceMap, *kinds: str) -> Element:
+    """The element with that number, of one of those kinds where any are given."""
     element = trace_map.elements.get(_number(number))
     if element is None:
         raise ValueError(f"the map has no element {number}")
-    if kind is not None and element.kind != kind:
-        raise ValueError(f"element {number}, {element.name}, is a {element.kind}, not a {kind}")
+    if kinds and element.kind not in kinds:
+        wanted = " or a ".join(kinds)
+        raise ValueError(f"element {number}, {element.name}, is a {element.kind}, not a {wanted}")
     return element
 
 

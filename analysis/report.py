@@ -25,6 +25,7 @@ from .latencies import Hop, Latency
 from .network import frame_length
 from .observed import Observation
 from .picture import draw
+from .supervision import watches
 from .timing import Analysis, Verdict
 from .words import (
     WORDS,
@@ -239,6 +240,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "compared": compare(analysis, run.observation) if run and run.observation else (),
         "executions": executions(analysis, run.observation) if run and run.observation else (),
         "visits": _visits(run),
+        "watches": watches(analysis),
     }
 
 

@@ -175,7 +175,10 @@ def checked(
     *,
     whole: bool = False,
 ) -> Allocation:
-    """The analysis of tables, each in order of deadlines; ValueError for one that is impossible."""
+    """The analysis of tables, each in order of deadlines; ValueError for one that is impossible.
+
+    Of a table that takes less time than a section of its activities, all of it is inside.
+    """
     if whole:
         tables = [tuple(_hurried(table)) for table in tables]
     ordered = tuple(tuple(sorted(table, key=lambda a: a.deadline)) for table in tables)
@@ -185,7 +188,13 @@ def checked(
     rank = sorted({task.priority for task in above})
     lifted = [replace(task, priority=len(tasks) + 1 + rank.index(task.priority)) for task in above]
     home = {activity.name: table[0].name for table in ordered for activity in table}
-    held = [Section(s.resource, home.get(s.user, s.user), s.length) for s in sections]
+    cost = {table[0].name: sum(activity.cost for activity in table) for table in ordered}
+    held = []
+    for section in sections:
+        user = home.get(section.user, section.user)
+        #  No job is inside an object for longer than it takes.
+        length = min(section.length, cost.get(user, section.length))
+        held.append(Section(section.resource, user, length))
     responses = analyse((*tasks, *lifted), held, platforms)
     return Allocation(ordered, tasks, responses[: len(tasks)])
 
@@ -255,7 +264,7 @@ def _searched(
         better = True
         while better and left > 0:
             better = False
-            for other in _neighbours(now):
+            for other in neighbours(now):
                 left -= 1
                 found = _rank(other, strategy, check(other))
                 if found > rank:
@@ -269,7 +278,7 @@ def _searched(
     return best[1]
 
 
-def _neighbours(tables: list[Table]) -> Iterator[list[Table]]:
+def neighbours(tables: list[Table]) -> Iterator[list[Table]]:
     """Two tables in one; an activity in another table, or in one of its own."""
     for n, one in enumerate(tables):
         for m in range(n):
@@ -288,9 +297,11 @@ def _neighbours(tables: list[Table]) -> Iterator[list[Table]]:
 
 
 def _fit(table: Table) -> bool:
-    """All periods are multiples of the shortest, and their pattern repeats soon enough."""
+    """On one core; periods are multiples of the shortest, and their pattern repeats soon enough."""
     shortest = min(activity.period for activity in table)
     return all(
-        activity.period % shortest == 0 and activity.period // shortest <= FRAME_LIMIT
+        activity.core == table[0].core
+        and activity.period % shortest == 0
+        and activity.period // shortest <= FRAME_LIMIT
         for activity in table
     )

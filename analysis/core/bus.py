@@ -16,20 +16,26 @@ take 23 or 29: a report names the figure that it used.
 """
 
 
+INTERMISSION = 3
+"""Bits between two frames: they count as part of the first, and its receivers do not wait."""
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """A message as the bus sees it; all times in ticks.
 
     ``rank``      its place in arbitration, lower wins (`frames.rank`); no two have the same
     ``cost``      longest transmission with the three bits to the next frame, above 0
-    ``period``    least distance of its queuing events, above 0
+    ``period``    distance of its queuing events (least distance when ``sporadic``), above 0
     ``deadline``  from the event that makes the sender queue it, above 0
     ``jitter``    longest time from that event to the queuing: the response of the sender
     ``queue``     the first-in first-out queue it is sent from; "" where the sender
                   offers its most urgent frame
-    ``best``      least transmission time, for the jitter of what the frame releases
+    ``best``      least transmission time, these three bits included, for the jitter of what
+                  the frame releases
     ``reloaded``  the controller gets the next frame of the queue when it has sent one, so
                   that anything may go in between; otherwise it holds the whole queue
+    ``sporadic``  the period is a least distance only: nothing says when the next event comes
     """
 
     name: str
@@ -41,6 +47,7 @@ class Frame:
     queue: str = ""
     best: int = 0
     reloaded: bool = False
+    sporadic: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what is out of range, with a ValueError that names field and frame."""

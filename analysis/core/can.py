@@ -205,6 +205,12 @@ def _in_queue(
     known = {name: delay for name, delay in delays.items() if delay is not None}
     level = FrameLevel(order, reach, bus, known)
     if delays[frame.name] is None:
+        whole = FrameLevel(order, len(order), bus, known)
+        used = Load()
+        for other in order:
+            used.add(fixed_cost(other.period, 0, other.cost))
+        if _overloaded(whole, used):
+            return FrameResponse(frame, whole, None, reason=Reason.OVERLOAD)
         return FrameResponse(frame, level, None, reason=Reason.EFFORT)
     for other in order[:reach]:
         if other.queue != frame.queue and delays.get(other.name, 0) is None:

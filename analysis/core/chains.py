@@ -15,6 +15,11 @@ the response of its last step, from the arrival of its first, and one period T.
             Bruggen, Chen, Chen, TECS 2019). An output stays until the next one replaces
             it: `held` is the age then, and equals the reaction when all is sampled.
 
+What is sporadic bounds how soon its next job comes, and not how late. So nothing bounds
+the wait until it samples, nor until the n-th job that a step follows, nor the age of
+what it made (Feiertag et al., CRTS 2008; Durr et al. need a greatest distance too). What
+it releases, and what samples or takes its values, has a reaction all the same.
+
 A queue hands each item over once. Its reader takes so many in a job; an item waits
 for those before it. A job that finds none repeats what it made of the last item, so
 the output is replaced as often as its writer puts one in: that T counts for the age,
@@ -29,7 +34,6 @@ from enum import Enum
 
 from .checks import positive
 from .holistic import Holistic, Network
-from .tasks import Task
 
 
 class Hop(Enum):
@@ -163,7 +167,8 @@ def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
         if step.hop is Hop.RELEASED and before is not None:
             response = _less(response, found.from_event(before.name))
             wait = network.items()[step.name].period - network.items()[before.name].period
-            wait = None if queued and wait else wait  # some items are not passed on
+            #  some items are not passed on; of sporadic ones the next may never come
+            wait = None if wait and (queued or cycle is None) else wait
         elif step.hop is Hop.SAMPLED:
             wait, queued = cycle, False
         elif step.hop is Hop.QUEUED and before is not None:
@@ -202,9 +207,7 @@ def _cycle(name: str, network: Network) -> int | None:
     """The longest time between two of its events; None where they are sporadic."""
     items = network.items()
     root = items[(name, *network.releasers(name))[-1]]
-    if isinstance(root, Task) and root.sporadic:
-        return None
-    return items[name].period
+    return None if root.sporadic else items[name].period
 
 
 def _queue(
@@ -223,7 +226,7 @@ def _queue(
     written = found.from_event(writer)
     if cycle is None or read is None or written is None or puts * cycle > takes * period:
         return None, None
-    jitter = written - found.best[writer] - items[writer].best
+    jitter = written - found.best[writer] - network.least()[writer]
     burst = puts * (jitter // period + 1)
     later = -(-burst // takes) * takes + puts
     wait = max(

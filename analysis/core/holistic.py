@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 from . import can, fixed_priority
 from .blocking import Section
-from .bus import Bus, Frame
+from .bus import INTERMISSION, Bus, Frame
 from .can_response import FrameResponse
 from .checks import distinct
 from .platform import Platform
@@ -84,6 +84,17 @@ class Network:
         distinct("tasks or messages", [item.name for item in items])
         return {item.name: item for item in items}
 
+    def least(self) -> dict[str, int]:
+        """The least time from the release of each item until what it releases can arrive.
+
+        A frame is received before the bits between frames, which its times contain.
+        """
+        least = {task.name: task.best for task in self.tasks}
+        for bus, frames in self.frames.items():
+            after = INTERMISSION * self.buses[bus].bit_time
+            least |= {frame.name: max(0, frame.best - after) for frame in frames}
+        return least
+
     def releasers(self, name: str) -> tuple[str, ...]:
         """What releases it, what releases that, and so on; stops where a circle closes."""
         found: list[str] = []
@@ -135,7 +146,8 @@ def analyse(network: Network) -> Holistic:
     ValueError as the analyses of tasks and frames.
     """
     items = network.items()
-    best = {name: sum(items[one].best for one in network.releasers(name)) for name in items}
+    least = network.least()
+    best = {name: sum(least[one] for one in network.releasers(name)) for name in items}
     late: dict[str, int | None] = dict.fromkeys(items, 0)
     rounds, strained, settled = 0, 0, False
     while not settled and rounds < ROUNDS and strained < STRAINED:

@@ -20,7 +20,7 @@ from analysis.core.chains import Chain
 from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
-from .shapes import Unfit, dense, names, no_errors, remarks, spelled_out, unqueued, urgency
+from .shapes import Unfit, dense, names, no_errors, remarks, seldom, spelled_out, unqueued, urgency
 
 LARGEST = 2**31 - 1
 """Cheddar's largest integer."""
@@ -63,7 +63,7 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     if any(time % unit for item in items for time in item.times):
         items = tuple(replace(item, start=0) for item in items)
     root = Xml.Element("cheddar")
-    for line in (f"One unit of time is {unit} ns.", *remarks(given, chains)):
+    for line in (f"One unit of time is {unit} ns.", *remarks(given, chains), *seldom(given)):
         root.append(Xml.Comment(f" {line.replace('--', '- -')} "))
     numbers = iter(range(1, 3 * len(places) + len(items) + 1))
     cores = Xml.SubElement(root, "core_units")

@@ -253,7 +253,7 @@ class _Writer:
                         Name=f"{self.item[frame.name]}_job",
                         Max_Message_Size=frame.cost,
                         Avg_Message_Size=frame.cost,
-                        Min_Message_Size=frame.best,
+                        Min_Message_Size=self.network.least()[frame.name],
                     ),
                 )
 
@@ -329,7 +329,7 @@ class _Writer:
         return "Activity"
 
     def _event(self, item: Task | Frame, name: str) -> Attributes:
-        if isinstance(item, Task) and item.sporadic and not item.jitter:
+        if item.sporadic and not item.jitter:
             return _attributes(Type="Sporadic", Name=name, Min_Interarrival=item.period)
         phase = item.offset if isinstance(item, Task) else None
         return _attributes(

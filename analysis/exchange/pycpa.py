@@ -16,7 +16,18 @@ from analysis.core.chains import Chain, Hop
 from analysis.core.holistic import Network
 from analysis.core.tasks import Task
 
-from .shapes import Unfit, dense, last_bit, names, no_errors, remarks, spelled_out, trees, unqueued
+from .shapes import (
+    Unfit,
+    dense,
+    last_bit,
+    names,
+    no_errors,
+    remarks,
+    seldom,
+    spelled_out,
+    trees,
+    unqueued,
+)
 
 TAKEN = (*keyword.kwlist, "analysis", "blocked", "blocking", "int", "model", "options", "print",
          "results", "schedulers", "sorted", "str", "sum", "system", "task")  # fmt: skip
@@ -65,14 +76,17 @@ def export(network: Network, chains: Sequence[Chain], title: str) -> str:
     trees(network, "pyCPA")
     sampling = [chain for chain in chains if _samples(chain, network)]
     others = [chain for chain in chains if chain not in sampling]
-    head = [f"#  {line}" for line in (*remarks(given, others), *last_bit(given, "pyCPA"))]
+    notes = (*remarks(given, others), *seldom(given), *last_bit(given, "pyCPA"))
+    head = [f"#  {line}" for line in notes]
     lines = [*head, *_lines(network), *_effect_chains(network, sampling)]
     return HEAD.format(title=names([title])[title]) + "\n".join(lines) + "\n\n" + TAIL
 
 
 def _samples(chain: Chain, network: Network) -> bool:
-    """Every step is a task, and all after the first sample."""
-    tasks = {task.name for task in network.tasks}
+    """Every step is a task, all after the first sample, and none is sporadic."""
+    items = network.items()
+    roots = {name: items[(name, *network.releasers(name))[-1]] for name in items}
+    tasks = {task.name for task in network.tasks if not roots[task.name].sporadic}
     sampled = all(step.hop is Hop.SAMPLED for step in chain.steps[1:])
     return sampled and all(step.name in tasks for step in chain.steps)
 
@@ -83,6 +97,7 @@ def _lines(network: Network) -> Iterator[str]:
     cores = list(dict.fromkeys(task.core for task in network.tasks))
     places = names([*cores, *network.frames], [*items.values(), *TAKEN])
     held = blockers(network.tasks, network.sections, network.ceilings)
+    least = network.least()
     yield "system = model.System()"
     lengths = {items[name]: section.length for name, section in held.items()}
     yield f"blocking = {lengths!r}"
@@ -91,12 +106,13 @@ def _lines(network: Network) -> Iterator[str]:
         members = [task for task in network.tasks if task.core == core]
         levels = dense(-task.priority for task in members)
         for task in members:
-            yield _task(items[task.name], places[core], task, levels[-task.priority])
+            level = levels[-task.priority]
+            yield _task(items[task.name], places[core], task, level, task.best)
     for bus, frames in network.frames.items():
         scheduler = f"schedulers.SPNPScheduler(cycle_time={network.buses[bus].bit_time})"
         yield f'{places[bus]} = system.bind_resource(model.Resource("{places[bus]}", {scheduler}))'
         for level, frame in enumerate(sorted(frames, key=lambda frame: frame.rank), 1):
-            yield _task(items[frame.name], places[bus], frame, level)
+            yield _task(items[frame.name], places[bus], frame, level, least[frame.name])
     for name, item in network.items().items():
         by = network.released_by.get(name)
         if by is not None:
@@ -106,9 +122,9 @@ def _lines(network: Network) -> Iterator[str]:
             yield f"{items[name]}.in_event_model = {event}"
 
 
-def _task(name: str, place: str, item: Task | Frame, level: int) -> str:
+def _task(name: str, place: str, item: Task | Frame, level: int, best: int) -> str:
     return (
-        f'{name} = {place}.bind_task(model.Task("{name}", wcet={item.cost}, bcet={item.best}, '
+        f'{name} = {place}.bind_task(model.Task("{name}", wcet={item.cost}, bcet={best}, '
         f"scheduling_parameter={level}))"
     )
 

@@ -160,6 +160,13 @@ def remarks(network: Network, chains: Iterable[Chain]) -> Iterator[str]:
         yield f"Left out: chain {chain.name}, through {', '.join(s.name for s in chain.steps)}."
 
 
+def seldom(network: Network) -> Iterator[str]:
+    """What is sporadic, for a format that has no word for it: responses are the same."""
+    for name, item in network.items().items():
+        if item.sporadic and name not in network.released_by:
+            yield f"{name} is sporadic: its period is the least distance."
+
+
 def last_bit(network: Network, tool: str) -> Iterator[str]:
     """What ``tool`` leaves out on a bus: lines for the head of its export.
 

@@ -219,6 +219,7 @@ def _frame(row: Values, bus: Values) -> Frame:
         row.number("jitter"),
         row.word("queue"),
         row.number("best"),
+        sporadic=bool(row.number("sporadic")),
     )
 
 

@@ -108,6 +108,7 @@ KINDS: Kinds = {
         "jitter": _LATE,
         "best": _BEST,
         "queue": _TEXT,
+        "sporadic": _FLAG,
         "released_by": _TEXT,
     },
     "chain": {

@@ -12,6 +12,7 @@ from analysis.core.chains import Latency
 from analysis.core.holistic import Holistic, Network
 from analysis.core.responses import Response
 from analysis.core.sensitivity import NetworkScaling, network_scaling
+from analysis.units import ratio
 
 from .build import PlainSystem
 
@@ -68,9 +69,7 @@ def everything(result: PlainResult) -> Json:
         "scaling": None if factor is None else f"{factor.numerator}/{factor.denominator}",
         "binding": result.scaling.binding if result.scaling else None,
         "terms": result.detailed,
-        "load": {
-            name: f"{share.numerator}/{share.denominator}" for name, share in loads(network).items()
-        },
+        "load": {name: ratio(share) for name, share in loads(network).items()},
         "tasks": [
             _task(response, found, result.detailed)
             for response in found.responses.values()

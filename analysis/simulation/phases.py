@@ -75,7 +75,8 @@ def _chance_phase(item: Task | Frame, sections: Iterable[Section], chance: rando
     late = chance.choice((none, lambda _: jitter, lambda _: chance.randint(0, jitter)))
     first = chance.randrange(item.period)
     if isinstance(item, Frame):
-        return Phase(first, late)
+        rare = item.sporadic and chance.random() < 0.5
+        return Phase(first, late, (lambda _: chance.randrange(item.period)) if rare else none)
     inside = _chance_inside([s for s in sections if s.user == item.name], item, chance)
     if item.offset is not None:
         return Phase(item.offset, late, inside=inside)
