@@ -182,7 +182,7 @@ class Machine:
                 own = self.instances[slot.owner]
                 activity = next(a for a in own.component.activities if a.name == slot.name)
                 self._run_activity(own, activity)
-            case Work.BUS_RECEIVE:
+            case Work.BUS_RECEIVE | Work.BUS_WATCH:
                 pass
 
     def _run_region(self, now: Ns, own: InstanceRun, name: str) -> Iterator[Record]:

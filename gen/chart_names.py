@@ -32,6 +32,16 @@ def walk(
             yield from walk(at.states, name, nested)
 
 
+def concurrent_states(states: Mapping[str, StateForm] | None) -> frozenset[str]:
+    """The states in one of several regions of a state, at any depth, in lower case."""
+    found: set[str] = set()
+    for form in (states or {}).values():
+        for nested in (form.regions or {}).values():
+            found |= {row.name.lower() for row in walk(nested.states)}
+        found |= concurrent_states(form.states)
+    return frozenset(found)
+
+
 @dataclass(frozen=True, slots=True)
 class Vertex:
     """What a name in a chart stands for, as far as its kind tells."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from .chart_names import States, names_of
+from .chart_names import States, concurrent_states, names_of
 from .chart_structure import structure_errors
 from .charts import region_of
 from .commands import Command, Need
@@ -16,6 +16,7 @@ from .members import Members, Namespace, invariants_of, members_of, outputs_of, 
 from .names import Findings, Scope, meant
 from .quantities import shown
 from .schema import ActivityForm, ComponentForm, PortRegionForm, ProbeForm, RegionForm
+from .schema_frames import WatchForm
 from .statechart import DONE, Region, Timing
 from .terms import Flow, Ns, Origin, Type
 from .vocabulary import Vocabulary
@@ -38,7 +39,7 @@ class Parts:
 
 def timing_of(
     name: str,
-    form: PortRegionForm | RegionForm | ActivityForm | ProbeForm,
+    form: PortRegionForm | RegionForm | ActivityForm | ProbeForm | WatchForm,
     findings: Findings,
 ) -> Timing:
     """Period, WCET and deadline, checked against each other."""
@@ -91,7 +92,7 @@ def parts_of(
     for region, at in (form.regions or {}).items():
         count = findings.count()
         timing = timing_of(region, at, findings)
-        own = replace(words, own_region=region)
+        own = replace(words, own_region=region, concurrent=concurrent_states(at.states))
         made = region_of(region, at, timing, names[region], own, targets, findings)
         regions.append(made)
         if findings.count() == count and region not in damaged:

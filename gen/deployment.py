@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .component import Direction, Port
 from .components import Parts, timing_of
@@ -22,6 +22,7 @@ from .model import (
     Processor,
     Shutdown,
     Slot,
+    Supervision,
     Tick,
     Work,
 )
@@ -34,8 +35,9 @@ from .schema import (
     NodeForm,
     ProcessorForm,
     ShutdownForm,
+    SupervisionForm,
 )
-from .schema_frames import BusForm, MessageForm
+from .schema_frames import BusForm, DelayedForm, MessageForm, RequestedForm
 from .statechart import Timing
 from .terms import BOOLEAN, Ns, Origin, Scalar
 from .values import constant
@@ -67,7 +69,30 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
                 f"{shown(tick.period)}"
             )
             findings.error("RV-0703", form.tick.at("wcet"), message)
-    return Node(name, form.origin, *times, form.trace, probe, Ns(form.release), tick, form.cores)
+    return Node(
+        name,
+        form.origin,
+        *times,
+        form.trace,
+        probe,
+        Ns(form.release),
+        tick,
+        form.cores,
+        _supervision(form.supervision, findings),
+    )
+
+
+def _supervision(form: SupervisionForm | None, findings: Findings) -> Supervision | None:
+    """The supervision of a node; a look takes no longer than its period."""
+    if form is None:
+        return None
+    if form.wcet > form.period:
+        message = (
+            f"the supervision may take {shown(Ns(form.wcet))}, longer than its period, "
+            f"{shown(Ns(form.period))}"
+        )
+        findings.error("RV-0703", form.at("wcet"), message)
+    return Supervision(Ns(form.period), Ns(form.wcet), Ns(form.margin))
 
 
 def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
@@ -75,6 +100,15 @@ def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
     if form.data_rate is not None and form.data_rate < form.bit_rate:
         message = f"the data rate of {name} is below its bit rate"
         findings.error("RV-0613", form.at("data_rate"), message, hint="leave it out, or raise it")
+    watch = None if form.watch is None else timing_of(f"{name}.watch", form.watch, findings)
+    delayed = form.recovery if isinstance(form.recovery, DelayedForm) else None
+    for key in ("on_error_passive", "on_bus_off", "on_recovered", "recovery"):
+        needs = form.has(key) if key != "recovery" else delayed is not None
+        if needs and watch is None and not form.lost("watch"):
+            message = f"`{key}` of {name} needs the key `watch`: nothing looks at the controllers"
+            hint = "add `watch: {period: ..., wcet: ...}`, and the row "
+            hint += f"`{name}.watch` to a table of each node"
+            findings.error("RV-0618", form.at_key(key), message, hint=hint)
     return Bus(
         name,
         form.origin,
@@ -86,6 +120,39 @@ def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
         form.data_rate,
         by_priority=form.buffers == "priority",
         audsley=form.identifiers == "audsley",
+        watch=watch,
+        recovers_after=None if delayed is None else Ns(delayed.after),
+    )
+
+
+def with_events(bus: Bus, form: BusForm, site: Site) -> tuple[Bus, bool]:
+    """The bus with the events that it raises and is asked by, and whether all of them are sound."""
+    lists: list[tuple[str, BusForm | RequestedForm, str, list[str] | None]] = [
+        ("on_error_passive", form, "on_error_passive", form.on_error_passive),
+        ("on_bus_off", form, "on_bus_off", form.on_bus_off),
+        ("on_recovered", form, "on_recovered", form.on_recovered),
+    ]
+    if isinstance(form.recovery, RequestedForm):
+        lists.append(("recovers_on", form.recovery, "on", form.recovery.on))
+    found: dict[str, tuple[tuple[str, str], ...]] = {}
+    whole = not form.lost("recovery")
+    for name, holder, key, texts in lists:
+        made = [
+            event_at(text, holder.item_at(key, index), site)
+            for index, text in enumerate(texts or ())
+        ]
+        found[name] = tuple(pair for pair in made if pair is not None)
+        lost = holder.lost(key) or holder.list_damaged(key) or None in made
+        whole = whole and not lost
+    return (
+        replace(
+            bus,
+            on_error_passive=found["on_error_passive"],
+            on_bus_off=found["on_bus_off"],
+            on_recovered=found["on_recovered"],
+            recovers_on=found.get("recovers_on", ()),
+        ),
+        whole,
     )
 
 
@@ -225,6 +292,10 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         message = f"the message {name} is sent by others and needs the key `id`"
         findings.error("RV-0202", form.origin, message)
     period = _message_period(name, form, source, site)
+    if form.has("sporadic") and (foreign or source is not None):
+        why = "is sent by others to others" if foreign else f"is sent by {form.from_}"
+        message = f"the message {name} {why}, and `sporadic` has no meaning"
+        findings.error("RV-0210", form.at_key("sporadic"), message, hint="remove it")
     broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
     if bus is None or broken or gone or period is None:
         return None
@@ -249,6 +320,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         period=period,
         deadline=None if form.deadline is None else Ns(form.deadline),
         fd=form.format == "fd",
+        sporadic=source is None and form.sporadic is not False,
     )
 
 
@@ -304,7 +376,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         _slot(text, form.item_at("activities", index), form, site)
         for index, text in enumerate(form.activities)
     ]
-    misses, overruns = (
+    misses, overruns, silences = (
         tuple(
             found
             for index, text in enumerate(given or ())
@@ -313,6 +385,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         for key, given in (
             ("on_deadline_miss", form.on_deadline_miss),
             ("on_overrun", form.on_overrun),
+            ("on_silence", form.on_silence),
         )
     )
     sound = tuple(slot for slot in slots if slot is not None)
@@ -344,6 +417,7 @@ def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None
         on_deadline_miss=misses,
         on_overrun=overruns,
         core=form.core,
+        on_silence=silences,
     )
 
 
@@ -354,7 +428,7 @@ def _slot(text: str, origin: Origin, form: ProcessorForm, site: Site) -> Slot | 
         return None
     owner, name = pair
     if site.buses.knows(owner) and not site.instances.knows(owner):
-        return _receive_slot(text, name, owner, origin, form, site)
+        return _bus_slot(text, name, owner, origin, form, site)
     instance = site.instances.look_up(owner, origin, site.findings)
     parts = None if instance is None else site.parts.find(instance.component.name)
     if instance is None or parts is None:
@@ -377,15 +451,22 @@ def _slot(text: str, origin: Origin, form: ProcessorForm, site: Site) -> Slot | 
     return Slot(origin, instance.name, work, row, timing, 1, 0)
 
 
-def _receive_slot(
+def _bus_slot(
     text: str, name: str, owner: str, origin: Origin, form: ProcessorForm, site: Site
 ) -> Slot | None:
-    """The row ``bus.receive``: the driver's time for one frame."""
+    """The row ``bus.receive``, the driver's time for one frame, or ``bus.watch``."""
     bus = site.buses.find(owner)
-    if name.lower() != "receive":
-        message = f"`{text}` is no row: a bus has the row `{owner}.receive` only"
+    if name.lower() not in ("receive", "watch"):
+        message = f"`{text}` is no row: a bus has the rows `{owner}.receive` and `{owner}.watch`"
         site.findings.error("RV-0305", origin, message)
         return None
+    if bus is not None and name.lower() == "watch":
+        if bus.watch is None:
+            message = f"`{text}` is no row: {owner} has no `watch`"
+            hint = f"add `watch: {{period: ..., wcet: ...}}` to {owner}"
+            site.findings.error("RV-0305", origin, message, hint=hint)
+            return None
+        return Slot(origin, bus.name, Work.BUS_WATCH, "watch", bus.watch, 1, 0)
     if bus is None or form.period is None:
         return None
     deadline = form.period if form.deadline is None else form.deadline

@@ -5,7 +5,7 @@ All times in ns, every figure on the safe side.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -22,13 +22,16 @@ from .calls import (
 from .commands import Remote, RemoteRead
 from .component import Activity
 from .distribution import as_one, part_of
-from .model import Bus, Instance, Message, Node, Processor, SharedObject, Slot, System, Task
+from .model import Bus, Instance, Message, Node, Processor, SharedObject, Slot, System, Task, Work
 from .statechart import Region
 from .terms import Ns
 from .ways import routed
 
 PROBE = "probe"
 """A node's host probe, as a task."""
+
+SUPERVISOR = "supervisor"
+"""The liveness supervision of a node, as a task."""
 
 MAIN = "main"
 """The environment task: priority 0, below all tasks, and not among them."""
@@ -141,7 +144,22 @@ def tasks_of(system: System) -> tuple[Task, ...]:
             )
             for driver, node, releaser in ways
         ]
+    above = top + (2 if system.messages else 1)
     for host in system.nodes:
+        if host.supervision is not None:
+            tasks.append(
+                Task(
+                    element=f"{host.name}.{SUPERVISOR}",
+                    origin=host.origin,
+                    node=host.name,
+                    period=host.supervision.period,
+                    offset=Ns(0),
+                    deadline=host.supervision.period,
+                    budget=host.supervision.wcet,
+                    priority=above,
+                    timed=True,
+                )
+            )
         if host.probe is not None:
             tasks.append(
                 Task(
@@ -152,7 +170,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
                     offset=Ns(0),
                     deadline=host.probe.deadline,
                     budget=host.probe.wcet,
-                    priority=top + (2 if system.messages else 1),
+                    priority=above + (host.supervision is not None),
                     timed=True,
                 )
             )
@@ -310,7 +328,17 @@ class _Sharing:
 
     def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
         """The tasks that may put an event into a region's queue."""
-        component, named = instance.component, set(region.events())
+        yield from self.offering(instance, set(region.events()), region.name)
+
+    def requesting(self, bus: Bus) -> Iterable[str]:
+        """The tasks that may request recovery on a bus: all that raise any event of an instance."""
+        for name in dict.fromkeys(name for name, _ in bus.recovers_on):
+            instance = self.system.instance(name)
+            yield from self.offering(instance, {e.name for e in instance.component.events})
+
+    def offering(self, instance: Instance, named: set[str], own: str = "") -> Iterable[str]:
+        """The tasks that raise one of these events, for the region ``own`` or for whomever."""
+        component = instance.component
         for item in component.runnables():
             overflow = item.on_overflow if isinstance(item, Region) else None
             if named & set(item.raises):
@@ -318,7 +346,7 @@ class _Sharing:
             if overflow in named and isinstance(item, Region):
                 # the event is raised by whoever fills that queue, or by the region itself
                 yield self.runs(instance.name, item.name)
-                if item.name != region.name:
+                if item.name != own:
                     yield from self.raisers_once(instance, item)
         for need in component.needs:
             binding = self.system.bound[instance.name, need.name]
@@ -334,11 +362,29 @@ class _Sharing:
         for port in component.inputs():
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
                 yield self.runs(instance.name, "ports")
+        yield from self.raisers_outside(instance, named)
+
+    def raisers_outside(self, instance: Instance, named: Set[str]) -> Iterable[str]:
+        """The tasks that raise one of these events themselves: processors, supervisors, main."""
+
+        def raised(events: Iterable[tuple[str, str]]) -> bool:
+            return any(one == instance.name and event in named for one, event in events)
+
         for processor in self.system.processors:
-            if any(one == instance.name and e in named for one, e in processor.raises):
+            watched = {slot.owner for slot in processor.slots if slot.work is Work.BUS_WATCH}
+            of_buses = (p for bus in self.system.buses if bus.name in watched for p in bus.raises)
+            if raised((*processor.raises, *of_buses)):
                 yield processor.name
-        if any(one == instance.name and e in named for one, e in self.system.shutdown.raises):
+            supervisor = self.supervisor(processor)
+            if supervisor is not None and raised(processor.on_silence):
+                yield supervisor
+        if raised(self.system.shutdown.raises):
             yield MAIN
+
+    def supervisor(self, processor: Processor) -> str | None:
+        """The task that supervises a processor, if one does."""
+        element = f"{processor.node}.{SUPERVISOR}"
+        return element if element in self.priorities else None
 
     def raisers_once(self, instance: Instance, region: Region) -> Iterable[str]:
         """As `raisers`, without following overflows further."""
@@ -421,23 +467,35 @@ def _objects(system: System) -> tuple[SharedObject, ...]:
             if message.bus == bus.name
             for row in sending_rows(system, message)
         ]
+        senders += [
+            processor.name
+            for processor in system.processors
+            for slot in processor.slots
+            if slot.owner == bus.name and slot.work is Work.BUS_WATCH
+        ]
+        senders += sharing.requesting(bus)
         receivers = [p.name for p in system.processors if p.released_by == bus.name]
         drivers = [t.element for t in tasks if t.element.startswith(f"{bus.name}.driver_")]
         objects.append(sharing.made(f"{bus.name}.transmit", [*senders, *drivers]))
         objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
     for processor in system.processors:
-        objects.append(sharing.made(f"{processor.name}.monitor", [processor.name]))
+        watched_by = sharing.supervisor(processor)
+        users = [processor.name, *([] if watched_by is None else [watched_by])]
+        objects.append(sharing.made(f"{processor.name}.monitor", users))
     kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
     for core in sorted({1, *(processor.core for processor in system.processors)}):
         here = [processor.name for processor in system.processors if processor.core == core]
+        if core == 1:
+            here += [t.element for t in tasks if t.element.endswith(f".{SUPERVISOR}")]
         for name in kept:
             #  The main program runs on the first core, and looks at the others' at the end.
             own, users = (name, [*here, MAIN]) if core == 1 else (f"{name}_{core}", here)
             objects.append(sharing.made(own, users))
     for node in system.nodes:
-        if node.probe is not None:
-            element = f"{node.name}.{PROBE}"
-            objects.append(sharing.made(f"{element}.board", [element, MAIN]))
+        for name, kind in ((SUPERVISOR, node.supervision), (PROBE, node.probe)):
+            element = f"{node.name}.{name}"
+            if kind is not None:
+                objects.append(sharing.made(f"{element}.board", [element, MAIN]))
     return tuple(objects)
 
 

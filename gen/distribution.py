@@ -13,7 +13,18 @@ from dataclasses import dataclass, replace
 from .calls import called
 from .commands import Remote, RemoteRead
 from .identifiers import OPEN
-from .model import Bus, Connection, Instance, Message, Node, Processor, Shutdown, System
+from .model import (
+    Bus,
+    Connection,
+    Instance,
+    Message,
+    Node,
+    Processor,
+    Shutdown,
+    Slot,
+    System,
+    Work,
+)
 from .names import problem_of
 from .signals import fits_classic, length_of, signals_of
 
@@ -94,23 +105,62 @@ def placed(system: System) -> System:
     """
     found: list[Processor] = []
     for processor in system.processors:
+        own = next((slot.owner for slot in processor.slots if not slot.of_bus), None)
         if processor.node:
             found.append(processor)
-        elif processor.released_by is None:
-            found.append(replace(processor, node=system.instance(processor.slots[0].owner).node))
+        elif own is not None:
+            found.append(replace(processor, node=system.instance(own).node))
         else:
             bus = processor.released_by
-            homes = [node.name for node in system.nodes if system.received(bus, node.name)]
+            if bus is not None:
+                homes = [node.name for node in system.nodes if system.received(bus, node.name)]
+            else:
+                homes = _joining(system, processor.slots[0].owner)
             found += [_on(processor, home, several=len(homes) > 1) for home in homes]
-    return replace(system, processors=tuple(found))
+    watched = (_with_watches(system, processor) for processor in found)
+    return replace(system, processors=tuple(p for p in watched if p.slots))
+
+
+def _joining(system: System, bus: str) -> list[str]:
+    """The nodes that send or receive on a bus."""
+    return [node.name for node in system.nodes if system.joins(bus, node.name)]
+
+
+def _with_watches(system: System, processor: Processor) -> Processor:
+    """The processor with each watch named after its node where the bus has several.
+
+    The watch of a bus that carries nothing falls away.
+    """
+    slots: list[Slot] = []
+    for slot in processor.slots:
+        homes = _joining(system, slot.owner) if slot.work is Work.BUS_WATCH else []
+        if len(homes) > 1:
+            slots.append(replace(slot, name=f"{Work.BUS_WATCH.value}_{processor.node}"))
+        elif homes or slot.work is not Work.BUS_WATCH:
+            slots.append(slot)
+    return replace(processor, slots=tuple(slots))
 
 
 def _on(processor: Processor, node: str, *, several: bool) -> Processor:
-    """The copy of a reception on a node."""
+    """The copy on a node of a processor that only serves a bus."""
     if not several:
         return replace(processor, node=node)
-    slots = tuple(replace(slot, name=f"{slot.name}_{node}") for slot in processor.slots)
+    slots = tuple(
+        replace(slot, name=f"{slot.name}_{node}") if slot.work is Work.BUS_RECEIVE else slot
+        for slot in processor.slots
+    )
     return replace(processor, name=f"{processor.name}_{node}", node=node, slots=slots)
+
+
+def _heard_here(bus: Bus, here: set[str]) -> Bus:
+    """The bus, with the events of these instances."""
+    return replace(
+        bus,
+        on_error_passive=tuple(pair for pair in bus.on_error_passive if pair[0] in here),
+        on_bus_off=tuple(pair for pair in bus.on_bus_off if pair[0] in here),
+        on_recovered=tuple(pair for pair in bus.on_recovered if pair[0] in here),
+        recovers_on=tuple(pair for pair in bus.recovers_on if pair[0] in here),
+    )
 
 
 def part_of(system: System, node: Node) -> System:
@@ -133,7 +183,7 @@ def part_of(system: System, node: Node) -> System:
     return replace(
         part,
         nodes=(node,),
-        buses=tuple(bus for bus in system.buses if bus.name in used),
+        buses=tuple(_heard_here(bus, here) for bus in system.buses if bus.name in used),
         instances=tuple(i for i in system.instances if i.name in here),
         connections=tuple(c for c in system.connections if c.source.instance in here),
         messages=messages,

@@ -117,6 +117,10 @@ def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings)
         target = type_
     shown = f"{name}.{member}" if member else name
     value = fitting(form.to, form.place("to"), shown, target, words, findings)
+    if value == Name(Reading.DATA, name, member or None, target):
+        message = f"`{shown}` is set to itself"
+        findings.error("RV-0418", form.at("to"), message, hint="remove this action")
+        return None
     return None if value is None else Set(form.at_key("set"), name, member or None, value)
 
 

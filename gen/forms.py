@@ -15,7 +15,7 @@ from .diagnostics import Diagnostic, error
 from .names import meant
 from .schema import ModelFile
 from .terms import Origin
-from .tree import Map, Seq
+from .tree import Map, Seq, scalar
 
 Path = tuple[str | int, ...]
 
@@ -162,6 +162,10 @@ class Place:
             message = f"{self.subject} must have at most {context['max_length']} characters"
             return error("RV-0204", self.origin, message)
         code, words = KINDS.get(kind, ("RV-0203", "has a wrong value"))
+        quoted = isinstance(self.value, str) and not isinstance(scalar(self.value), str)
+        if kind in ("int_type", "bool_type") and quoted:
+            message = f"{self.subject} {words}, not the text `{self.value}`"
+            return error(code, self.origin, message, hint="write it without quotes")
         return error(code, self.origin, f"{self.subject} {words}{self._but()}")
 
     def _but(self) -> str:

@@ -24,7 +24,7 @@ from .emit.devices import emit_devices, simulated_driver
 from .emit.instances import emit_instances
 from .emit.naming import ada_case, root_package
 from .emit.project import project_text, simulation_project
-from .emit.quiet import has_decided_conditions, quiet
+from .emit.quiet import has_computed_conditions, has_decided_conditions, quiet
 from .emit.simulation import emit_simulation, simulated
 from .emit.types import emit_root
 from .model import System
@@ -69,6 +69,7 @@ class _Maker:
         #  cannot see it through the root
         self.blind = not any(isinstance(t, IntegerType) for t in system.types)
         self.decided = has_decided_conditions(system)
+        self.computed = has_computed_conditions(system)
         used = {i.component.name for i in system.instances}
         self.components = [c for c in system.components if c.name in used]
 
@@ -96,7 +97,7 @@ class _Maker:
         if self.blind:
             found = [_seeing_runtime(unit) for unit in found]
         if self.decided:
-            found = [quiet(unit) for unit in found]
+            found = [quiet(unit, computed=self.computed) for unit in found]
         texts = [print_item(unit) for unit in found]
         read = readings(found, texts, root_package(self.system))
         return [Made(_context(u), t, r) for u, t, r in zip(found, texts, read, strict=True)]

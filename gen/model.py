@@ -19,6 +19,7 @@ from .component import Component
 from .signals import Signal
 from .statechart import Timing
 from .terms import (
+    IntegerType,
     Ns,
     Origin,
     Scalar,
@@ -40,6 +41,18 @@ class Tick:
 
 
 @dataclass(frozen=True, slots=True)
+class Supervision:
+    """The liveness supervision of a node: a task that looks at all processors every ``period``.
+
+    A processor is silent when a release has not completed by its deadline and ``margin``.
+    """
+
+    period: Ns
+    wcet: Ns
+    margin: Ns
+
+
+@dataclass(frozen=True, slots=True)
 class Node:
     """One processor core or several alike, with platform figures, all worst cases in ns."""
 
@@ -57,6 +70,7 @@ class Node:
     tick: Tick | None = None
     """What makes timed releases late by up to its period; None: a timer that is exact."""
     cores: int = 1
+    supervision: Supervision | None = None
 
     @property
     def core_names(self) -> tuple[str, ...]:
@@ -98,6 +112,33 @@ class Bus:
     """A controller offers the most urgent of its frames, not the oldest."""
     audsley: bool = False
     """Identifiers that the model does not give are found by the analysis; else by deadline."""
+    watch: Timing | None = None
+    """When each node looks at its controller."""
+    on_error_passive: tuple[tuple[str, str], ...] = ()
+    """(instance, event) raised on the node of the instance; so the two below."""
+    on_bus_off: tuple[tuple[str, str], ...] = ()
+    on_recovered: tuple[tuple[str, str], ...] = ()
+    recovers_after: Ns | None = None
+    """Bus-off lasts so long before recovery is requested."""
+    recovers_on: tuple[tuple[str, str], ...] = ()
+    """(instance, event) that requests recovery; with neither, the driver does so at once."""
+
+    @property
+    def raises(self) -> tuple[tuple[str, str], ...]:
+        """(instance, event) that faults of a controller raise."""
+        return (*self.on_error_passive, *self.on_bus_off, *self.on_recovered)
+
+    @property
+    def recovers_by_request(self) -> bool:
+        """The driver leaves bus-off when it is asked to, not by itself."""
+        return self.recovers_after is not None or bool(self.recovers_on)
+
+    @property
+    def recovery_looks(self) -> int:
+        """Looks from the one that finds bus-off to the one that requests recovery; 0: none does."""
+        if self.recovers_after is None or self.watch is None:
+            return 0
+        return -(-self.recovers_after // self.watch.period)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,9 +166,10 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """An output port wired to an input port of the same node.
+    """An output port wired to an input port.
 
-    Between nodes there are messages; see `distribution`.
+    In a resolved system both are on one node: between nodes there are messages, see
+    `distribution`.
     """
 
     origin: Origin
@@ -140,8 +182,8 @@ class Message:
     """A CAN message: a port's value on a bus.
 
     ``source`` None: sent by a party outside the system; ``targets`` empty:
-    received outside. ``period`` is the least time between two instances. A frame that
-    others send to others has neither, and no signals.
+    received outside. ``period`` is the time between two instances, the least one of what is
+    ``sporadic``. A frame that others send to others has neither, and no signals.
     """
 
     name: str
@@ -164,6 +206,8 @@ class Message:
     """The model gives the identifier."""
     call: Remote | None = None
     """Of a command between nodes: it carries the calls or the replies. None: a port's value."""
+    sporadic: bool = False
+    """From outside, and nothing says how long after a frame the next one comes."""
     every: int = 0
     """Of a read command between nodes: sent in each so-many-eth execution of the row that writes
     the data item which is its source. 0: of a port or a call."""
@@ -221,6 +265,7 @@ class Work(Enum):
     REGION = "region"
     ACTIVITY = "activity"
     BUS_RECEIVE = "receive"
+    BUS_WATCH = "watch"
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,10 +274,10 @@ class Slot:
 
     origin: Origin
     owner: str
-    """Instance, or bus for BUS_RECEIVE."""
+    """Instance; for BUS_RECEIVE and BUS_WATCH the bus."""
     work: Work
     name: str
-    """``ports``, ``receive``, or the name of the region or activity."""
+    """``ports``, ``receive``, ``watch``, or the name of the region or activity."""
     timing: Timing
     divisor: int
     phase: int
@@ -241,6 +286,11 @@ class Slot:
     def element(self) -> str:
         """Stable id of the row: ``owner.name``."""
         return f"{self.owner}.{self.name}"
+
+    @property
+    def of_bus(self) -> bool:
+        """The owner is a bus."""
+        return self.work in (Work.BUS_RECEIVE, Work.BUS_WATCH)
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,11 +317,18 @@ class Processor:
     """(instance, event) raised when a row used more than its budget; empty: nobody looks."""
     core: int = 1
     """The core of the node that it runs on."""
+    on_silence: tuple[tuple[str, str], ...] = ()
+    """(instance, event) that the supervisor of its node raises when the processor is silent."""
 
     @property
     def raises(self) -> tuple[tuple[str, str], ...]:
         """(instance, event) that the processor itself may raise."""
         return (*self.on_deadline_miss, *self.on_overrun)
+
+    @property
+    def raised_for_it(self) -> tuple[tuple[str, str], ...]:
+        """(instance, event) that it or its supervisor may raise."""
+        return (*self.raises, *self.on_silence)
 
     @property
     def cycle(self) -> int:
@@ -348,6 +405,8 @@ class Chain:
     """From the sampling of an input until the output made of it."""
     way: tuple[str, ...] = ()
     gap: tuple[str, str] | None = None
+    gap_event: tuple[str, str, str] | None = None
+    """An event that leads over the gap: itself, what raises it, and the region it is for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -397,6 +456,12 @@ class System:
     def _instances(self) -> dict[str, Instance]:
         return {i.name.lower(): i for i in self.instances}
 
+    @cached_property
+    def units(self) -> tuple[str, ...]:
+        """The units that its types count in, in the order of the types."""
+        counted = (t.unit for t in self.types if isinstance(t, IntegerType) and t.unit is not None)
+        return tuple(dict.fromkeys(counted))
+
     def instances_of(self, component: str) -> frozenset[str]:
         """The names of the instances of a component."""
         return self._by_component.get(component, frozenset())
@@ -433,6 +498,24 @@ class System:
         homes = (self.home(end) for end in message.targets if str(end) == place)
         at = next(homes, found[0].node if found else None)
         return next((one for one in found if one.node == at), None)
+
+    def joins(self, bus: str, node: str) -> bool:
+        """Whether a node sends or receives on a bus."""
+        return any(
+            message.bus == bus
+            and (
+                self.sender(message) == node
+                or any(self.home(end) == node for end in message.targets)
+            )
+            for message in self.messages
+        )
+
+    @property
+    def raised_outside(self) -> tuple[tuple[str, str], ...]:
+        """(instance, event) raised by processors, supervisors, buses and a request to stop."""
+        of_processors = (p for processor in self.processors for p in processor.raised_for_it)
+        of_buses = (pair for bus in self.buses for pair in bus.raises)
+        return (*of_processors, *of_buses, *self.shutdown.raises)
 
     def home(self, end: End) -> str:
         """The node of an end's instance."""

@@ -34,6 +34,9 @@ program_error storage_error tasking_error
 PREDEFINED_TYPES = frozenset(_PREDEFINED_TYPES.split())
 """Names that a type would hide from the generated program."""
 
+GNAT_PREFIXES = frozenset("agis")
+"""Parents of GNAT's own units in names of files: `a-*` is a child of Ada, `g-*` one of GNAT."""
+
 CHILDREN = {
     "timing_certificate": "the timing certificate",
     "messages": "the package of the CAN messages",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
@@ -29,12 +30,20 @@ def made_by_all(
         return [make(number) for number in range(count)], meanwhile()
     _shared[:] = [make]
     try:
-        with ProcessPoolExecutor(mp_context=multiprocessing.get_context("fork")) as pool:
+        context = multiprocessing.get_context("fork")
+        with ProcessPoolExecutor(mp_context=context, initializer=_leave_signals) as pool:
             made = pool.map(_make, range(count), chunksize=count // 20 + 1)
             besides = meanwhile()
             return list(made), besides  # type: ignore[arg-type]
     finally:
         _shared.clear()
+
+
+def _leave_signals() -> None:
+    """Ctrl-C goes to every process of a terminal: the parent takes it, and ends the others."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def _make(number: int) -> object:

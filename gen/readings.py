@@ -52,8 +52,9 @@ def _names(item: ada.Decl) -> Iterator[_Name]:
             yield from (_Name(i, ("return", name)) for i in literals)
         case ada.PlainType(name) | ada.RecordType(name) | ada.Object(name) | ada.Instance(name):
             yield _Name(name)
-        case ada.Package(name):
-            yield _Name(name)
+        case ada.Package(name, is_body=is_body):
+            if not is_body:  # that of a package that was declared before
+                yield _Name(name)
         case ada.Subprogram(name, params, result):
             #  how a literal and a function without parameters look alike
             types = (*(p.type for p in params), "return", result or "")

@@ -23,13 +23,14 @@ from .deployment import (
     node_of,
     processor_of,
     shutdown_of,
+    with_events,
 )
 from .devices import Devices, Provider, device_type_of
 from .distribution import Carrier, placed
 from .identifiers import identified
 from .interfaces import command_of, declare_vectors
 from .model import Bus, Connection, Instance, Message, Shutdown, System
-from .names import CHILDREN, PREDEFINED_TYPES, Findings, Scope
+from .names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
 from .remote import calling
 from .schema import ModelFile
 from .schema_devices import DeviceForm
@@ -98,6 +99,11 @@ def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Find
     elif name.lower() in PREDEFINED_TYPES:
         message = f"a system cannot be named `{name}`, like a unit or type of Ada"
         findings.error("RV-0304", main.at("system"), message, hint="choose another name")
+    elif name.lower() in GNAT_PREFIXES:
+        message = (
+            f"a system cannot be named `{name}`: GNAT keeps files `{name.lower()}-*` for itself"
+        )
+        findings.error("RV-0304", main.at("system"), message, hint="choose a longer name")
     for file in files[1:]:
         if file.system is not None:
             message = "only the main file names the system"
@@ -250,6 +256,14 @@ class _Sections:
             self.sound.discard("connections")
         return made, wires
 
+    def buses(self, site: Site) -> tuple[Bus, ...]:
+        """The buses, with the events that they raise and are asked by."""
+        forms = dict(self.model.entries("buses"))
+        found = [with_events(bus, forms[bus.name], site) for bus in site.buses.sound()]
+        if not all(whole for _, whole in found):
+            self.sound.discard("processors")
+        return tuple(bus for bus, _ in found)
+
     def shutdown(self, site: Site) -> Shutdown:
         """What a request to stop does."""
         given = [file.shutdown for file in self.model.files if file.shutdown is not None]
@@ -304,6 +318,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         "chains", "chain", lambda key, form: chain_of(key, form, messages, site)
     )
     stop = sections.shutdown(site)
+    lines = sections.buses(site)
     damaged = {part.component.name for part in parts.sound() if part.is_damaged}
     bindings, wires = sections.bindings(kinds, instances, types, frozenset(damaged))
     if any(
@@ -321,7 +336,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         types=_declared(types),
         components=tuple(part.component for part in parts.sound()),
         nodes=nodes.sound(),
-        buses=tuple(_with_family(bus, carried) for bus in buses.sound()),
+        buses=tuple(_with_family(bus, carried) for bus in lines),
         instances=instances.sound(),
         connections=connections,
         messages=tuple(m for m in carried if not m.is_foreign),

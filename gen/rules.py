@@ -17,6 +17,7 @@ from .model import Bus, Instance, Message, Processor, Slot, System, Work
 from .parallel import MANY, made_by_all
 from .quantities import shown
 from .resolve import Resolved
+from .rules_buses import BUS_RULES
 from .rules_components import COMPONENT_RULES
 from .rules_nodes import NODE_RULES
 from .signals import bits_of, room_of
@@ -34,7 +35,7 @@ def violations(resolved: Resolved) -> Iterator[Diagnostic]:
     found, others = made_by_all(
         lambda n: [d for rule in COMPONENT_RULES for d in rule(components[n], resolved)],
         len(components),
-        lambda: [d for rule in (*RULES, *NODE_RULES) for d in rule(resolved)],
+        lambda: [d for rule in (*RULES, *NODE_RULES, *BUS_RULES) for d in rule(resolved)],
         worthwhile=sum(len(component.regions) for component in components) >= MANY,
     )
     yield from (diagnostic for own in found for diagnostic in own)
@@ -42,6 +43,11 @@ def violations(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 # --- Names -------------------------------------------------------------------------
+
+
+def _one(kind: str) -> str:
+    """A kind of element with its article."""
+    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
 
 
 def types_do_not_hide_units(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -58,7 +64,7 @@ def types_do_not_hide_units(resolved: Resolved) -> Iterator[Diagnostic]:
     for type_ in system.types:
         kind, origin = units.get(type_.name.lower(), ("", type_.origin))
         if kind:
-            message = f"the type `{type_.name}` is named like a {kind}"
+            message = f"the type `{type_.name}` is named like {_one(kind)}"
             notes = [(origin, f"the {kind} is here")]
             yield error("RV-0304", type_.origin, message, notes=notes, hint="rename one of them")
         literals = type_.literals if isinstance(type_, EnumerationType) else ()
@@ -69,8 +75,8 @@ def types_do_not_hide_units(resolved: Resolved) -> Iterator[Diagnostic]:
             elif literal.lower() == system.name.lower():
                 kind, origin = "system", system.origin
             if kind:
-                article = "the" if kind == "system" else "a"
-                message = f"the literal `{literal}` of {type_.name} is named like {article} {kind}"
+                like = "the system" if kind == "system" else _one(kind)
+                message = f"the literal `{literal}` of {type_.name} is named like {like}"
                 notes = [(origin, f"the {kind} is here")]
                 hint = "rename one of them"
                 yield error("RV-0304", type_.origin, message, notes=notes, hint=hint)
@@ -245,6 +251,8 @@ def sections_are_part_of_work(resolved: Resolved) -> Iterator[Diagnostic]:
         runs += [(bus.origin, f"the driver of {bus.name}", bus.driver_wcet) for bus in system.buses]
         if node.probe is not None:
             runs.append((node.origin, "the probe", node.probe.wcet))
+        if node.supervision is not None:
+            runs.append((node.origin, "the supervision", node.supervision.wcet))
         short = min(runs, key=lambda run: run[2], default=None)
         if short is not None and short[2] < node.critical_section:
             message = (
@@ -267,7 +275,7 @@ def rows_are_allocated_once(resolved: Resolved) -> Iterator[Diagnostic]:
     system = resolved.system
     first: dict[str, tuple[Processor, Slot]] = {}
     for processor, slot in _rows(system):
-        if slot.work is Work.BUS_RECEIVE:
+        if slot.of_bus:
             continue
         known, at = first.setdefault(slot.element, (processor, slot))
         if at is not slot:
@@ -295,7 +303,7 @@ def rows_are_on_their_node(resolved: Resolved) -> Iterator[Diagnostic]:
     """A processor runs only what is on its node."""
     system = resolved.system
     for processor, slot in _rows(system):
-        if slot.work is Work.BUS_RECEIVE:
+        if slot.of_bus:
             continue
         instance = system.instance(slot.owner)
         if instance.node != processor.node:

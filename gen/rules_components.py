@@ -93,9 +93,9 @@ def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iter
         e for need in component.needs for e in (need.on_reply, need.on_full, need.on_timeout) if e
     }
     raised |= {region.on_overflow for region in component.regions if region.on_overflow}
-    outside = [pair for processor in system.processors for pair in processor.raises]
-    raised |= {e for owner, e in (*outside, *system.shutdown.raises) if owner in instances}
+    raised |= {e for owner, e in system.raised_outside if owner in instances}
     used = {event for region in component.regions for event in region.events()}
+    used |= {e for bus in system.buses for owner, e in bus.recovers_on if owner in instances}
     for event in component.events:
         is_raised, is_used = event.name in raised, event.name in used
         if is_raised and not is_used:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .calls import callers
 from .commands import Remote
-from .diagnostics import Diagnostic, error
+from .diagnostics import Diagnostic, error, warning
 from .quantities import shown
 from .remote import is_across, obstacle
 from .resolve import Resolved
@@ -17,6 +17,12 @@ ABSENT = "RV-0802"
 
 ROOM = "RV-0617"
 """Transmit buffers by priority that do not hold what a node sends."""
+
+SILENCE = "RV-0712"
+"""What the silence of a processor shall do that nothing can."""
+
+UNHEARD = "RV-0713"
+"""An event of the silence of a processor for which only that processor waits."""
 
 BUFFERS = 8
 """Transmit buffers that the drivers with buffers by priority fill."""
@@ -74,7 +80,7 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
     """A processor raises events of instances on its node."""
     system = resolved.system
     for processor in system.processors:
-        for instance, event in processor.raises:
+        for instance, event in processor.raised_for_it:
             home = system.instance(instance).node
             if home != processor.node:
                 text = (
@@ -83,6 +89,40 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
                 )
                 hint = "raise an event of an instance there; a port can tell others"
                 yield error("RV-0707", processor.origin, text, hint=hint)
+
+
+def silence_is_seen(resolved: Resolved) -> Iterator[Diagnostic]:
+    """What a processor's silence raises needs a supervision, and somebody else who reacts."""
+    system = resolved.system
+    nodes = {node.name: node for node in system.nodes}
+    for processor in system.processors:
+        node = nodes.get(processor.node)
+        if node is None or not processor.on_silence:
+            continue
+        if node.supervision is None:
+            text = f"{processor.name} has `on_silence`, but nothing supervises {node.name}"
+            hint = f"give {node.name} `supervision: {{period: ..., wcet: ..., margin: ...}}`"
+            yield error(SILENCE, processor.origin, text, hint=hint)
+        for instance, event in processor.on_silence:
+            regions = system.instance(instance).component.regions
+            waiting = {f"{instance}.{r.name}" for r in regions if event in r.events()}
+            own = {slot.element for slot in processor.slots}
+            if waiting and waiting <= own:
+                text = (
+                    f"the silence of {processor.name} raises {instance}.{event}, for which only "
+                    f"{', '.join(sorted(waiting))} on {processor.name} itself waits"
+                )
+                hint = "raise an event of a region that another processor executes"
+                yield warning(UNHEARD, processor.origin, text, hint=hint)
+
+
+def supervision_has_one_core(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A supervisor calls the monitors of all processors: they are on its core."""
+    for node in resolved.system.nodes:
+        if node.supervision is not None and node.cores > 1:
+            text = f"{node.name} has `supervision` and {node.cores} cores"
+            hint = "leave `supervision` out: a supervisor sees the processors of one core only"
+            yield error(SILENCE, node.origin, text, hint=hint)
 
 
 def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -118,4 +158,6 @@ NODE_RULES = (
     servers_call_once,
     cores_exist,
     raised_events_are_near,
+    silence_is_seen,
+    supervision_has_one_core,
 )

@@ -45,7 +45,11 @@ class RangeType(Element):
     range: list[int] = key(
         "First and last value, both included, within -2^62 .. 2^62 - 1.", min_length=2, max_length=2
     )
-    unit: str | None = optional("What the values count, for example `um/s`.", max_length=20)
+    unit: str | None = optional(
+        "What the values count, for example `um/s`. It has an Ada type of its own, here "
+        "`Unit_Um_Per_S`; where only case or signs differ, the later unit is numbered.",
+        max_length=20,
+    )
 
 
 class ValuesType(Element):
@@ -401,6 +405,20 @@ class ProbeForm(Element):
     wcet: PositiveSpan = key("Worst-case execution time of one wake-up; at most the period.")
 
 
+class SupervisionForm(Element):
+    """The liveness supervision of a node: one task that looks at every processor."""
+
+    period: PositiveSpan = key("Time from one look at the processors to the next.")
+    wcet: PositiveSpan = key(
+        "Worst-case execution time of one look, the events of `on_silence` included; at most the "
+        "period."
+    )
+    margin: PositiveSpan = key(
+        "Time beyond its deadline within which a release must have completed, or its processor is "
+        "silent; on a workstation longer than the host withholds the core."
+    )
+
+
 class TickForm(Element):
     """A timer that interrupts periodically: timed releases wait for it."""
 
@@ -414,10 +432,14 @@ class NodeForm(Element):
     context_switch: Span = key("Time of one context switch.")
     critical_section: Span = key("Longest time inside any protected operation.")
     trace: int = PydanticField(
-        default=0, ge=0, le=1_048_576, description="Records the trace holds, 0 to 1048576; 0: none."
+        default=0, ge=0, le=65_536, description="Records the trace holds, 0 to 65536; 0: none."
     )
     probe: ProbeForm | None = optional(
         "A task above all others that measures how long a host withholds the processor."
+    )
+    supervision: SupervisionForm | None = optional(
+        "A task above all processors and drivers that finds processors which no longer complete "
+        "their releases; none unless given."
     )
     release: Span = PydanticField(
         default=0,
@@ -473,7 +495,7 @@ class ProcessorForm(Element):
     stack: StackSize = key("Stack of the task, 1 KiB to 64 MiB.")
     activities: list[OwnedReference] = key(
         "The table, in order: `instance.activity`, `instance.Region`, `instance.ports`, "
-        "`bus.receive`.",
+        "`bus.receive`, `bus.watch`.",
         min_length=1,
         max_length=1024,
     )
@@ -483,6 +505,11 @@ class ProcessorForm(Element):
     on_overrun: list[OwnedReference] | None = optional(
         "`instance.Event`s raised when an activity used more processor time than its `wcet`; each "
         "one is then compared with it as it ends.",
+        min_length=1,
+    )
+    on_silence: list[OwnedReference] | None = optional(
+        "`instance.Event`s that the supervision of the node raises, once, when a release has not "
+        "completed by its deadline and the margin.",
         min_length=1,
     )
 
@@ -523,10 +550,12 @@ class ModelFile(Element):
     devices: dict[Name, DeviceForm] | None = optional("Devices, and composites of them.")
     bindings: list[BindingForm] | None = optional("What provides the required interfaces.")
     components: dict[Name, ComponentForm] | None = optional("Components.")
-    nodes: dict[Name, NodeForm] | None = optional("Nodes; exactly one in this version.")
-    buses: dict[Name, BusForm] | None = optional("CAN buses; at most one in this version.")
+    nodes: dict[Name, NodeForm] | None = optional("Nodes: one or several, and a program for each.")
+    buses: dict[Name, BusForm] | None = optional("The CAN bus: at most one.")
     instances: dict[Name, InstanceForm] | None = optional("Instances of components.")
-    connections: list[ConnectionForm] | None = optional("Connections inside a node.")
+    connections: list[ConnectionForm] | None = optional(
+        "Connections of ports, on one node or between two."
+    )
     messages: dict[Name, MessageForm] | None = optional("Messages on buses.")
     processors: dict[Name, ProcessorForm] | None = optional("Processors: the tasks.")
     chains: dict[Name, ChainForm] | None = optional("Limits of latencies from end to end.")

@@ -69,6 +69,10 @@ def _duration(value: object) -> Ns:
     return parsed
 
 
+def _flag(value: object) -> object:
+    return {"yes": True, "no": False}.get(value, value) if isinstance(value, str) else value
+
+
 def _stack(value: object) -> object:
     parsed = quantity(value, BYTES) if isinstance(value, str) else None
     if parsed is None or not 2**10 <= parsed <= 2**26:
@@ -110,6 +114,12 @@ Span = Annotated[int, BeforeValidator(_duration), WithJsonSchema(_duration_schem
 """A duration, in ns; may be 0."""
 PositiveSpan = Annotated[int, BeforeValidator(_positive), WithJsonSchema(_duration_schema)]
 """A duration longer than 0, in ns."""
+Flag = Annotated[
+    bool,
+    BeforeValidator(_flag),
+    WithJsonSchema({"anyOf": [{"type": "boolean"}, {"enum": ["yes", "no"]}]}),
+]
+"""`yes` or `no`; `true` and `false` are the same."""
 StackSize = Annotated[
     int, BeforeValidator(_stack), WithJsonSchema({"type": "string", "pattern": pattern(BYTES)})
 ]

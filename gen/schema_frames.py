@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
+from pydantic import Discriminator, Tag
 from pydantic import Field as PydanticField
-from pydantic import Tag
 
 from .schema_base import (
     BitRate,
     Constant,
     DataRate,
     Element,
+    Flag,
     Name,
     OwnedReference,
     PositiveSpan,
@@ -22,12 +23,56 @@ from .schema_base import (
 )
 
 
+def _policy(value: Any) -> str | None:
+    """The tag of a policy of recovery."""
+    if isinstance(value, dict):
+        return next((f"<{name}>" for name in ("after", "on") if name in value), None)
+    return "<one>"
+
+
+RECOVERY = Discriminator(
+    _policy,
+    custom_error_type="choice",
+    custom_error_message="recovery is `automatic`, or a mapping with one of the keys `after`, `on`",
+)
+
+
 class ErrorsForm(Element):
     """What errors of a bus are reckoned with."""
 
     period: PositiveSpan = key("Least time from one error to the next.")
     burst: int = PydanticField(
         default=1, ge=1, le=1000, description="Errors that may come at once besides, 1 to 1000."
+    )
+
+
+class WatchForm(Element):
+    """When each node looks at how its controller stands on the bus: the row `bus.watch`."""
+
+    period: PositiveSpan = key("Time from one look to the next.")
+    wcet: PositiveSpan = key(
+        "Worst-case execution time of one look, the events it raises included."
+    )
+    deadline: PositiveSpan | None = optional("Relative deadline; the period unless given.")
+
+
+class DelayedForm(Element):
+    """Recovery from bus-off after a delay."""
+
+    after: PositiveSpan = key(
+        "Recovery is requested so long after a look has found bus-off, in whole periods of "
+        "`watch`, rounded up."
+    )
+
+
+class RequestedForm(Element):
+    """Recovery from bus-off when a chart requests it."""
+
+    on: list[OwnedReference] = key(
+        "`instance.Event`s that request it on the node of the instance; each node of the bus needs "
+        "one.",
+        min_length=1,
+        max_length=64,
     )
 
 
@@ -48,6 +93,38 @@ class BusForm(Element):
         "as it has transmit buffers (`transmit_depth`, 8 at most), each within its period.",
     )
     errors: ErrorsForm | None = optional("Errors that delay frames; none unless given.")
+    watch: WatchForm | None = optional(
+        "When each node looks at its controller; the three lists below need it, and so does "
+        "`recovery` with `after`. Each node of the bus then has the row `bus.watch` in one table."
+    )
+    on_error_passive: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when the controller of the instance's node has become "
+        "error-passive (ISO 11898-1).",
+        min_length=1,
+        max_length=64,
+    )
+    on_bus_off: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when it has become bus-off.", min_length=1, max_length=64
+    )
+    on_recovered: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when it is error-active again after either.",
+        min_length=1,
+        max_length=64,
+    )
+    recovery: (
+        Annotated[
+            Annotated[Literal["automatic"], Tag("<one>")]
+            | Annotated[DelayedForm, Tag("<after>")]
+            | Annotated[RequestedForm, Tag("<on>")],
+            RECOVERY,
+        ]
+        | None
+    ) = optional(
+        "Who requests recovery from bus-off; 128 times 11 recessive bits later the controller is "
+        "back. `automatic`, which holds unless given: the driver, at once. `{after: 100 ms}`: the "
+        "row `bus.watch`, after that time. `{on: [instance.Event]}`: the chart that raises the "
+        "event."
+    )
     data_rate: DataRate | None = optional(
         "Bit rate of the data of CAN FD frames, 10 kbit/s to 10 Mbit/s, not below `bit_rate`; they "
         "do not switch unless given. With it, what connections and commands between nodes carry is "
@@ -128,8 +205,14 @@ class MessageForm(Element):
         | None
     ) = optional("`instance.port` that receives, or a list; without it all receivers are outside.")
     period: PositiveSpan | None = optional(
-        "Least time between two frames; only for messages from outside, the others have the period "
-        "of what sends them."
+        "Time between two frames, the least one where they are sporadic; only for messages from "
+        "outside, the others have the period of what sends them."
+    )
+    sporadic: Flag | None = optional(
+        "Of a message from outside: `yes` (unless given) where `period` is only the least time "
+        "between two frames, so that the next one may never come; `no` where its sender queues "
+        "one every `period` exactly. Reactions to a sporadic message are bounded, the age of "
+        "what is made of it is not."
     )
     bytes: int | None = PydanticField(
         default=None,

@@ -9,16 +9,24 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
+from itertools import product
 
 from .commands import RemoteRead
 from .emit.charts.places import Places
 from .model import System
 from .terms import Origin
 
+CONTROLLER_STATES = ("Stopped", "Error_Active", "Error_Passive", "Bus_Off")
+"""The states of a controller, in order of number (Ravenchart.Can.Controller_State)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One traced element; ``states`` and ``transitions`` are a region's, in order of number."""
+    """One traced element.
+
+    ``leaves`` are the states of a region or of a bus, and ``transitions`` those of a region, in
+    order of number.
+    """
 
     number: int
     element: str
@@ -65,7 +73,16 @@ def elements(system: System) -> tuple[Element, ...]:
                 )
     for message in system.messages:
         add(message.name, "message", message.origin)
-    return tuple(found)
+    return (*found, *_controllers(system, len(found)))
+
+
+def _controllers(system: System, last: int) -> tuple[Element, ...]:
+    """The controllers of each bus with `watch`, ``node.bus``, numbered behind ``last``."""
+    watched = [bus for bus in system.buses if bus.watch is not None]
+    return tuple(
+        Element(number, f"{node.name}.{bus.name}", "bus", bus.origin, leaves=CONTROLLER_STATES)
+        for number, (bus, node) in enumerate(product(watched, system.nodes), last + 1)
+    )
 
 
 def number_of(system: System, element: str, kind: str) -> int:
@@ -88,6 +105,8 @@ def trace_json(system: System) -> str:
         }
         if item.kind == "region":
             row |= {"leaves": item.leaves, "transitions": item.transitions}
+        if item.kind == "bus":
+            row["leaves"] = item.leaves
         rows.append(row)
     document = {"system": system.name, "digest": system.digest, "elements": rows}
     return json.dumps(document, indent=1, ensure_ascii=True) + "\n"

@@ -278,10 +278,25 @@ def _parsed(text: str) -> Iterable[Event]:
     """PyYAML's events: by libyaml, the faster, where both parsers agree and all is well."""
     if yaml.__with_libyaml__ and not UNLIKE.search(text):
         try:
-            events = list(yaml.parse(text, Loader=yaml.CSafeLoader))
+            events = _until_too_deep(yaml.parse(text, Loader=yaml.CSafeLoader))
         except (yaml.YAMLError, ValueError, OverflowError):
             events = []  # PyYAML's own parser says what is wrong
         #  where a value is missing, the two see its place differently
         if events and not any(isinstance(e, ScalarEvent) and e.value == "" for e in events):
             return events
     return yaml.parse(text, Loader=yaml.SafeLoader)
+
+
+def _until_too_deep(events: Iterable[Event]) -> list[Event]:
+    """The events up to one that opens more than `DEEPEST`: a parser's time grows with depth."""
+    taken: list[Event] = []
+    depth = 0
+    for event in events:
+        taken.append(event)
+        if isinstance(event, (MappingStartEvent, SequenceStartEvent)):
+            depth += 1
+            if depth > DEEPEST:
+                break
+        elif isinstance(event, (MappingEndEvent, SequenceEndEvent)):
+            depth -= 1
+    return taken

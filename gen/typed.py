@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from . import intervals
+from . import folding, intervals
 from .expressions import Malformed, Term, parse
 from .names import Findings, meant
 from .narrowing import COMPARISONS, Known, narrowed
@@ -153,6 +153,8 @@ class Checker:
         own = self.vocabulary.own_region
         if own is not None and own.lower() == term.word.lower():
             hint = "write the transition `from` that state"
+            if term.member.lower() in self.vocabulary.concurrent:
+                hint = f"set a data item in `entry` and `exit` of {term.member}, and read that"
             self.refuse("RV-0416", term, "a region cannot ask for its own state", hint)
             return None
         state = states.look_up(term.member, self.at(term), self.findings)
@@ -255,8 +257,8 @@ class Checker:
             self.refuse("RV-0408", term, message, "limit the operands by min, max or clamp")
             return None
         terms = tuple(item.expression for item in operands)
-        operation = Operation(operator, terms, None, unit, *bounds)
-        return Checked(operation, None, bounds, unit, bare)
+        made = folding.arithmetic(Operation(operator, terms, None, unit, *bounds))
+        return Checked(made, None, bounds, unit, bare)
 
     def same_unit(self, term: Term, operator: str, operands: list[Checked]) -> bool:
         """Whether all operands count the same, or are bare numbers; reported when not."""
@@ -273,7 +275,7 @@ class Checker:
         if len(term.operands) == 1:
             if left is None:
                 return None
-            return Checked(Operation("not", (left.expression,), BOOLEAN), BOOLEAN)
+            return Checked(folding.negated(left.expression), BOOLEAN)
         before = self.known
         if left is not None:
             self.known = narrowed(self.known, left.expression, term.word == "and")
@@ -281,8 +283,7 @@ class Checker:
         self.known = before
         if left is None or right is None:
             return None
-        operation = Operation(term.word, (left.expression, right.expression), BOOLEAN)
-        return Checked(operation, BOOLEAN)
+        return Checked(folding.joined(term.word, left.expression, right.expression), BOOLEAN)
 
     def boolean(self, term: Term, taker: str) -> Checked | None:
         """A condition."""
@@ -320,8 +321,15 @@ class Checker:
             return None
         if left.type is None and not self.same_unit(term, term.word, [left, right]):
             return None
-        operation = Operation(term.word, (left.expression, right.expression), BOOLEAN)
-        return Checked(operation, BOOLEAN)
+        decided = folding.decided(term.word, left.expression, right.expression)
+        if decided is not None:
+            outcome = "true" if decided.holds else "false"
+            message = f"this comparison is always {outcome}: {decided.reason}"
+            hint = f"compare something that changes, or write `{outcome}`"
+            self.refuse("RV-0417", term, message, hint)
+            return None
+        compared = folding.compared(term.word, left.expression, right.expression)
+        return Checked(compared, BOOLEAN)
 
     def choose(self, term: Term, expected: EnumerationType | None) -> Checked | None:
         """``if condition then a else b``; each branch knows what the condition says."""
@@ -345,13 +353,14 @@ class Checker:
             return None
         terms = (condition.expression, checked.expression, other.expression)
         if checked.type is not None:
-            return Checked(Operation("if", terms, checked.type), checked.type)
+            return Checked(folding.chosen(Operation("if", terms, checked.type)), checked.type)
         if not self.same_unit(term, "if", [checked, other]):
             return None
         bounds = intervals.apply("if", (checked.bounds, other.bounds))
         unit = other.unit if checked.bare else checked.unit
         operation = Operation("if", terms, None, unit, *bounds)
-        return Checked(operation, None, bounds, unit, checked.bare and other.bare)
+        chosen = folding.chosen(operation)
+        return Checked(chosen, None, bounds, unit, checked.bare and other.bare)
 
 
 def _is_literal_of(word: str, type_: EnumerationType | None) -> bool:

@@ -23,6 +23,8 @@ class Vocabulary:
     literals: frozenset[str]
     """All enumeration literals of the model, in lower case."""
     own_region: str | None = None
+    concurrent: frozenset[str] = frozenset()
+    """States of the own region that lie in one of several regions of a state, in lower case."""
     no_event: str = "there is no triggering event here"
     """Why ``event`` has no value."""
 

@@ -15,6 +15,7 @@ from itertools import pairwise
 from .calls import published_by, rows_of
 from .commands import Server
 from .model import Chain, System
+from .statechart import OnEvent
 
 Flow = Mapping[str, Sequence[str]]
 """What values go to from each place, in model order."""
@@ -59,10 +60,47 @@ def flow_of(system: System) -> Flow:
     return flow
 
 
+def _event_over(system: System, flow: Flow, gap: tuple[str, str]) -> tuple[str, str, str] | None:
+    """An event on the way over a gap of a chain: itself, what raises it and the region it is for.
+
+    Places are as chains name them. None where no single event joins both sides.
+    """
+    before, after = (p if "." in p else f"message {p}" for p in gap)
+    for instance in system.instances:
+        component = instance.component
+        taken = [
+            (f"{instance.name}.{region.name}", transition.trigger.event)
+            for region in component.regions
+            for transition in region.transitions
+            if isinstance(transition.trigger, OnEvent)
+        ]
+        raised = [(f"{instance.name}.{r.name}", e) for r in component.runnables() for e in r.raises]
+        ports = (port for port in component.ports if not port.is_command)
+        raised += [
+            (f"{instance.name}.{port.name}", event)
+            for port in ports
+            for event in (port.on_arrival, port.on_stale, port.on_overflow)
+            if event is not None
+        ]
+        for place, event in raised:
+            for region, wanted in taken:
+                fits = wanted == event and place != region
+                if fits and _shortest(flow, before, place) and _shortest(flow, region, after):
+                    return event, place, region
+    return None
+
+
 def routed(system: System) -> System:
     """The system with the way of each of its chains."""
     flow = flow_of(system)
-    return replace(system, chains=tuple(_routed(chain, flow) for chain in system.chains))
+    chains = (_routed(chain, flow) for chain in system.chains)
+    told = (
+        chain
+        if chain.gap is None
+        else replace(chain, gap_event=_event_over(system, flow, chain.gap))
+        for chain in chains
+    )
+    return replace(system, chains=tuple(told))
 
 
 def _routed(chain: Chain, flow: Flow) -> Chain:

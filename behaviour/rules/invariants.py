@@ -236,8 +236,10 @@ def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnos
     message = f"{invariant.name} cannot be excluded: {broken.step} may lead to it"
     data = f"when {broken.data}" if broken.data else "whatever the data"
     notes = [(broken.origin, f"it does so {data}")]
-    hint = (
-        f"no way from the start to it was found among {looked} situations; exclude it by a guard, "
-        "or say more in the condition of `never`"
+    searched = (
+        f"no way from the start to it was found among {looked} situations"
+        if looked
+        else "there was no time left to look for a way from the start to it"
     )
+    hint = f"{searched}; exclude it by a guard, or say more in the condition of `never`"
     return warning("RV-1109", invariant.origin, message, notes=notes, hint=hint)

@@ -73,8 +73,7 @@ def external_events(component: Component, system: System) -> Iterator[tuple[str,
     for need in component.needs:
         told = (need.on_reply, need.on_full, need.on_timeout)
         yield from ((event, None) for event in told if event)
-    outside = [pair for processor in system.processors for pair in processor.raises]
-    yield from ((e, None) for owner, e in (*outside, *system.shutdown.raises) if owner in instances)
+    yield from ((e, None) for owner, e in system.raised_outside if owner in instances)
     raised = {e for item in component.runnables() for e in item.raises}
     raised |= {e for port in component.ports for e in (port.on_arrival, port.on_stale) if e}
     yield from ((event.name, None) for event in component.events if event.name not in raised)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import z3
 
 from gen.component import Component
-from gen.model import System, Work
+from gen.model import System
 
 from .logic import Term
 
@@ -51,7 +51,7 @@ def schedules(system: System, component: Component) -> Iterator[tuple[str, Rows]
             (-processor.priority, index, processor, slot)
             for processor in system.processors
             for index, slot in enumerate(processor.slots)
-            if slot.owner == instance.name and slot.work is not Work.BUS_RECEIVE
+            if slot.owner == instance.name and not slot.of_bus
         ]
         rows = {
             slot.name: Row(

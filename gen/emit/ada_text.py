@@ -111,7 +111,9 @@ def expression(expr: Expr) -> Doc:
         case Ref(text):
             return _choices(text) if " | " in text else text
         case Chain(operator, operands):
-            head = _operand(operands[0], operator)
+            #  GNAT wants to see what a sign before a product is of
+            begin = _signed if operator in ("*", "/") else _operand
+            head = begin(operands[0], operator)
             rest = [_signed(o, operator) for o in operands[1:]]
             return group(head, *(cat(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
         case Prefix(operator, operand):

@@ -32,6 +32,7 @@ from .ada import (
     member,
     number,
 )
+from .bus_watch import emit_watch
 from .codecs import codec_name, words_of
 from .naming import ada_case, priority, root_package, type_name
 from .remote_calls import received_as
@@ -78,7 +79,8 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         Subprogram(
             "Accepts",
             (
-                Param("Id", "in", "Ravenchart.Can.Identifier"),
+                #  GNAT takes this word as: not referenced, and meant so
+                Param("Id" if received else "Unused_Id", "in", "Ravenchart.Can.Identifier"),
                 Param("Format", "in", "Ravenchart.Can.Frame_Format"),
             ),
             "Boolean",
@@ -115,7 +117,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         )
     if received:
         units += _receiver(system, bus, header)
-    return units
+    return units + emit_watch(system, bus, header)
 
 
 def _setting(bus: Bus) -> Expr:
@@ -124,6 +126,9 @@ def _setting(bus: Bus) -> Expr:
         "Bit_Rate": number(bus.bit_rate),
         "Data_Rate": number(bus.data_rate or 0),
         "Takes_Fd": TRUE if bus.takes_fd else FALSE,
+        "Recovery": Ref(
+            f"Ravenchart.Can.{'On_Request' if bus.recovers_by_request else 'Automatic'}"
+        ),
     }
     return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
 
@@ -136,7 +141,7 @@ def _send_spec(system: System, message: Message) -> Subprogram:
 
 def _frame(bus: Bus, message: Message) -> Expr:
     """The frame that carries an item."""
-    packed: Expr = call(f"Codecs.Pack_{codec_name(message)}", Ref("Item"))
+    packed: Expr = call(f"Codecs.{codec_name(message)}.Pack", Ref("Item"))
     head = {
         "Id": number(message.identifier),
         "Format": _format(message),
@@ -212,7 +217,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             for t in message.targets
         )
         unpack = Do(
-            f"Codecs.Unpack_{codec_name(message)}",
+            f"Codecs.{codec_name(message)}.Unpack",
             arguments(_data(message), Ref(item), Ref("Valid")),
         )
         family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")

@@ -13,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Set
 
 from ..claims import ChainClaim, Claims
+from ..derive import SUPERVISOR
 from ..instants import has_offset
-from ..model import SharedObject, System, Task
+from ..model import Node, SharedObject, System, Task
 from .ada import SPARK, Aspect, Chain, Comment, Decl, Expr, Package, Ref, Unit, number
 from .certificate_bus import bus_claims, bus_terms
 from .certificate_chains import chain_claims
@@ -73,6 +74,8 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     handed = {hop.element for hop in hops if hop.kind == "handed"}
     for task in system.tasks:
         items += _claims(system, task, claims, rows)
+    for node in system.nodes:
+        items += _silences(system, node)
     for bus in system.buses:
         items += bus_claims(system, bus, claims, handed)
     for chain in system.chains:
@@ -94,6 +97,25 @@ def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
         if reaches and lower is not None and longer:
             found = item, lower
     return found
+
+
+def _silences(system: System, node: Node) -> list[Decl]:
+    """When a processor is silent, and when its supervisor has found it at the latest."""
+    if node.supervision is None:
+        return []
+    own, task = ada_case(node.name), name_of(f"{node.name}.{SUPERVISOR}")
+    text = (
+        f"[{node.name}] a release that has not completed L after it was due makes its processor "
+        "silent; the supervisor has reported that S after the release was due"
+    )
+    items: list[Decl] = [Comment(text), stated(f"{own}_Margin", node.supervision.margin)]
+    for processor in system.processors:
+        if processor.node == node.name:
+            name = name_of(processor.name)
+            items.append(named(f"{name}_L", plus(Ref(f"{name}_D"), Ref(f"{own}_Margin"))))
+            found = plus(Ref(f"{name}_L"), Ref(f"{task}_T"), Ref(f"{task}_R"))
+            items.append(named(f"{name}_S", found))
+    return items
 
 
 # --- Terms ---------------------------------------------------------------------------

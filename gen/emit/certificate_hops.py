@@ -23,7 +23,7 @@ class Hop:
     ``how`` values come to it: ``released`` by the step before or the chain's event,
     ``sampled``, or ``queued`` with so many at once. ``open``: values may wait for as long
     as its region has other things to do, or as others fill the same queue. ``sure``: each
-    of its jobs makes a new output.
+    of its jobs makes a new output, and it has a job in every period.
     """
 
     element: str
@@ -60,7 +60,20 @@ def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
             hops.append(_row(system, place, row, hops))
             if number + 1 < len(chain.way):
                 sure = component.renews(row, chain.way[number + 1].rpartition(".")[2])
-    return tuple(hops)
+    return tuple(_irregular(system, chain, hops))
+
+
+def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
+    """The steps, the first not sure where it is a sporadic message that something samples.
+
+    What it releases runs as seldom as it comes; what samples it may find the same value
+    any number of times.
+    """
+    begins = chain.way[0].removeprefix("message ") if chain.way else ""
+    rare = any(message.sporadic and message.name == begins for message in system.messages)
+    if rare and any(hop.how != "released" for hop in hops[1:]):
+        return [replace(hops[0], sure=False), *hops[1:]]
+    return hops
 
 
 def _message(system: System, name: str, following: str) -> Iterator[Hop]:

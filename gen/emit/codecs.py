@@ -2,24 +2,28 @@
 
 A frame of up to 8 bytes is one 64-bit word, a longer one several: byte 0 is the lowest
 of the first. Unpack refuses raw values outside the type, and of a multiplexed message
-looks at the signals of its page alone: the others are then the type's defaults. A ghost
-lemma shows that what is packed is what is unpacked.
+looks at the signals of its page alone: the others are then the type's defaults. The
+contracts of both say by the layout table, and so without the codec's own functions, what
+the frame holds. A ghost lemma shows that what is packed is what is unpacked.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from ..layouts import RAW_LIMIT
 from ..model import Message, System
-from ..signals import ByteOrder, Signal, bits_of, signals_of
-from ..terms import IntegerType, RecordType, default
+from ..signals import Signal, bits_of, signals_of
+from ..terms import RecordType, default
 from .ada import (
+    NULL,
     SPARK,
     TRUE,
     Aggregate,
     Arg,
     Aspect,
     Assign,
+    Chain,
     Comment,
     Decl,
     Do,
@@ -38,6 +42,7 @@ from .ada import (
     Unit,
     UseType,
     arguments,
+    both,
     call,
     chain,
     equal,
@@ -50,12 +55,14 @@ from .coding import (
     Coding,
     all_of,
     as_bits,
+    bits,
     container,
     literal_name,
     placed,
     within_width,
     word_bits,
 )
+from .layout_tables import LAYOUTS, LayoutTable, place
 from .naming import ada_case, default_value, scalar, type_name
 
 WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
@@ -66,12 +73,13 @@ FD_WORDS = 8
 
 
 def codec_name(message: Message) -> str:
-    """What its Pack and Unpack are called after: the type, or the message with a layout of its own.
+    """The package of its codec: of the type, or of the message with a layout of its own.
 
-    A layout is the type's where none is given.
+    A layout is the type's where none is given. No codec of a type is called like one of a
+    message, whatever the model calls them.
     """
     plain = message.signals == signals_of(message.type)
-    return ada_case(message.type.name if plain else message.name)
+    return f"Type_{ada_case(message.type.name)}" if plain else f"Message_{ada_case(message.name)}"
 
 
 def words_of(message: Message) -> int:
@@ -87,22 +95,20 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     if not layouts:
         return ()
     codecs = [_Codec(system, message) for message in layouts.values()]
-    kinds = {container(s) for codec in codecs for s in codec.signals} | {WORD}
+    kinds = {container(s) for codec in codecs for s in codec.signals} | {WORD, NUMBER}
     spec: list[Decl] = [UseType(k) for k in sorted(kinds)]
-    if any(isinstance(s.type, IntegerType) for codec in codecs for s in codec.signals):
-        spec.append(UseType(NUMBER))
-    codings = {c.name.lower(): c for codec in codecs for c in codec.codings.values()}
-    spec += [c.spec() for c in codings.values()]
-    counted = any(c.is_wide_number for c in codings.values())
-    body: list[Decl] = [as_bits()] if counted else []
-    body += [c.body() for c in codings.values()]
+    codings = [c for codec in codecs for c in codec.codings.values()]
+    shared = {c.name.lower(): c for c in codings if c.is_shared}.values()
+    spec += [c.spec() for c in shared]
+    body: list[Decl] = [as_bits()] if any(c.is_wide_number for c in codings) else []
+    body += [c.body() for c in shared]
     for codec in codecs:
-        spec += codec.spec()
-        body += codec.body()
+        spec.append(Package(codec.name, tuple(codec.spec())))
+        body.append(Package(codec.name, tuple(codec.body()), is_body=True))
     name = f"{ada_case(system.name)}.Codecs"
-    withs: tuple[str, ...] = ("Interfaces",)
+    withs: tuple[str, ...] = ("Interfaces", LAYOUTS)
     if any(codec.words > 1 for codec in codecs):
-        withs = ("Interfaces", "Ravenchart.Can.Fd_Frames")
+        withs = (*withs, "Ravenchart.Can.Fd_Frames")
     return (
         Unit(header, withs, Package(name, tuple(spec), (SPARK, Aspect("Pure")))),
         Unit(header, (), Package(name, tuple(body), (SPARK,), is_body=True)),
@@ -114,26 +120,23 @@ class _Codec:
         self.system, self.type, self.signals = system, message.type, message.signals
         self.name = codec_name(message)
         self.ada_type = type_name(system, message.type)
-        self.codings = {s.name: Coding(system, s, self.name) for s in self.signals}
+        self.codings = {s.name: Coding(system, s) for s in self.signals}
         self.words = words_of(message)
         self.frame = "Word" if self.words == 1 else "Words"
         self.frame_type = WORD if self.words == 1 else WORDS
-        self.label = message.type.name if self.name == ada_case(message.type.name) else message.name
+        self.label = message.type.name if self.name.startswith("Type_") else message.name
+        self.table = LayoutTable(system, self.signals)
         self.selector = next((s for s in self.signals if s.selects), None)
 
-    @property
-    def _joined(self) -> str:
-        """What makes a frame of raw values."""
-        return f"{self.frame}_Of_{self.name}"
-
     def _raw_name(self, signal: Signal) -> str:
-        return f"{self.name}_{ada_case(signal.name)}_Raw"
+        return f"Raw_Of_{ada_case(signal.name)}"
 
     def _item(self, signal: Signal, item: str) -> str:
         return item if signal.field is None else f"{item}.{ada_case(signal.field)}"
 
     def _local(self, signal: Signal) -> str:
-        return f"{ada_case(signal.name)}_Raw"
+        """The raw value of a signal, in a variable or parameter."""
+        return f"Local_{ada_case(signal.name)}"
 
     def _word(self, frame: str) -> Callable[[int], str]:
         """A word of a frame by its number."""
@@ -167,9 +170,6 @@ class _Codec:
         """The multiplexor of a value; anything where there is none."""
         return Ref(item if self.selector is None else self._item(self.selector, item))
 
-    def _selected_raw(self, frame: str) -> Expr:
-        return Ref(frame) if self.selector is None else self._raw(self.selector, frame)
-
     def _selected_local(self) -> Expr:
         return Ref("" if self.selector is None else self._local(self.selector))
 
@@ -181,39 +181,32 @@ class _Codec:
     # --- The spec ----------------------------------------------------------------
 
     def spec(self) -> list[Decl]:
-        """The bits of each signal, Pack, Unpack and the lemma."""
+        """The layout table, the bits of each signal, Pack, Unpack and the lemma."""
         frame = Param(self.frame, "in", self.frame_type)
         items: list[Decl] = []
         for s in self.signals:
+            items.append(Comment(f"[{self.label}.{s.name}] {place(s)}"))
+            items += self.table.row(s)
+        for s in self.signals:
             raw = word_bits(s, self._word(self.frame))
             items.append(Subprogram(self._raw_name(s), (frame,), container(s), expression=raw))
-            items.append(Comment(f"[{self.label}.{s.name}] {_place(s)}"))
-        packed = all_of(*self._carries())
-        valid = all_of(*(self._is_valid(s, self.frame) for s in self.signals))
-        taken: Expr = all_of(*self._taken())
-        unpacked = all_of(Ref("Valid"), taken)
-        if valid != TRUE:
-            other = equal(Ref("Item"), default_value(self.system, self.type))
-            taken = IfExpr(((Ref("Valid"), taken),), other)
-            unpacked = all_of(equal(Ref("Valid"), valid), taken)
+        items += [c.spec() for c in self.codings.values() if not c.is_shared]
         items += [
             Subprogram(
-                f"Pack_{self.name}",
+                "Pack",
                 (Param("Item", "in", self.ada_type),),
                 self.frame_type,
-                aspects=(Aspect("Post", packed),),
+                aspects=(Aspect("Post", all_of(*self._carries(), *self._gaps())),),
             ),
+            Comment("The frame's raw values are the table's, and bits of no signal are 0."),
             Subprogram(
-                f"Unpack_{self.name}",
+                "Unpack",
                 (frame, Param("Item", "out", self.ada_type), Param("Valid", "out", "Boolean")),
-                aspects=(
-                    *self._by_reference(),
-                    Aspect("Post", unpacked),
-                ),
+                aspects=(*self._by_reference(), Aspect("Post", self._unpacked())),
             ),
             Comment("Valid when all bits stand for values."),
             Subprogram(
-                f"Lemma_{self.name}_Survives",
+                "Lemma_Survives",
                 (Param("Item", "in", self.ada_type),),
                 aspects=(Aspect("Ghost"),),
             ),
@@ -230,27 +223,56 @@ class _Codec:
         """
         return [Aspect("Convention", Ref("C"))] if isinstance(self.type, RecordType) else []
 
-    def _is_valid(self, signal: Signal, frame: str) -> Expr:
-        valid = self.codings[signal.name].valid(self._raw(signal, frame))
-        return self._when(signal, valid, self._selected_raw(frame), raw=True)
+    def _there_in(self, signal: Signal, frame: str) -> Expr | None:
+        """Does the table say that a signal is in a frame? None: it always is."""
+        if self.selector is None or not signal.pages:
+            return None
+        pages = " | ".join(f"{page:_}" for page in signal.pages)
+        return member(self.table.number_in(self.selector, frame), pages)
 
     def _carries(self) -> list[Expr]:
-        """For each field that is in the frame: its bits stand for the item's."""
+        """For each field that is in the frame: its raw value is the item's."""
+        selected = self._selected("Item")
         facts: list[Expr] = []
         for s in self.signals:
-            coding, raw = self.codings[s.name], self._raw(s, f"Pack_{self.name}'Result")
-            same = equal(call(coding.value_of, raw), Ref(self._item(s, "Item")))
-            for fact in (coding.valid(raw), same):
-                facts.append(self._when(s, fact, self._selected("Item"), raw=False))
+            same = equal(
+                self.table.number_in(s, "Pack'Result"),
+                self.table.raw_value(s, Ref(self._item(s, "Item"))),
+            )
+            facts.append(self._when(s, same, selected, raw=False))
         return facts
 
-    def _taken(self) -> list[Expr]:
-        """Each field is what its bits stand for, or the default where a page has no room for it."""
-        selected = self._selected_raw(self.frame)
-        return [
-            equal(Ref(self._item(s, "Item")), self._decoded(s, self._raw(s, self.frame), selected))
-            for s in self.signals
-        ]
+    def _gaps(self) -> list[Expr]:
+        """Bits of no signal are 0."""
+        taken = sum(1 << bit for bit in {bit for s in self.signals for bit in s.bits()})
+        facts: list[Expr] = []
+        word = self._word("Pack'Result")
+        for index in range(1 if self.words == 1 else FD_WORDS):
+            free = ~(taken >> 64 * index) & (1 << 64) - 1
+            if free == (1 << 64) - 1:
+                facts.append(equal(Ref(word(index)), number(0)))
+            elif free:
+                facts.append(equal(Ref(f"({word(index)} and 16#{free:X}#)"), number(0)))
+        return facts
+
+    def _unpacked(self) -> Expr:
+        """Valid as the table says it, and each field what the table says or its default."""
+        valid: list[Expr] = []
+        taken: list[Expr] = []
+        for s in self.signals:
+            shown = self.table.number_in(s, self.frame)
+            holds = member(shown, self.table.raw_values(s))
+            same = equal(shown, self.table.raw_value(s, Ref(self._item(s, "Item"))))
+            there = self._there_in(s, self.frame)
+            if there is not None:
+                absent = equal(Ref(self._item(s, "Item")), self._default(s))
+                holds = IfExpr(((there, holds),), None)
+                same = IfExpr(((there, same),), absent)
+            valid.append(holds)
+            taken.append(same)
+        other = equal(Ref("Item"), default_value(self.system, self.type))
+        read = IfExpr(((Ref("Valid"), all_of(*taken)),), other)
+        return all_of(equal(Ref("Valid"), all_of(*valid)), read)
 
     def _decoded(self, signal: Signal, raw: Expr, selected: Expr) -> Expr:
         """The value of a field of a valid frame, where ``selected`` is its multiplexor."""
@@ -258,15 +280,80 @@ class _Codec:
         there = self._there(signal, selected, raw=True)
         return decoded if there is None else IfExpr(((there, decoded),), self._default(signal))
 
+    # --- From the codec's own functions to the table -------------------------------
+
+    def _bits_lemma(self, signal: Signal) -> Subprogram:
+        """The bits that the codec takes are those of the row: a fact about bits alone."""
+        raw = self._raw(signal, self.frame)
+        widened = raw if container(signal) == WORD else call(WORD, raw)
+        return Subprogram(
+            f"Lemma_Bits_{ada_case(signal.name)}",
+            (Param(self.frame, "in", self.frame_type),),
+            aspects=(
+                Aspect("Ghost"),
+                Aspect("Post", equal(widened, self.table.bits_in(signal, self.frame))),
+            ),
+            body=(NULL,),
+        )
+
+    def _value_lemma(self, signal: Signal) -> Subprogram:
+        """The codec counts bits as the row does: a fact about numbers alone."""
+        coding, raw = self.codings[signal.name], Ref("Raw")
+        shown = self.table.counted(signal, raw if container(signal) == WORD else call(WORD, raw))
+        valid = coding.valid(raw)
+        value = self.table.raw_value(signal, call(coding.value_of, raw))
+        same: Expr = equal(shown, value)
+        holds = member(shown, self.table.raw_values(signal))
+        if valid != TRUE:
+            same = IfExpr(((valid, same),), None)
+            holds = equal(valid, holds)
+        fits = within_width(raw, signal)
+        return Subprogram(
+            f"Lemma_Value_{ada_case(signal.name)}",
+            (Param("Raw", "in", container(signal)),),
+            aspects=(
+                Aspect("Ghost"),
+                *([] if fits is None else [Aspect("Pre", fits)]),
+                Aspect("Post", both(holds, same)),
+            ),
+            body=self._as_numbers(signal, shown),
+        )
+
+    def _as_numbers(self, signal: Signal, shown: Expr) -> tuple[Stmt, ...]:
+        """What the row counts, case by case: provers take the step to numbers here alone."""
+        counted: Expr = call(NUMBER, Ref("Raw"))
+        if signal.signed:
+            below = Chain("<=", (Ref("Raw"), bits((1 << signal.width - 1) - 1)))
+            full = number(1 << signal.width)
+            counted = IfExpr(((below, counted),), Chain("-", (counted, full)))
+        elif container(signal) == WORD:
+            below = Chain("<=", (Ref("Raw"), bits(RAW_LIMIT - 1)))
+            counted = IfExpr(((below, counted),), Ref("2**62"))
+        steps: list[Expr] = [equal(shown, counted)]
+        if container(signal) != WORD:
+            widened = call(NUMBER, call(WORD, Ref("Raw")))
+            steps.insert(0, equal(widened, call(NUMBER, Ref("Raw"))))
+        return tuple(Pragma("Assert", (step,)) for step in steps)
+
+    def _by_table(self, signal: Signal, frame: str) -> list[Stmt]:
+        """What tells provers that the table says the same of a frame."""
+        name = ada_case(signal.name)
+        return [
+            Do(f"Lemma_Bits_{name}", arguments(Ref(frame))),
+            Do(f"Lemma_Value_{name}", arguments(Ref(self._local(signal)))),
+        ]
+
     # --- The body ----------------------------------------------------------------
 
     def body(self) -> list[Decl]:
-        """What joins the bits, then Pack, Unpack and the lemma."""
-        return [self._join(), self._pack(), self._unpack(), self._lemma()]
+        """Codings, what joins the bits, then Pack, Unpack and the lemma."""
+        own = [c.body() for c in self.codings.values() if not c.is_shared]
+        lemmas = [made(s) for s in self.signals for made in (self._bits_lemma, self._value_lemma)]
+        return [*own, *lemmas, self._join(), self._pack(), self._unpack(), self._lemma()]
 
     def _join(self) -> Subprogram:
         """The words of all raw values: bits alone, which is what provers of bit vectors like."""
-        name = self._joined
+        name = f"{self.frame}_Of"
         params = tuple(Param(self._local(s), "in", container(s)) for s in self.signals)
         selected = self._selected_local()
         fits: list[Expr] = []
@@ -281,7 +368,9 @@ class _Codec:
             same = equal(self._raw(s, f"{name}'Result"), local)
             kept.append(self._when(s, same, selected, raw=True))
         words = [
-            chain("or", [p for s in self.signals for p in placed(s, self._local(s), word)])
+            chain(
+                "or", [p for s in self.signals for p in placed(s, self._local(s), word)], number(0)
+            )
             for word in range(self.words)
         ]
         before = [Aspect("Pre", all_of(*fits))] if fits else []
@@ -306,13 +395,16 @@ class _Codec:
             if there is not None:
                 taken = IfExpr(((there, taken),), number(0))
             declarations.append(Object(self._local(s), container(s), taken, constant=True))
-        word = call(self._joined, *(Ref(self._local(s)) for s in self.signals))
+        word = call(f"{self.frame}_Of", *(Ref(self._local(s)) for s in self.signals))
         return Subprogram(
-            f"Pack_{self.name}",
+            "Pack",
             (Param("Item", "in", self.ada_type),),
             self.frame_type,
-            declarations=tuple(declarations),
-            body=(Return(word),),
+            declarations=(*declarations, Object("Frame", self.frame_type, word, constant=True)),
+            body=(
+                *(step for s in self.signals for step in self._by_table(s, "Frame")),
+                Return(Ref("Frame")),
+            ),
         )
 
     def _unpack(self) -> Subprogram:
@@ -337,14 +429,18 @@ class _Codec:
             absent = Assign("Item", default_value(self.system, self.type))
             item = If(((Ref("Valid"), (item,)),), (absent,))
         return Subprogram(
-            f"Unpack_{self.name}",
+            "Unpack",
             (
                 Param(self.frame, "in", self.frame_type),
                 Param("Item", "out", self.ada_type),
                 Param("Valid", "out", "Boolean"),
             ),
             declarations=declarations,
-            body=(Assign("Valid", is_valid), item),
+            body=(
+                *(step for s in self.signals for step in self._by_table(s, self.frame)),
+                Assign("Valid", is_valid),
+                item,
+            ),
         )
 
     def _lemma(self) -> Subprogram:
@@ -355,7 +451,7 @@ class _Codec:
                 fact = equal(Ref(self._item(s, "Copy")), Ref(self._item(s, "Item")))
                 same.append(self._when(s, fact, self._selected("Item"), raw=False))
         return Subprogram(
-            f"Lemma_{self.name}_Survives",
+            "Lemma_Survives",
             (Param("Item", "in", self.ada_type),),
             declarations=(
                 Object("Copy", self.ada_type),
@@ -363,18 +459,9 @@ class _Codec:
             ),
             body=(
                 Do(
-                    f"Unpack_{self.name}",
-                    arguments(call(f"Pack_{self.name}", Ref("Item")), Ref("Copy"), Ref("Valid")),
+                    "Unpack",
+                    arguments(call("Pack", Ref("Item")), Ref("Copy"), Ref("Valid")),
                 ),
                 Pragma("Assert", (all_of(Ref("Valid"), *same),)),
             ),
         )
-
-
-def _place(signal: Signal) -> str:
-    """Where a signal stands, in words."""
-    if signal.order is ByteOrder.INTEL:
-        words = f"bits {signal.start} .. {signal.start + signal.width - 1}"
-    else:
-        words = f"{signal.width} bits from {signal.start} on, the most significant first"
-    return f"{words}, signed" if signal.signed else words

@@ -64,24 +64,27 @@ def within_width(raw: Expr, signal: Signal) -> Expr | None:
 
 
 def is_plain(signal: Signal) -> bool:
-    """Is it coded as where nothing is given, wherever it stands?"""
-    return signal.coding == automatic(signal.field, signal.type).coding
+    """Is it coded as where nothing is given, in as many bits, wherever it stands?"""
+    usual = automatic(signal.field, signal.type)
+    return (signal.coding, container(signal)) == (usual.coding, container(usual))
 
 
 class Coding:
-    """What is emitted for one signal's coding; ``owner`` names the codec it belongs to.
+    """What is emitted for one signal's coding.
 
-    What bits stand for is an expression function of the spec. Its inverse is stated by
-    it, and so are codecs: their contracts and proofs need no arithmetic.
+    What bits stand for is an expression function. Its inverse is stated by it. A coding
+    of a type stands in the package of the codecs, one of a signal in that of its codec: a
+    fixed word and one name of the model make each name, so no two are the same.
     """
 
-    def __init__(self, system: System, signal: Signal, owner: str) -> None:
-        """For a signal of the codec of that name."""
+    def __init__(self, system: System, signal: Signal) -> None:
+        """For a signal of a codec."""
         self.system, self.signal = system, signal
-        of_type = ada_case(signal.type.name)
-        self.name = of_type if is_plain(signal) else f"{owner}_{ada_case(signal.name)}"
+        self.is_shared = is_plain(signal)
+        of_type = f"Type_{ada_case(signal.type.name)}"
+        self.name = of_type if self.is_shared else f"Signal_{ada_case(signal.name)}"
         self.bits_of = f"Bits_Of_{self.name}"
-        self.value_of = f"{self.name}_Of_Bits"
+        self.value_of = f"Value_Of_{self.name}"
         self.ada_type = type_name(system, signal.type)
         self.container = container(signal)
 

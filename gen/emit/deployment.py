@@ -36,6 +36,7 @@ from .buses import emit_bus
 from .certificate_terms import name_of
 from .naming import ada_case, priority, processor_package, root_package, row_name
 from .reports import emit_main, emit_reports
+from .supervision import emit_supervision, offer
 from .trace_calls import element_constant, note, row_number, traced
 
 PROBE_STACK = 16_384
@@ -52,6 +53,7 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
         units += emit_bus(system, bus, header)
     for processor in system.processors:
         units += _processor(system, processor, header)
+    units += emit_supervision(system, header)
     units += emit_reports(system, header)
     units.append(emit_main(system, header))
     return tuple(units)
@@ -85,6 +87,7 @@ def _probe(system: System, node: Node, header: str) -> Unit:
     assert node.probe is not None
     level = next(t.priority for t in system.tasks if t.element == f"{node.name}.probe")
     args = arguments(
+        Name=Ref(f'"{node.name}.probe"'),
         Period=number(node.probe.period),
         Probe_Priority=priority(level),
         Stack_Bytes=number(PROBE_STACK),
@@ -121,6 +124,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     shared = arguments(
         Deadline=Ref(f"{certificate}.{own}_D"),
         Task_Priority=priority(processor.priority),
+        Ceiling=priority(system.object(f"{processor.name}.monitor").ceiling),
         Stack_Bytes=number(processor.stack_bytes),
         Execute=Ref("Execute"),
         On_Deadline_Miss=Ref("On_Deadline_Miss"),
@@ -148,7 +152,8 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         shared += arguments(On_Executed=Ref("On_Executed"))
         items += _budgets(processor)
     items.append(Comment(f"[{processor.name}]"))
-    items.append(Instance("Processor", generic, (*args, *shared)))
+    named = arguments(Name=Ref(f'"{processor.name}"'))
+    items.append(Instance("Processor", generic, (*named, *args, *shared)))
     withs = {generic, "System", f"{root}.{certificate}"}
     if processor.released_by is None:
         withs.add("Ravenchart.Schedules")
@@ -175,17 +180,20 @@ def _slot(slot: Slot) -> Expr:
 
 
 def _owner_unit(system: System, slot: Slot) -> str:
-    owner = f"{root_package(system)}.{ada_case(slot.owner)}"
-    return f"{owner}.Receiver" if slot.work is Work.BUS_RECEIVE else owner
+    return f"{root_package(system)}.{_package(slot)}"
+
+
+def _package(slot: Slot) -> str:
+    """Where the procedure of a row is."""
+    unit = {Work.BUS_RECEIVE: ".Receiver", Work.BUS_WATCH: ".Watch"}.get(slot.work, "")
+    return f"{ada_case(slot.owner)}{unit}"
 
 
 def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
     rows = []
     for slot in processor.slots:
-        owner = ada_case(slot.owner)
-        package = f"{owner}.Receiver" if slot.work is Work.BUS_RECEIVE else owner
-        name = "receive" if slot.work is Work.BUS_RECEIVE else slot.name
-        rows.append((row_name(slot), (Do(f"{package}.Run_{ada_case(name)}"),)))
+        name = slot.work.value if slot.of_bus else slot.name
+        rows.append((row_name(slot), (Do(f"{_package(slot)}.Run_{ada_case(name)}"),)))
     execute: list[Stmt] = []
     if traced(system):
         execute.append(
@@ -239,10 +247,5 @@ def _fault(
     return (
         Do("Health_Counts.Counters.Record_Fault", arguments(fault)),
         *note(system, "Fault", processor.name, "processor", position),
-        *(_offer(system, instance, event) for instance, event in events),
+        *(offer(system, instance, event) for instance, event in events),
     )
-
-
-def _offer(system: System, instance: str, event: str) -> Stmt:
-    component = ada_case(system.instance(instance).component.name)
-    return Do(f"{ada_case(instance)}.Offer", arguments(Ref(f"{component}.{ada_case(event)}")))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..component import Activity, Data, Port
-from ..model import End, Instance, Slot, System, Work
+from ..model import End, Instance, Slot, System
 from ..statechart import Region
 from .ada import (
     Call,
@@ -39,7 +39,7 @@ class Site:
 
     def _slots(self) -> tuple[Slot, ...]:
         own = self.system.slots_of(self.instance.name)
-        return tuple(s for s in own if s.work is not Work.BUS_RECEIVE)
+        return tuple(s for s in own if not s.of_bus)
 
     def _element(self, name: str) -> str:
         return f"{self.instance.name}.{name}"

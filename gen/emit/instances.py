@@ -108,6 +108,8 @@ class Glue(Site):
         for activity in component.activities:
             names.add(f"{root}.{self.component}.{activity_package(component, activity)}")
         names |= {f"{root}.{unit}" for unit in providers(self.system, self.instance)}
+        for event in component.events:
+            names |= {f"{root}.{ada_case(bus)}" for bus in self._asked(event.name)}
         for port in component.outputs():
             ends, messages = self._targets(port.name)
             names |= {
@@ -364,6 +366,8 @@ class Glue(Site):
             for region in regions:
                 if event.name in region.events():
                     steps += self._enqueue(region, event, Ref("Item"), tells=True)
+            for bus in self._asked(event.name):
+                steps.append(Do(f"{ada_case(bus)}.Controller.Request_Recovery"))
             steps += self._note("Raised", event.name, "event") if steps else ()
             rows.append((f"{self.component}.{ada_case(event.name)}", tuple(steps)))
         declarations: tuple[Decl, ...] = ()
@@ -378,6 +382,11 @@ class Glue(Site):
             declarations=declarations,
             body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
         )
+
+    def _asked(self, event: str) -> tuple[str, ...]:
+        """The buses that an event asks to recover."""
+        pair = self.instance.name, event
+        return tuple(bus.name for bus in self.system.buses if pair in bus.recovers_on)
 
     def _enqueue(self, region: Region, event: Event, item: Expr, *, tells: bool) -> list[Stmt]:
         """Put an event into a region's queue; with ``tells``, report what is lost by an event."""

@@ -74,14 +74,54 @@ def upright(*docs: Doc) -> Doc:
 def laid_out(doc: Doc, width: int) -> str:
     """The text of ``doc`` in lines of ``width`` columns, as far as its soft places allow that."""
     out: list[str] = []
-    _put(out, Parts((group(doc),)), width, 0, 0, True)
+    _put(out, Parts((group(doc),)), width, 0, 0, True, 0)
     return "".join(out)
 
 
-def _put(out: list[str], doc: Parts, width: int, column: int, indent: int, broken: bool) -> int:
-    """Add a document that begins in ``column``; the column behind it."""
-    indent += doc.step
+MARGIN = 3
+"""Columns beyond the width that are there for what closes, such as `);`."""
+NEAR = 40
+"""So near to the end of a line what stands behind a group is counted with it."""
+
+
+def _head(doc: Doc) -> tuple[int, bool]:
+    """Columns up to the first soft place of a document, and whether it has one."""
+    if isinstance(doc, str):
+        return len(doc), False
+    if doc is SOFT:
+        return 0, True
+    columns = 0
     for part in doc.parts:
+        more, ends = _head(part)
+        columns += more
+        if ends:
+            return columns, True
+    return columns, False
+
+
+def _behind(parts: tuple[Doc, ...], broken: bool, outside: int) -> int:
+    """Columns that stand on the same line in any case; ``outside`` is behind all the parts."""
+    columns = 0
+    for part in parts:
+        if part is SOFT and not broken:
+            columns += 1
+            continue
+        more, ends = _head(part)
+        columns += more
+        if ends:
+            return columns
+    return columns + outside
+
+
+def _put(
+    out: list[str], doc: Parts, width: int, column: int, indent: int, broken: bool, outside: int
+) -> int:
+    """Add a document that begins in ``column``; the column behind it.
+
+    ``outside`` columns of text follow on its last line in any case.
+    """
+    indent += doc.step
+    for index, part in enumerate(doc.parts):
         if isinstance(part, str):
             out.append(part)
             column += len(part)
@@ -92,12 +132,16 @@ def _put(out: list[str], doc: Parts, width: int, column: int, indent: int, broke
             continue
         on_one_line = not broken
         if part.way is not _AS_AROUND:
+            room = width - column - len(part.flat)
             on_one_line = part.way is not _UPRIGHT and (
-                on_one_line or len(part.flat) <= width - column
+                on_one_line
+                or room >= NEAR
+                or (room >= 0 and room + MARGIN >= _behind(doc.parts[index + 1 :], broken, outside))
             )
         if on_one_line and not part.has_upright:
             out.append(part.flat)
             column += len(part.flat)
         else:
-            column = _put(out, part, width, column, indent, not on_one_line)
+            behind = _behind(doc.parts[index + 1 :], broken, outside)
+            column = _put(out, part, width, column, indent, not on_one_line, behind)
     return column

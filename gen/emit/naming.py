@@ -26,15 +26,45 @@ def ada_case(name: str) -> str:
     return "_".join(word[:1].upper() + word[1:] for word in name.split("_"))
 
 
+_IN_LETTERS = {
+    "/": "_Per_", "%": "Percent", "^": "_", "\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u",
+    "\N{DEGREE SIGN}": "deg", "\N{SUPERSCRIPT TWO}": "2", "\N{SUPERSCRIPT THREE}": "3",
+    "\N{GREEK CAPITAL LETTER OMEGA}": "Ohm", "\N{OHM SIGN}": "Ohm",
+}  # fmt: skip
+
+
+def _in_letters(unit: str) -> str:
+    """A unit as a part of an Ada name."""
+    words = "".join(_IN_LETTERS.get(c, c) for c in unit)
+    safe = "".join(c if c.isascii() and c.isalnum() else "_" for c in words)
+    return ada_case("_".join(part for part in safe.split("_") if part) or "Count")
+
+
+@lru_cache(maxsize=64)
+def _unit_names(units: tuple[str, ...]) -> dict[str, str]:
+    """A name for each unit; where case or signs alone tell two apart, the later one is numbered."""
+    names: dict[str, str] = {}
+    taken: set[str] = set()
+    plain = {unit: f"Unit_{_in_letters(unit)}" for unit in units}
+    later: list[str] = []
+    for unit, name in plain.items():
+        if name.lower() in taken:
+            later.append(unit)
+        else:
+            taken.add(name.lower())
+            names[unit] = name
+    for unit in later:
+        numbered = (f"{plain[unit]}_{n}" for n in range(2, len(units) + len(taken) + 2))
+        names[unit] = next(name for name in numbered if name.lower() not in taken)
+        taken.add(names[unit].lower())
+    return names
+
+
 def unit_type(system: System, unit: str | None) -> str:
     """The Ada type that integers counted in ``unit`` belong to."""
     if unit is None:
         return "Ravenchart.Number"
-    words = unit.replace("/", "_Per_").replace("%", "Percent").replace("^", "_")
-    safe = "".join(c if c.isalnum() else "_" for c in words)
-    while "__" in safe:
-        safe = safe.replace("__", "_")
-    return f"{ada_case(system.name)}.Unit_{ada_case(safe.strip('_'))}"
+    return f"{ada_case(system.name)}.{_unit_names(system.units)[unit]}"
 
 
 def type_name(system: System, of_type: Type) -> str:

@@ -20,14 +20,22 @@ from .charts.places import Places
 from .terms import expressions_in
 
 _WORDS = ("can only be", "can never be", "explicit membership test", "'Valid attribute")
-_PRAGMAS = tuple(Pragma("Warnings", (Ref("Off"), Ref(f'"*{words} *"'))) for words in _WORDS)
+_COMPUTED = "condition is always"
+"""What it says where operators, and not types alone, decide."""
 
 
-def quiet(unit: Unit) -> Unit:
-    """The unit, with these warnings off."""
+def quiet(unit: Unit, *, computed: bool) -> Unit:
+    """The unit, with these warnings off; ``computed``: there are comparisons of results."""
     if not isinstance(unit.item, Package):
         return unit
-    return replace(unit, item=replace(unit.item, items=(*_PRAGMAS, *unit.item.items)))
+    words = (*_WORDS, _COMPUTED) if computed else _WORDS
+    pragmas = (Pragma("Warnings", (Ref("Off"), Ref(f'"*{word} *"'))) for word in words)
+    return replace(unit, item=replace(unit.item, items=(*pragmas, *unit.item.items)))
+
+
+def has_computed_conditions(system: System) -> bool:
+    """Can the compiler decide a comparison of what operators yield?"""
+    return any(_is_decided(e, computed=True) for e in _expressions(system))
 
 
 def has_decided_conditions(system: System) -> bool:
@@ -77,16 +85,35 @@ def _expressions(system: System) -> Iterator[m.Expression]:
             yield from expressions_in(activity.flow or ())
 
 
-def _is_decided(expression: m.Expression) -> bool:
-    """Holds it a comparison whose outcome, or one of whose halves, the ranges decide?"""
+def _is_decided(expression: m.Expression, *, computed: bool = False) -> bool:
+    """Holds it a comparison whose outcome, or one of whose halves, the ranges decide?
+
+    With ``computed`` only comparisons with an operation count.
+    """
     if not isinstance(expression, m.Operation):
         return isinstance(expression, m.Literal) and isinstance(expression.value, bool)
-    if any(_is_decided(o) for o in expression.operands):
+    if any(_is_decided(o, computed=computed) for o in expression.operands):
         return True
     if expression.operator not in ("=", "/=", "<", "<=", ">", ">="):
         return False
+    if computed and not any(isinstance(o, m.Operation) for o in expression.operands):
+        return False
+    names = [_names(o) for o in expression.operands]
+    if names[0] & names[1]:  # the compiler knows that `x - 1` is below `x`
+        return True
     left, right = (_bounds(o) for o in expression.operands)
     return bool(left and right and (left[0] >= right[1] or right[0] >= left[1]))
+
+
+def _names(expression: m.Expression) -> frozenset[m.Expression]:
+    """Everything that an expression reads."""
+    match expression:
+        case m.Operation(_, operands):
+            return frozenset(name for operand in operands for name in _names(operand))
+        case m.Name():
+            return frozenset((expression,))
+        case _:
+            return frozenset()
 
 
 def _bounds(expression: m.Expression) -> tuple[int, int] | None:

@@ -29,6 +29,7 @@ from .ada import (
 )
 from .events import event_value
 from .naming import ada_case, processor_package, root_package
+from .supervision import safe_state, supervised
 from .trace_calls import element_constant, row_number, traced
 
 POLL_NS = 5_000_000
@@ -46,8 +47,15 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         bodies.append(_drain())
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     bodies += [_report(system, p) for p in system.processors]
-    steps: list[Stmt] = [Do(f"Report_{ada_case(p.name)}") for p in system.processors]
+    steps: list[Stmt] = [Do("Ravenchart.Hosts.Put_Now")]
+    steps += [Do(f"Report_{ada_case(p.name)}") for p in system.processors]
     steps.append(Do("Health_Counts.Counters.Read", arguments(Ref("Faults"))))
+    for bus in system.buses:
+        log = f"{ada_case(bus.name)}_Faults"
+        steps.append(Do(f"{ada_case(bus.name)}.Controller.Read_Faults", arguments(Ref(log))))
+        for kind, count in (("Error_Passive", "Passive_Entries"), ("Bus_Off", "Off_Entries")):
+            fault = f"Faults (Ravenchart.Health.Can_{kind})"
+            steps.append(Assign(fault, Ref(f"{log}.{count}")))
     steps.append(
         Loop(
             "for Kind in Ravenchart.Health.Fault_Kind",
@@ -62,6 +70,8 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     for bus in system.buses:
         counters = f"{ada_case(bus.name)}_Counters"
         declarations.append(Object(counters, "Ravenchart.Can.Counters"))
+        log = f"{ada_case(bus.name)}_Faults"
+        declarations.append(Object(log, "Ravenchart.Can.Fault_Notices.Fault_Log"))
         steps.append(Do(f"{ada_case(bus.name)}.Controller.Read_Counters", arguments(Ref(counters))))
         for field in ("Lost_Out", "Lost_In", "Rejected_Lines"):
             label = f'"{bus.name}.{field.lower()}"'
@@ -72,14 +82,20 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         declarations.append(Object("Late", "Ravenchart.Nanoseconds"))
         steps.append(Do("Host_Probe.Probe.Read", arguments(Ref("Late"))))
         steps.append(Do("Ravenchart.Hosts.Put_Host_Latency", arguments(Ref("Late"))))
+    if supervised(system):
+        declarations.append(Object("Fed", "Ravenchart.Event_Count"))
+        steps.append(Do("Liveness_Supervision.Supervisor.Read", arguments(Ref("Fed"))))
+        steps.append(Do("Ravenchart.Hosts.Put_Feeds", arguments(Ref("Fed"))))
     bodies.append(Subprogram("Put_All", declarations=tuple(declarations), body=tuple(steps)))
     context = {"Ravenchart.Hosts", "Ravenchart.Health", f"{root}.Health_Counts", f"{root}.Elements"}
     context |= {processor_package(system, p) for p in system.processors}
     context |= {f"{root}.{ada_case(b.name)}" for b in system.buses}
     if system.buses:
-        context.add("Ravenchart.Can")
+        context |= {"Ravenchart.Can", "Ravenchart.Can.Fault_Notices"}
     if any(n.probe for n in system.nodes):
         context.add(f"{root}.Host_Probe")
+    if supervised(system):
+        context.add(f"{root}.Liveness_Supervision")
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Queueing", "Ravenchart.Traces"}
     return [
@@ -173,6 +189,7 @@ def emit_main(system: System, header: str) -> Unit:
     if steps:
         body.append(Loop(f"for Unused in 1 .. {steps}", (*drain, *wait)))
     body += [
+        *safe_state(system),
         *drain,
         Do(f"{root}.Reports.Put_All"),
         Do("Ravenchart.Hosts.Finish", arguments(Success=TRUE)),

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from ..component import Port
 from ..derive import on_one_node
-from ..model import Instance, System, Work
+from ..model import Instance, System
 from ..terms import IntegerType, RecordType, ScalarType, Type, Value
 from .ada import (
     Aggregate,
@@ -48,7 +48,7 @@ def simulated(system: System) -> System:
     """The part of a system that can be simulated: no bus, no trace, all on one node."""
     system = on_one_node(system)
     processors = tuple(p for p in system.processors if p.released_by is None)
-    nodes = tuple(replace(n, trace_depth=0, probe=None) for n in system.nodes)
+    nodes = tuple(replace(n, trace_depth=0, probe=None, supervision=None) for n in system.nodes)
     return replace(system, nodes=nodes, buses=(), messages=(), processors=processors)
 
 
@@ -93,7 +93,7 @@ def emit_simulation(system: System, header: str) -> Unit:
     for position, processor in enumerate(order, 1):
         rows: list[Stmt] = []
         for slot in processor.slots:
-            if slot.work is Work.BUS_RECEIVE:
+            if slot.of_bus:
                 continue
             run = do(f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}")
             turn = Chain("mod", (Ref("Count"), number(slot.divisor)))

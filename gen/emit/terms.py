@@ -111,6 +111,8 @@ def operators_in(expression: m.Expression) -> set[str]:
         case m.Operation(operator, operands):
             found = {name for operand in operands for name in operators_in(operand)}
             plain = any(_is_plain(o) for o in operands)
+            if operator in ("*", "/") and expression.unit is not None:
+                plain = False  # plain factors are converted
             if operator not in ("min", "max", "clamp", "if") and plain:
                 found.add("Ravenchart.Number")
             return found
@@ -121,8 +123,9 @@ def operators_in(expression: m.Expression) -> set[str]:
 def _is_plain(operand: m.Expression) -> bool:
     """An integer that counts nothing, and is more than a literal."""
     match operand:
-        case m.Operation(_, _, of_type):
-            return of_type is None and operand.unit is None
+        case m.Operation(operator, operands, None, None):
+            #  a choice between literals is of no type of its own
+            return operator in ("min", "max", "clamp") or any(map(_is_plain, operands))
         case m.Name(_, _, field, of_type):
             scalar = (
                 of_type.field(field).type

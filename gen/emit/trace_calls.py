@@ -28,8 +28,8 @@ def note(
 
 def element_constant(element: str, kind: str) -> str:
     """The constant that holds an element's number."""
-    suffix = {"row": "_Row", "processor": "_Processor", "message": "_Message"}.get(kind, "")
-    return constant_name(element) + suffix
+    kinds = {"row": "_Row", "processor": "_Processor", "message": "_Message", "bus": "_Bus"}
+    return constant_name(element) + kinds.get(kind, "")
 
 
 def row_number(processor: Processor, row_type: str, row: str) -> Expr:

@@ -12,11 +12,8 @@ from .naming import ada_case, counted, default_name, type_name, unit_type, value
 
 def emit_root(system: System, header: str) -> Unit:
     """``package <System>``: pure, and visible from every other unit."""
-    units = dict.fromkeys(
-        t.unit for t in system.types if isinstance(t, IntegerType) and t.unit is not None
-    )
     items: list[Decl] = []
-    for unit in units:
+    for unit in system.units:
         items.append(Comment(f"All values counted in {unit}."))
         items.append(PlainType(unit_type(system, unit).split(".")[-1], "new Ravenchart.Number"))
     scalars = [t for t in system.types if not isinstance(t, RecordType)]

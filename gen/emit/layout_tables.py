@@ -1,0 +1,113 @@
+"""The layout table of a message in Ada, and what contracts say by it.
+
+A row is what the model says of a signal, number by number; `Ravenchart.Can.Layouts` gives it
+its meaning. Nothing here is shared with `coding`, which makes the bodies of the codecs: an
+error on one side is a contract that cannot be proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..model import System
+from ..signals import ByteOrder, Signal
+from ..terms import EnumerationType, IntegerType
+from .ada import (
+    Aggregate,
+    Arg,
+    CaseExpr,
+    Chain,
+    Decl,
+    Expr,
+    Object,
+    Param,
+    Ref,
+    Subprogram,
+    call,
+    number,
+)
+from .naming import ada_case, type_name
+
+LAYOUTS = "Ravenchart.Can.Layouts"
+"""What the rows of layout tables mean."""
+
+NUMBER = "Ravenchart.Number"
+
+
+class LayoutTable:
+    """The rows of one message, in the package of its codec."""
+
+    def __init__(self, system: System, signals: Sequence[Signal]) -> None:
+        """The table of these signals."""
+        self.system, self.signals = system, signals
+
+    def row(self, signal: Signal) -> list[Decl]:
+        """The row of a signal, and the codes of its literals where the model gives some."""
+        columns = {
+            "Start": number(signal.start),
+            "Width": number(signal.width),
+            "Order": Ref(f"{LAYOUTS}.{_ORDERS[signal.order]}"),
+            "Signed": Ref(str(signal.signed)),
+            "Offset": number(signal.offset),
+        }
+        made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+        rows: list[Decl] = [Object(_row(signal), f"{LAYOUTS}.Signal", made, constant=True)]
+        return [*rows, self._codes(signal)] if signal.codes else rows
+
+    def _codes(self, signal: Signal) -> Subprogram:
+        assert isinstance(signal.type, EnumerationType)
+        pairs = zip(signal.type.literals, signal.codes, strict=True)
+        prefix = "" if signal.type.name == "Boolean" else f"{ada_case(self.system.name)}."
+        codes = tuple((f"{prefix}{ada_case(name)}", number(code)) for name, code in pairs)
+        item = Param("Item", "in", type_name(self.system, signal.type))
+        return Subprogram(_code(signal), (item,), NUMBER, expression=CaseExpr(Ref("Item"), codes))
+
+    def bits_in(self, signal: Signal, frame: str) -> Expr:
+        """The bits of a signal, by its row."""
+        return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
+
+    def number_in(self, signal: Signal, frame: str) -> Expr:
+        """The raw value of a signal of a frame, by its row."""
+        return call(f"{LAYOUTS}.Number_In", Ref(frame), Ref(_row(signal)))
+
+    def counted(self, signal: Signal, raw: Expr) -> Expr:
+        """The raw value that bits are, by the row."""
+        return call(f"{LAYOUTS}.Counted", raw, Ref(_row(signal)))
+
+    def raw_value(self, signal: Signal, item: Expr) -> Expr:
+        """The raw value that stands for a value of the model."""
+        if signal.codes:
+            return call(_code(signal), item)
+        if isinstance(signal.type, EnumerationType):
+            return call(f"{type_name(self.system, signal.type)}'Pos", item)
+        value = call(NUMBER, item)
+        return Chain("-", (value, Ref(f"{_row(signal)}.Offset"))) if signal.offset else value
+
+    def raw_values(self, signal: Signal) -> str:
+        """All raw values that stand for something, as choices."""
+        if signal.codes:
+            return " | ".join(f"{code:_}" for code in sorted(signal.codes))
+        if isinstance(signal.type, IntegerType):
+            first, last = signal.type.first - signal.offset, signal.type.last - signal.offset
+            return f"{first:_} .. {last:_}"
+        return f"0 .. {len(signal.type.literals) - 1:_}"
+
+
+_ORDERS = {ByteOrder.INTEL: "Intel", ByteOrder.MOTOROLA: "Motorola"}
+
+
+def _row(signal: Signal) -> str:
+    return f"Signal_{ada_case(signal.name)}"
+
+
+def _code(signal: Signal) -> str:
+    return f"Code_Of_{ada_case(signal.name)}"
+
+
+def place(signal: Signal) -> str:
+    """Where a signal stands, in words."""
+    if signal.order is ByteOrder.INTEL:
+        words = f"bits {signal.start} .. {signal.start + signal.width - 1}"
+    else:
+        words = f"{signal.width} bits from {signal.start} on, the most significant first"
+    return f"{words}, signed" if signal.signed else words
