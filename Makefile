@@ -26,39 +26,39 @@ demo: setup
 	@$(RAVENCHART) run examples/cartesian_robot/model.yaml --scenario examples/cartesian_robot/scenario.yaml --report build/demo
 
 test: setup
-	@$(PYTHON) -m pytest -q
+	@$(PYTHON) -P -m pytest -q
 
 test-long: setup
-	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -m pytest -q
+	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q
 
 hw-test: setup
 	@scripts/setup.sh guest || true
-	@$(PYTHON) -m ravenchart.hw_test
+	@$(PYTHON) -P -m ravenchart.hw_test
 
 check: setup
-	@$(PYTHON) -m ruff check .
-	@$(PYTHON) -m ruff format --check .
-	@$(PYTHON) -m mypy
-	@$(PYTHON) -m ravenchart.house check
+	@$(PYTHON) -P -m ruff check .
+	@$(PYTHON) -P -m ruff format --check .
+	@$(PYTHON) -P -m mypy
+	@$(PYTHON) -P -m ravenchart.house check
 
 prove: setup
-	@$(PYTHON) -m ravenchart.house prove $(ONLY)
+	@$(PYTHON) -P -m ravenchart.house prove $(ONLY)
 
 generate: setup
 	@for e in $(EXAMPLES); do $(RAVENCHART) generate $$e/model.yaml || exit 1; done
 
 bench:
 	@scripts/setup.sh arm
-	@$(PYTHON) -m ravenchart.bench
+	@$(PYTHON) -P -m ravenchart.bench
 
 bench-proof: setup
-	@$(PYTHON) -m ravenchart.bench_proof
+	@$(PYTHON) -P -m ravenchart.bench_proof
 
 mutate: setup
-	@$(PYTHON) -m ravenchart.mutate
+	@$(PYTHON) -P -m ravenchart.mutate
 
 docs: setup
-	@$(PYTHON) -m gen.reference
+	@$(PYTHON) -P -m gen.reference
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 

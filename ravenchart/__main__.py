@@ -1,10 +1,14 @@
 """The `ravenchart` command: check, generate, build, prove, analyse and run any model.
 
-Exit status: 0 done; 1 the model, its proof or its run has errors; 2 the call
-itself is wrong, or a program or bus it needs is missing.
+`start` is what a process begins with; it has the table of exit statuses.
 """
 
 from __future__ import annotations
+
+if __name__ == "__main__":  # `python -m ravenchart`: before anything else is imported
+    from .start import main as begin
+
+    raise SystemExit(begin())
 
 import argparse
 import json
@@ -16,6 +20,7 @@ from analysis import report
 from analysis.figures import figures
 from analysis.plain.build import PlainSystem
 from analysis.table import show as show_table
+from gen.diagnostics import render
 from hw_can.bench.peer import BenchError
 
 from . import (
@@ -26,12 +31,16 @@ from . import (
     import_dbc,
     loopback,
     observed,
+    outside_spark,
     plain,
     proving,
+    scenarios,
     simulate,
+    start,
     steps,
 )
 from .run import RunRequest, controller, run_model
+from .spark_results import Outside
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
 
@@ -46,11 +55,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Refused as refused:
         print(refused, file=sys.stderr)
         return WRONG
-    except ToolFailed as failed:
+    except (ToolFailed, outside_spark.WrongList) as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return WRONG
-    except (ToolMissing, BenchError, OSError) as problem:
+    except BrokenPipeError:
+        raise  # nobody reads the output: `start` tells that from other broken pipes
+    except (ToolMissing, BenchError) as problem:
         print(f"ravenchart: error: {problem}", file=sys.stderr)
+        return UNUSABLE
+    except OSError as problem:
+        print(f"ravenchart: error: {said_of(problem)}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
         print("ravenchart: interrupted", file=sys.stderr)
@@ -58,11 +72,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
+def said_of(problem: OSError) -> str:
+    """What the system says of a file, with its name and without a number."""
+    reason = problem.strerror or str(problem)
+    reason = f"{reason[:1].lower()}{reason[1:]}"
+    return reason if problem.filename is None else f"{problem.filename}: {reason}"
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ravenchart",
         description="From one model of a real-time controller to a proved SPARK Ada program, "
         "its timing analysis and its CAN bench.",
+        epilog=start.STATUSES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
@@ -85,6 +108,10 @@ def _parser() -> argparse.ArgumentParser:
     prove.add_argument(
         "--whole", action="store_true",
         help="prove the runtime and the HAL again, which `make prove` proves by themselves",
+    )  # fmt: skip
+    prove.add_argument(
+        "--fresh", action="store_true",
+        help="run gnatprove also where the same content was proved before",
     )  # fmt: skip
     prove.add_argument("--record", type=Path, help="write the proof record to this file")
     analyse = command(
@@ -190,11 +217,17 @@ def _generate(options: argparse.Namespace) -> int:
 
 def _written(written: steps.Written) -> None:
     print(f"{written.folder}: {written.files} files, {written.changed} changed")
-    for path in written.missing:
+    for name in written.edited:
         print(
-            f"note: {path} is not there yet; its spec is in {written.folder}, the body is yours",
+            f"warning: {written.folder / name} was edited by hand and is generated again; "
+            f"your version is kept as {name}{steps.EDITED}",
             file=sys.stderr,
         )
+    for path in written.missing:
+        where = f"its spec is in {written.folder}, the body is yours"
+        if path.suffix == ".ads":
+            where = "both spec and body of what a device remembers are yours"
+        print(f"note: {path} is not there yet; {where}", file=sys.stderr)
 
 
 def _build(options: argparse.Namespace) -> int:
@@ -213,21 +246,20 @@ def _prove(options: argparse.Namespace) -> int:
     made = steps.programs_of(checked)
     if options.record is not None and len(made) > 1:
         raise Refused("ravenchart: error: --record is for a system with one node")
+    reasons = outside_spark.reasons_for_model(checked.folder)
     clean = True
+    outside: dict[Outside, None] = {}
     for one in made:
-        roots = (one.generated, checked.folder / "user")
-        folders = one.proof_folders(driver)
-        variables = one.scenario("checks", driver)
-        units = one.proved_units()
-        proof = proving.prove(
-            one.project, variables, folders, roots, whole=options.whole, units=units
-        )
+        proof = proving.prove(one.proof(driver, whole=options.whole), fresh=options.fresh)
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean
+        outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
             options.record.write_text(proving.record_text(proof), encoding="utf-8")
-    return OK if clean else WRONG
+    for line in outside_spark.lines(tuple(outside), reasons):
+        print(line, file=sys.stderr if line.startswith("error") else sys.stdout)
+    return OK if clean and outside_spark.agree(tuple(outside), reasons) else WRONG
 
 
 def _analyse(options: argparse.Namespace) -> int:
@@ -272,6 +304,8 @@ def _allocate(options: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     checked = _checked(options)
+    if options.scenario is not None:
+        scenarios.checked(options.scenario, checked.system)
     _written(steps.write_program(checked))
     controllers = []
     for made in steps.programs_of(checked):
@@ -282,7 +316,7 @@ def _run(options: argparse.Namespace) -> int:
     request = RunRequest(
         checked.analysis,
         tuple(controllers),
-        checked.folder / "generated",
+        checked.generated,
         options.scenario,
         options.seconds,
         folder,
@@ -295,6 +329,9 @@ def _simulate(options: argparse.Namespace) -> int:
     trace = simulate.simulated(
         checked, options.events, interpreter=options.interpreter, as_json=options.json
     )
+    left_out = simulate.left_out(checked.system) if options.interpreter else None
+    if left_out is not None:
+        print(render(left_out, {}), file=sys.stderr)
     print(trace, end="")
     return OK
 
@@ -324,7 +361,3 @@ def _import_dbc(options: argparse.Namespace) -> int:
     for problem in found.problems:
         print(problem, file=sys.stderr)
     return WRONG if found.problems else OK
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,14 +1,15 @@
 """`ravenchart allocate`: the periodic rows of a model put together anew, and checked.
 
 Sporadic processors, drivers and the host probe stay as they are. The strategies search
-with the drivers and sporadic processors above all tables; what they come to is then
-completed as a model is, and analysed as one. Rows of a table keep the order that they
+with the drivers and sporadic processors above all tables. What they come to is completed
+as a model is and analysed as one, with its messages, chains and queues; where these are
+not kept, rows move on (`allocation_search`). Rows of a table keep the order that they
 have in the model: what hands a value on comes before what takes it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from rich.console import Console
@@ -16,7 +17,7 @@ from rich.table import Table as Printed
 from rich.text import Text
 
 from analysis.core import allocation
-from analysis.core.allocation import Activity, Strategy
+from analysis.core.allocation import Activity, Strategy, Table
 from analysis.core.blocking import Section
 from analysis.core.tasks import Task
 from analysis.table import WIDTH
@@ -26,6 +27,8 @@ from analysis.words import verdict_line
 from gen.derive import completed
 from gen.model import Processor, Slot, System
 from gen.terms import Ns
+
+from .allocation_search import SET, Judged, searched
 
 STRATEGIES = {
     "period": Strategy.BY_PERIOD,
@@ -80,15 +83,31 @@ def propose(analysis: Analysis, strategy: str) -> Proposal:
     found = allocation.allocate(
         activities, STRATEGIES[strategy], sections, analysis.network.platforms, above, whole=True
     )
-    made: list[Processor] = []
-    for table in found.tables:
-        names = {activity.name for activity in table}
-        rows = [row for name, row in home.items() if name in names]
-        taken = [processor.name for processor in (*made, *kept)]
-        made.append(_processor(rows, taken))
-    told = replace(system, processors=tuple(_unranked(p) for p in (*kept, *made)))
-    other = completed(told)
-    return Proposal(other, analyse(other), tuple(processor.name for processor in kept))
+    known = {activity.name: activity for activity in activities}
+
+    def judge(tables: list[Table]) -> Judged:
+        made: list[Processor] = []
+        for table in tables:
+            names = {activity.name for activity in table}
+            rows = [row for name, row in home.items() if name in names]
+            taken = [processor.name for processor in (*made, *kept)]
+            made.append(_processor(rows, taken))
+        short = [p for p in made if p.wcet < system.node(p.node).critical_section]
+        if short:
+            return Judged(tables, None, len(short))
+        told = replace(system, processors=tuple(_unranked(p) for p in (*kept, *made)))
+        return Judged(tables, analyse(completed(told)))
+
+    starts = [list(found.tables)]
+    own = [tuple(known[slot.element] for slot in processor.slots) for processor in moved]
+    if STRATEGIES[strategy] not in SET:
+        starts.append(own)
+    best = searched(starts, STRATEGIES[strategy], judge)
+    if best.analysis is None:
+        best = judge(own)
+    assert best.analysis is not None  # `check` refuses a model with such tables
+    names = tuple(processor.name for processor in kept)
+    return Proposal(best.analysis.system, best.analysis, names)
 
 
 def _core(system: System, processor: Processor) -> str:
@@ -125,6 +144,9 @@ def _processor(rows: Sequence[tuple[Processor, Slot]], taken: Sequence[str]) -> 
         ),
         on_overrun=tuple(
             dict.fromkeys(over for processor, _ in rows for over in processor.on_overrun)
+        ),
+        on_silence=tuple(
+            dict.fromkeys(one for processor, _ in rows for one in processor.on_silence)
         ),
     )
 
@@ -165,7 +187,9 @@ def show(proposal: Proposal, out: Console | None = None) -> None:
             )
     out.print(table)
     out.print("Times in us. Drivers, the host probe and sporadic processors stay as they are;")
-    out.print("priorities are by deadline. Strategies do not look at limits of chains.")
+    out.print("priorities are by deadline.")
+    if not analysis.schedulable:
+        out.print("No tables were found that keep every deadline and limit, chains included.")
     out.print("`--yaml` prints `processors:` to put into the model.")
 
 
@@ -174,10 +198,12 @@ def _us(time: int | None) -> str:
 
 
 def yaml(proposal: Proposal) -> str:
-    """``processors:`` of the model, as it would be."""
+    """``processors:`` of the model, as it would be; without priorities, which are by deadline."""
     lines = [f"# {verdict_line(proposal.analysis)}", "processors:"]
-    for one in proposal.system.processors:
-        lines += [f"  {one.name}:", f"    node: {one.node}"]
+    for one in _written(proposal.system):
+        lines.append(f"  {one.name}:")
+        if one.node:
+            lines.append(f"    node: {one.node}")
         if one.core > 1:
             lines.append(f"    core: {one.core}")
         if one.released_by is not None:
@@ -187,7 +213,6 @@ def yaml(proposal: Proposal) -> str:
             lines.append(f"    offset: {duration(one.offset)}")
         lines += [
             f"    deadline: {duration(one.deadline)}",
-            f"    priority: {one.priority}",
             f"    stack: {one.stack_bytes} B",
             "    activities:",
             *(f"      - {slot.element}" for slot in one.slots),
@@ -195,8 +220,24 @@ def yaml(proposal: Proposal) -> str:
         for key, events in (
             ("on_deadline_miss", one.on_deadline_miss),
             ("on_overrun", one.on_overrun),
+            ("on_silence", one.on_silence),
         ):
             if events:
                 lines.append(f"    {key}:")
                 lines += [f"      - {instance}.{event}" for instance, event in events]
     return "\n".join(lines) + "\n"
+
+
+def _written(system: System) -> Iterator[Processor]:
+    """The processors as a model has them: one reception for all nodes that receive from a bus."""
+    seen: set[str] = set()
+    for one in system.processors:
+        suffix = f"_{one.node}"
+        if one.released_by is not None and all(s.name.endswith(suffix) for s in one.slots):
+            name = one.name.removesuffix(suffix)
+            slots = tuple(replace(s, name=s.name.removesuffix(suffix)) for s in one.slots)
+            if name not in seen:
+                yield replace(one, name=name, node="", slots=slots)
+            seen.add(name)
+        else:
+            yield one

@@ -181,8 +181,8 @@ IMPORTS = """\
    procedure Compare_{name} is new Compare
      (Name           => "{c}",
       Item           => {type},
-      Pack           => Codecs.Pack_{codec},
-      Unpack         => Codecs.Unpack_{codec},
+      Pack           => Codecs.{codec}.Pack,
+      Unpack         => Codecs.{codec}.Unpack,
       Bare_Pack      => {name}_Bare_Pack,
       Bare_Unpack    => {name}_Bare_Unpack,
       Checked_Pack   => {name}_Checked_Pack,
@@ -326,7 +326,7 @@ def c_texts(messages: Sequence[Message]) -> dict[str, str]:
 
 def c_objects(system: System, database: Path, place: Path) -> list[str]:
     """The C, generated and compiled."""
-    command = [sys.executable, "-m", "cantools", "generate_c_source", "--database-name", PEER]
+    command = [sys.executable, "-P", "-m", "cantools", "generate_c_source", "--database-name", PEER]
     subprocess.run([*command, database], cwd=place, capture_output=True, check=True)
     texts = c_texts(system.messages)
     for name, text in texts.items():

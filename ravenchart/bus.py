@@ -11,7 +11,7 @@ from pathlib import Path
 
 from hw_can.bench.bus_records import NAME_LENGTH
 
-from . import toolchain
+from . import children, toolchain
 from .toolchain import ROOT
 
 PROJECT = ROOT / "hw_can" / "bus" / "can_bus.gpr"
@@ -93,24 +93,17 @@ def built() -> Path:
 @contextmanager
 def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """A bus server for the time of a block, and its channel, ``host:port``."""
-    with subprocess.Popen(
+    with children.running(
         [built(), *told], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
     ) as server:
         assert server.stdout is not None
-        try:
-            yield server, server.stdout.readline().split()[-1]
-        finally:
-            server.kill()
+        yield server, server.stdout.readline().split()[-1]
 
 
 def serve(told: Sequence[str]) -> int:
     """Run the server until it is interrupted; its exit status."""
-    with subprocess.Popen([built(), *told], stdin=subprocess.DEVNULL) as server:
-        try:
-            return server.wait()
-        except KeyboardInterrupt:
-            server.terminate()
-            return server.wait()
+    with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
+        return server.wait()
 
 
 def uneven(rate: int) -> str:

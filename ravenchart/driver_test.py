@@ -1,6 +1,6 @@
 """A driver, in a program that echoes, tried by python-can on an interface of Linux.
 
-Run as ``python -m ravenchart.driver_test PROGRAM INTERFACE``, where PROGRAM is
+Run as ``python -P -m ravenchart.driver_test PROGRAM INTERFACE``, where PROGRAM is
 tests/ada/can_echo.adb, built with ``CAN_DRIVER=socketcan``. With ``--near``, python-can is on
 another interface of the same bus. As root, for the interface is taken down and up again. With
 ``--driver ctucanfd`` INTERFACE is what the program finds in RAVENCHART_CTUCANFD.

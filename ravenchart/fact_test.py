@@ -1,6 +1,6 @@
 """A test program in Ada, whose facts become JUnit XML.
 
-Run as ``python -m ravenchart.fact_test [--junit FILE] PROGRAM [WORD ...]``. The program prints
+Run as ``python -P -m ravenchart.fact_test [--junit FILE] PROGRAM [WORD ...]``. The program prints
 "ok <fact>" or "not ok <fact>" lines, as those of tests/ada do.
 """
 

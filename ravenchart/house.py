@@ -8,16 +8,18 @@ the examples, and the records of it.
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
-from . import proving, steps, toolchain
+from . import outside_spark, proving, steps, toolchain
 from .steps import Refused
 from .toolchain import ROOT, ToolFailed, ToolMissing
 
 RECORDS = ROOT / "proofs" / "records"
+OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
+"""What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
 PATIENCE = 300.0
 """Seconds of processor time for the rules of behaviour: here they shall come to their end."""
 
@@ -30,15 +32,9 @@ EXAMPLES = (
     "three_components",
     "two_nodes",
 )
-DRIVER_FOLDERS = {
-    "loopback": ("loopback",),
-    "slcan": ("drivers/slcan", "drivers/tcp"),
-    "bus": ("protocol", "drivers/bus", "drivers/tcp"),
-    "socketcan": ("drivers/socketcan",),
-    "ctucanfd": ("drivers/ctucanfd",),
-}
-"""What of hw_can/ is proved with each driver; with the first, the HAL and the simulator as well."""
-DRIVERS = tuple(DRIVER_FOLDERS)
+DRIVERS = tuple(steps.DRIVER_FOLDERS)
+PROVED_WITH = {"bus": ("protocol",)}
+"""Folders of hw_can/ that only this driver uses, though every project has them."""
 GENERIC_BODIES = {"ravenchart-can-controllers.adb", "ravenchart-can-ctu_cores.adb"}
 """Of these the instances are proved: of the first that below, of the other one that it brings."""
 INSTANCES = ("instance_bus.ads", "instance_program.adb")
@@ -49,17 +45,10 @@ KERNEL = "analysis-kernel"
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One thing to prove: its record's name, its project, its scenario, where results land."""
+    """One thing to prove: the name of its record, and the run."""
 
     name: str
-    project: Path
-    scenario: dict[str, str]
-    results: tuple[Path, ...]
-    roots: tuple[Path, ...]
-    whole: bool
-    """With the runtime and the HAL; the examples take them as proved."""
-    units: tuple[str, ...] = ()
-    """The source files that are proved, when not all are."""
+    task: proving.Task
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
@@ -85,45 +74,46 @@ def record_names(example: str) -> tuple[str, ...]:
 
 def _bus() -> Target:
     folder, obj = ROOT / "hw_can" / "bus", ROOT / "obj"
-    return Target(
-        BUS,
+    task = proving.Task(
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
-        (folder, ROOT / "hw_can" / "protocol"),
+        (folder, *steps.runtime_folders(DRIVERS[0])),
+        warnings="error",
         whole=True,
     )
+    return Target(BUS, task)
 
 
 def _kernel() -> Target:
     folder = ROOT / "analysis" / "kernel"
     results = (ROOT / "obj" / "kernel" / "objects" / "gnatprove",)
-    return Target(KERNEL, folder / "kernel.gpr", {}, results, (folder,), whole=True)
+    sources = (ROOT, ROOT / "spark_runtime", folder, *(p for p in folder.rglob("*") if p.is_dir()))
+    task = proving.Task(folder / "kernel.gpr", {}, results, sources, warnings="error", whole=True)
+    return Target(KERNEL, task)
 
 
 def _runtime(driver: str) -> Target:
     """All of it with the first driver; with another only what differs."""
     obj = ROOT / "obj"
     project = ROOT / "proofs" / "proofs.gpr"
-    own = tuple(ROOT / "hw_can" / folder for folder in DRIVER_FOLDERS[driver])
-    common = (
-        ROOT / "spark_runtime",
-        ROOT / "hw_can" / "hal",
-        ROOT / "hw_can" / "simulator",
-    )
-    first = driver == DRIVERS[0]
+    folders = (*PROVED_WITH.get(driver, ()), *steps.DRIVER_FOLDERS[driver])
+    own = tuple(ROOT / "hw_can" / folder for folder in folders)
     sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
     bodies = {name for name in sources if name.endswith(".adb")}
     specs = {name for name in sources - bodies if f"{name[:-1]}b" not in bodies}
-    return Target(
-        f"runtime-{driver}",
+    task = proving.Task(
         project,
         {"MODE": "checks", "CAN_DRIVER": driver},
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
-        (*(common if first else ()), *own, project.parent / "instances"),
+        (project.parent, project.parent / "instances", *steps.runtime_folders(driver)),
+        warnings="error",
         whole=True,
-        units=() if first else (*sorted((bodies | specs) - GENERIC_BODIES), *INSTANCES),
+        units=()
+        if driver == DRIVERS[0]
+        else (*sorted((bodies | specs) - GENERIC_BODIES), *INSTANCES),
     )
+    return Target(f"runtime-{driver}", task)
 
 
 def _example(name: str) -> Iterator[Target]:
@@ -131,35 +121,26 @@ def _example(name: str) -> Iterator[Target]:
     steps.write_program(checked)
     driver = steps.default_driver(checked)
     for made in steps.programs_of(checked):
-        yield Target(
-            f"{name}-{made.folder}" if made.folder else name,
-            made.project,
-            made.scenario("checks", driver),
-            made.proof_folders(driver)[:1],
-            (made.generated, checked.folder / "user") if made.folder else (checked.folder,),
-            whole=False,
-            units=made.proved_units(),
-        )
+        target = f"{name}-{made.folder}" if made.folder else name
+        yield Target(target, made.proof(driver, warnings="error"))
 
 
 def prove(names: Sequence[str]) -> bool:
-    """Prove everything, or what is named, and write the records; True when nothing is left."""
+    """Prove everything, or what is named, and write the records; True when nothing is left.
+
+    With the environment variable FRESH results of earlier proofs are not used.
+    """
     RECORDS.mkdir(parents=True, exist_ok=True)
     clean = True
     for target in targets(names):
         print(f"proving {target.name} ...", flush=True)
-        proof = proving.prove(
-            target.project,
-            target.scenario,
-            target.results,
-            target.roots,
-            warnings="error",
-            whole=target.whole,
-            units=target.units,
-        )
+        proof = proving.prove(target.task, fresh=bool(os.environ.get("FRESH")))
+        reasons = outside_spark.reasons_for_target(OUTSIDE, target.name)
         print(f"{target.name}: {proof.summary()}", flush=True)
+        for line in outside_spark.lines(proof.results.outside, reasons):
+            print(f"  {line}", flush=True)
         (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")
-        clean = clean and proof.clean
+        clean = clean and proof.clean and outside_spark.agree(proof.results.outside, reasons)
     return clean
 
 
@@ -199,7 +180,7 @@ def main() -> int:
     work = works[sys.argv[1]]
     try:
         return 0 if work(sys.argv[2:]) else 1
-    except (Refused, ToolFailed) as failed:
+    except (Refused, ToolFailed, outside_spark.WrongList) as failed:
         print(str(failed).rstrip(), file=sys.stderr)
         return 1
     except ToolMissing as missing:

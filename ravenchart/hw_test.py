@@ -91,9 +91,9 @@ class Total:
 
 def steps(python: str, programs: Path) -> tuple[Step, ...]:
     """What is run in the guest, in this order; ``programs`` is obj/ of the checkout."""
-    loopback = (python, "-m", "ravenchart.loopback", "--interface", "socketcan", "--channel")
-    driver = (python, "-m", "ravenchart.driver_test")
-    fact = (python, "-m", "ravenchart.fact_test")
+    loopback = (python, "-P", "-m", "ravenchart.loopback", "--interface", "socketcan", "--channel")
+    driver = (python, "-P", "-m", "ravenchart.driver_test")
+    fact = (python, "-P", "-m", "ravenchart.fact_test")
     socketcan, ctucanfd = (
         programs / f"tests-{MODE}-{name}" / "bin" for name in ("socketcan", "ctucanfd")
     )

@@ -19,7 +19,7 @@ def within_budgets(checked: Checked, path: Path) -> bool:
     was generated from this model: ``generated/trace.json`` says what its numbers mean.
     `Refused` for a trace that cannot be read, was cut off, or holds no executions.
     """
-    names = checked.folder / "generated" / "trace.json"
+    names = checked.generated / "trace.json"
     try:
         trace_map = read_map(names.read_text(encoding="utf-8"), str(names))
         with path.open(encoding="ascii", errors="replace") as lines:

@@ -1,6 +1,6 @@
-"""Running gnatprove, reading what it found, and keeping the record of it.
+"""Running gnatprove, and keeping the record of what it found.
 
-A record is one TOML file per project: for each proved source its SHA-256, for
+A record is one TOML file per project: for each source that the proof read its SHA-256, for
 each subprogram its checks and the provers that discharged them. No date, host
 or time stands in it, so a difference means a change.
 """
@@ -9,124 +9,114 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
+import shutil
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from . import toolchain
+from . import proof_cache, spark_results, toolchain
+from .spark_results import Results
 
 
 @dataclass(frozen=True, slots=True)
-class Entity:
-    """One subprogram, task or package, and what was proved of it."""
+class Task:
+    """One gnatprove run."""
 
-    path: str
-    checks: int
-    provers: tuple[str, ...]
+    project: Path
+    scenario: Mapping[str, str]
+    results: tuple[Path, ...]
+    """The folders that the results land in; emptied before."""
+    sources: tuple[Path, ...]
+    """Folders with all that the proof may read: Ada sources, projects, configuration pragmas."""
+    warnings: str = "continue"
+    """``error``: a warning of flow analysis fails the run."""
+    whole: bool = False
+    """Prove the projects that this one uses again."""
+    units: tuple[str, ...] = ()
+    """The source files to prove, when not all."""
 
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """The outcome of one gnatprove run."""
+    """The outcome of one gnatprove run, and the sources it speaks of."""
 
-    checks: int
-    proved: int
-    justified: int
-    assumed: int
-    bodies_off: tuple[str, ...]
-    """Units whose bodies are outside SPARK."""
+    results: Results
     sources: tuple[tuple[str, str], ...]
     """(path below the checkout, SHA-256), sorted."""
-    entities: tuple[Entity, ...]
+    tool: str
+    """The first line of ``gnatprove --version``."""
+    cached: bool = field(default=False, compare=False)
+    """Whether the results are those of an earlier run on the same content."""
 
     @property
     def clean(self) -> bool:
         """Everything proved, nothing justified or assumed."""
-        return self.proved == self.checks and not self.justified and not self.assumed
+        found = self.results
+        return not (found.unproved or found.justified or found.assumed)
 
     def summary(self) -> str:
         """The one line that every proof run ends in."""
+        found = self.results
+        proved = found.checks - found.justified - found.unproved
         return (
-            f"checks {self.checks}, proved {self.proved}, justified {self.justified}, "
-            f"assumed {self.assumed}, bodies off {len(self.bodies_off)}"
+            f"checks {found.checks}, proved {proved}, justified {found.justified}, "
+            f"assumed {found.assumed}, outside SPARK {len(found.outside)}"
+            + (" (proved before from the same content)" if self.cached else "")
         )
 
 
-def prove(
-    project: Path,
-    scenario: Mapping[str, str],
-    results: Sequence[Path],
-    roots: Sequence[Path],
-    *,
-    warnings: str = "continue",
-    whole: bool = False,
-    units: Sequence[str] = (),
-) -> Proof:
-    """Prove a project; ``results`` are the folders its results land in, its own first.
+def prove(task: Task, *, fresh: bool = False) -> Proof:
+    """Run gnatprove, or take the results of an earlier run on the same content.
 
-    The record names every source below ``roots``. ToolFailed with gnatprove's
-    messages when anything is left, and with ``warnings="error"`` also for a warning
-    of flow analysis, such as a value that is set and never used. The results of
-    earlier runs go first: what is read then is of this run alone. Of the projects that
-    it uses, which are proved by themselves, it takes what their sources say, or with
-    ``whole`` proves them again. ``units`` are source files, when not all shall be proved.
+    ToolFailed with gnatprove's messages when anything is left. ``fresh`` runs it in any case.
+    The result folders are emptied first, so the results are those of this run alone.
     """
-    for old in (path for folder in results for path in folder.glob("*.spark")):
-        old.unlink()
-    arguments = ["-P", project.name, "-f", "-q", "--output=oneline"]
-    arguments.append(f"--warnings={warnings}")
-    if not whole:
+    version = toolchain.run("gnatprove", ["--version"], task.project.parent, {})
+    inputs = _inputs(task.sources)
+    key = proof_cache.key(version, task, inputs)
+    results = None if fresh else proof_cache.load(key)
+    cached = results is not None
+    if results is None:
+        results = _run(task)
+        if not results.unproved:
+            proof_cache.store(key, results)
+    read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
+    sources = tuple(sorted((_shown(path), digest) for path, digest in read.items()))
+    return Proof(results, sources, version.partition("\n")[0], cached)
+
+
+def _run(task: Task) -> Results:
+    for folder in task.results:
+        shutil.rmtree(folder, ignore_errors=True)
+    arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline"]
+    arguments.append(f"--warnings={task.warnings}")
+    if not task.whole:
         arguments.append("--no-subprojects")
-    if units:
-        arguments += ["-u", *units]
-    toolchain.run("gnatprove", arguments, project.parent, scenario)
-    return read_results(results, roots)
+    if task.units:
+        arguments += ["-u", *task.units]
+    toolchain.run("gnatprove", arguments, task.project.parent, task.scenario)
+    return spark_results.read_results(task.results, task.units)
 
 
-def read_results(folders: Sequence[Path], roots: Sequence[Path]) -> Proof:
-    """The results of the last run: gnatprove.out for the totals, .spark files for the rest."""
-    assumed = 0
-    off: set[str] = set()
-    tallies: dict[str, tuple[int, set[str]]] = {}
-    for path in sorted(path for folder in folders for path in folder.glob("*.spark")):
-        found = json.loads(path.read_text(encoding="utf-8"))
-        assumed += len(found.get("pragma_assume", ()))
-        off |= {path.stem for item in found["spark"] if item["spark"] == "spec"}
-        for check in found.get("proof", ()):
-            count, provers = tallies.get(check["entity"]["name"], (0, set()))
-            provers |= set(check.get("stats", ()))
-            tallies[check["entity"]["name"]] = (count + 1, provers)
-    entities = tuple(
-        Entity(name, count, tuple(sorted(provers)))
-        for name, (count, provers) in sorted(tallies.items())
-    )
-    checks, justified, unproved = _totals((folders[0] / "gnatprove.out").read_text("utf-8"))
-    proved = checks - justified - unproved
-    bodies = tuple(sorted(off))
-    return Proof(checks, proved, justified, assumed, bodies, _digests(roots), entities)
+SOURCES = (".ads", ".adb", ".gpr", ".adc")
+"""Endings of the files that a proof may depend on."""
 
 
-def _totals(summary: str) -> tuple[int, int, int]:
-    """Checks in all, justified, unproved: the last row of gnatprove's summary."""
-    row = re.search(r"^Total(.*)$", summary, re.M)
-    if row is None:
-        raise toolchain.ToolFailed("gnatprove's summary has no row of totals")
-    cells = re.findall(r"(\d+|\.)(?: \([^)]*\))?", row.group(1))
-    numbers = [0 if cell == "." else int(cell) for cell in cells]
-    return numbers[0], numbers[-2], numbers[-1]
+def _inputs(folders: Sequence[Path]) -> dict[Path, str]:
+    """Every file that the proof may read, with its SHA-256."""
+    found = {path.resolve() for folder in folders for path in folder.glob("*")}
+    return {p: digest(p) for p in sorted(found) if p.suffix in SOURCES and p.is_file()}
 
 
-def _digests(roots: Sequence[Path]) -> tuple[tuple[str, str], ...]:
-    """(path below the checkout, SHA-256) of every Ada source below ``roots``, sorted."""
-    found = {p.resolve() for root in roots for p in root.rglob("*.ad[sb]")}
+def _is_read(path: Path, results: Results) -> bool:
+    """Ada sources by what gnatprove says it read; projects and configuration always."""
+    return path.suffix not in (".ads", ".adb") or path.name in results.files
+
+
+def _shown(path: Path) -> str:
     base = toolchain.ROOT
-    return tuple(
-        sorted(
-            (str(p.relative_to(base) if p.is_relative_to(base) else p), digest(p)) for p in found
-        )
-    )
+    return path.relative_to(base).as_posix() if path.is_relative_to(base) else str(path)
 
 
 def digest(path: Path) -> str:
@@ -136,13 +126,14 @@ def digest(path: Path) -> str:
 
 def record_text(proof: Proof) -> str:
     """The record of a proof as TOML."""
+    found = proof.results
     lines = [
         "# Written by `make prove`. Checked against the sources by `make test`.",
-        f"checks = {proof.checks}",
-        f"proved = {proof.proved}",
-        f"justified = {proof.justified}",
-        f"assumed = {proof.assumed}",
-        f"bodies_off = {json.dumps(proof.bodies_off)}",
+        f"checks = {found.checks}",
+        f"proved = {found.checks - found.justified - found.unproved}",
+        f"justified = {found.justified}",
+        f"assumed = {found.assumed}",
+        f"outside = {json.dumps([o.name for o in found.outside])}",
         "",
         "[sources]",
         *(f'"{path}" = "{digest}"' for path, digest in proof.sources),
@@ -150,7 +141,7 @@ def record_text(proof: Proof) -> str:
         "[entities]",
         *(
             f'"{e.path}" = {{ checks = {e.checks}, provers = {json.dumps(e.provers)} }}'
-            for e in proof.entities
+            for e in found.entities
         ),
     ]
     return "\n".join(lines) + "\n"

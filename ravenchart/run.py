@@ -25,7 +25,7 @@ from gen.terms import Ns
 from hw_can.bench.bus_records import NAME_LENGTH
 from hw_can.bench.peer import BenchError, Codec, Peer
 from hw_can.bench.runner import ScenarioResult, run_scenario
-from hw_can.bench.scenario import Mend, Scenario, ScenarioError, load_scenario
+from hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
 
 from . import bus
 from .demo import judge, plots, result, summary
@@ -106,7 +106,7 @@ def run_model(request: RunRequest, console: Console | None = None) -> bool:
                     analysis=request.analysis,
                 )
     except (ScenarioError, BenchError, TraceError) as fault:
-        out.print(str(fault), markup=False)
+        out.print(str(fault), markup=False, soft_wrap=True)
         return False
     written = write_report(outcome, request.analysis, request.folder)
     out.print(outcome.title, markup=False)
@@ -250,7 +250,9 @@ def _run(
                 problems.append(str(fault))
             finally:
                 ended = process.stop(grace)
-    seen = None if problems else read(trace, trace_map, problems)
+    seen = None
+    if not problems or (ended.reasons and trace.is_file()):
+        seen = read(trace, trace_map, problems)
     return concluded(title, plan, played, seen, ended, problems, analysis)
 
 
@@ -271,6 +273,10 @@ def concluded(
     compared = compare(analysis, seen) if analysis and seen else ()
     executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
+    counted: tuple[str, ...] = ()
+    if analysis and seen:
+        system, real_time = analysis.system, ended.real_time
+        counted = tuple(judge.unaccounted(system, seen, compared, real_time=real_time))
     return RunResult(
         title=title,
         scenario=plan,
@@ -280,7 +286,12 @@ def concluded(
         steps=judge.step_rows(played, checks) if played else (),
         compared=compared,
         journeys=took,
-        failures=(*problems, *judge.failures(ended, played, seen, checks, compared, took)),
+        failures=(
+            *judge.stops(ended),
+            *problems,
+            *counted,
+            *judge.failures(ended, played, seen, checks, compared, took),
+        ),
         notes=tuple(result.notes(ended, played, seen, executed, compared)),
         clock_offset=result.clock_offset(played, seen, analysis.system) if analysis else None,
     )
@@ -363,9 +374,10 @@ def run_nodes(
         finally:
             ended = [process.stop(grace) for process in running]
     seen: Observation | None = None
-    if not problems:
+    stopped = any(one.reasons for one in ended) and all(trace.is_file() for trace in traces)
+    if not problems or stopped:
         parts = [read(t, m, problems) for t, m in zip(traces, maps, strict=True)]
-        if not problems:
+        if all(part is not None for part in parts):
             named = zip(controllers, parts, strict=True)
             seen = together({c.node: part for c, part in named if part is not None})
     title = plan.title if plan else f"{seconds:g} s without a scenario"
@@ -393,6 +405,10 @@ def _bus_words(
         at = round(event.at * 1e9)
         if isinstance(event, Mend):
             words.append(f"event={at}:mend")
+        elif isinstance(event, Hold):
+            words.append(f"event={at}:hold_{event.hold}")
+        elif not isinstance(event, Cut):
+            words.append(f"event={at}:let_go")
         elif numbers.get(event.cut.lower(), 1) > 1:
             words.append(f"event={at}:cut:{numbers[event.cut.lower()]}")
         else:

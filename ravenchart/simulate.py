@@ -7,7 +7,6 @@ order of `behaviour.machine` and prints the lines of `Record.text`.
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
 from behaviour.stimuli import Stimuli, read
 from behaviour.traces import Record, parsed
-from gen.diagnostics import Diagnostic, error, render
+from gen.diagnostics import Diagnostic, error, render, warning
 from gen.distribution import as_one
 from gen.emit.simulation import numbers
 from gen.emit.simulation import stimuli as stimuli_of_system
@@ -25,7 +24,7 @@ from gen.model import System
 from gen.terms import Origin
 from gen.tree import lines_of
 
-from . import toolchain
+from . import children, toolchain
 from .steps import Checked, Refused, build_home, replace_file, write_first_versions
 
 
@@ -110,10 +109,29 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Reco
         values = numbers(of_type, entry.value)
         lines.append(" ".join(map(str, (entry.at, number, *values))))
     text = "".join(f"{line}\n" for line in lines)
-    done = subprocess.run([program], input=text, capture_output=True, text=True, check=False)
+    done = children.run([program], text)
     if done.returncode:
         raise toolchain.ToolFailed(f"{program.name}: {done.stderr.strip()}")
     return [parsed(line) for line in done.stdout.splitlines()]
+
+
+def left_out(system: System) -> Diagnostic | None:
+    """A warning of the activities that the interpreter does not execute: those of the user."""
+    rows = [
+        (f"{instance.name}.{activity.name}", activity.origin)
+        for instance in system.instances
+        for activity in instance.component.activities
+        if activity.flow is None
+    ]
+    if not rows:
+        return None
+    names = ", ".join(name for name, _ in rows)
+    message = f"the interpreter leaves out what the user writes: {names}"
+    hint = (
+        "what these write, send and raise is missing from the trace; leave out `--interpreter`: "
+        "the program in virtual time executes them"
+    )
+    return warning("RV-1009", rows[0][1], message, hint=hint)
 
 
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:

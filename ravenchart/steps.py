@@ -27,14 +27,54 @@ from gen.model import System
 from gen.unready import unready
 
 from . import toolchain
+from .proving import Task
 from .toolchain import ROOT
 
 MANIFEST = "generated.list"
-"""Names of the files of the last generation: only these are ever deleted."""
+"""SHA-256 and name of each file of the last generation, as `sha256sum` prints them.
+
+Only these files are ever deleted, and an edit of one of them is noticed.
+"""
+EDITED = ".edited"
+"""Ending of the copy that is kept of an edited file."""
+
+
+DRIVER_FOLDERS = {
+    "loopback": ("loopback",),
+    "slcan": ("drivers/slcan", "drivers/tcp"),
+    "bus": ("drivers/bus", "drivers/tcp"),
+    "socketcan": ("drivers/socketcan",),
+    "ctucanfd": ("drivers/ctucanfd",),
+}
+"""The folders of hw_can/ that ravenchart.gpr adds for each driver."""
+RUNTIME_FOLDERS = (
+    "spark_runtime/src",
+    "spark_runtime/native",
+    "hw_can/hal",
+    "hw_can/protocol",
+    "hw_can/simulator",
+)
+"""The source folders of ravenchart.gpr that every driver has."""
+
+
+def runtime_folders(driver: str) -> tuple[Path, ...]:
+    """Where the sources, projects and configuration pragmas of the runtime and the HAL are."""
+    chosen = (f"hw_can/{folder}" for folder in DRIVER_FOLDERS[driver])
+    return tuple(ROOT / f for f in (".", "spark_runtime", *RUNTIME_FOLDERS, *chosen))
 
 
 class Refused(Exception):  # noqa: N818
     """The model has errors; the text is the rendered diagnostics."""
+
+
+def _is_usual(path: Path) -> bool:
+    """Has the main file of a model its usual name?"""
+    return path.name.lower() == "model.yaml"
+
+
+def generated_folder(path: Path) -> str:
+    """The folder, beside the main file at ``path``, in which its program is written."""
+    return "generated" if _is_usual(path) else f"generated-{path.name.removesuffix('.yaml')}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +90,11 @@ class Checked:
     def folder(self) -> Path:
         """The folder of the model file: generated/ and user/ are beside it."""
         return self.path.parent
+
+    @property
+    def generated(self) -> Path:
+        """Where its program is written: no two main files of a folder have the same place."""
+        return self.folder / generated_folder(self.path)
 
     @property
     def stem(self) -> str:
@@ -122,11 +167,17 @@ def claims(checked: Checked) -> Claims:
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What a generation did: files in all, files whose bytes changed, bodies still to write."""
+    """What a generation did.
+
+    ``files`` were generated, the manifest not counted; of these ``changed`` have other bytes
+    than before. ``edited`` had been changed by hand: their copies lie beside them.
+    ``missing`` are the bodies still to write.
+    """
 
     folder: Path
     files: int
     changed: int
+    edited: tuple[str, ...]
     missing: tuple[Path, ...]
 
 
@@ -141,16 +192,21 @@ def write_program(checked: Checked) -> Written:
     gaps = [render(diagnostic, {}) for diagnostic in unready(checked.system)]
     if gaps:
         raise Refused("\n".join(gaps))
-    folder = checked.folder / "generated"
+    folder = checked.generated
     folder.mkdir(parents=True, exist_ok=True)
     files = generate(checked.system, claims(checked))
-    manifest = folder / MANIFEST
-    old = manifest.read_text(encoding="utf-8").split() if manifest.is_file() else []
+    old = _manifest(folder)
+    edited = tuple(n for n, digest in old.items() if _edited(folder / n, digest, files.get(n)))
+    for name in edited:
+        (folder / name).replace(folder / f"{name}{EDITED}")
     changed = 0
-    for name, text in {**files, MANIFEST: "".join(f"{n}\n" for n in sorted(files))}.items():
+    for name, text in files.items():
         (folder / name).parent.mkdir(exist_ok=True)
         changed += replace_file(folder / name, text)
-    for gone in {name for name in old if name not in files and _is_inside(name)}:
+    digests = {name: _digest(text.encode("utf-8")) for name, text in sorted(files.items())}
+    listed = "".join(f"{digest}  {name}\n" for name, digest in digests.items())
+    replace_file(folder / MANIFEST, listed)
+    for gone in {name for name in old if name not in files}:
         (folder / gone).unlink(missing_ok=True)
         if (folder / gone).parent != folder:
             with suppress(OSError):  # it is not empty, or was never there
@@ -158,7 +214,31 @@ def write_program(checked: Checked) -> Written:
     write_first_versions(checked)
     units = (checked.folder / name for name in user_units(checked.system))
     missing = tuple(unit for unit in units if not unit.is_file())
-    return Written(folder, len(files), changed, missing)
+    return Written(folder, len(files), changed, edited, missing)
+
+
+def _manifest(folder: Path) -> dict[str, str]:
+    """Name to SHA-256 of each file of the last generation; "" where the list has no digest."""
+    if not (folder / MANIFEST).is_file():
+        return {}
+    lines = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
+    pairs = (line.rpartition("  ")[::2] for line in lines)
+    return {name: digest for digest, name in pairs if _is_inside(name)}
+
+
+def _edited(path: Path, digest: str, text: str | None) -> bool:
+    """Whether the file is neither what was generated last time nor ``text``, the new one.
+
+    A generation that was cut short leaves files that are new already.
+    """
+    if not digest or not path.is_file():
+        return False
+    found = path.read_bytes()
+    return _digest(found) != digest and (text is None or found != text.encode("utf-8"))
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 def write_first_versions(checked: Checked) -> None:
@@ -201,7 +281,7 @@ class Program:
     @property
     def generated(self) -> Path:
         """Its generated sources and its trace map."""
-        return self.checked.folder / "generated" / self.folder
+        return self.checked.generated / self.folder
 
     @property
     def project(self) -> Path:
@@ -233,9 +313,8 @@ class Program:
 
         Empty where there are none of these: then all are. A build takes only what it needs.
         """
-        part = next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
-        folders = [self.checked.folder / place for place in source_folders(part)]
-        files = {p.name: p for home in (self.generated, *folders) for p in home.glob("*.ad[sb]")}
+        folders = (self.generated, *self._user_folders())
+        files = {p.name: p for home in folders for p in home.glob("*.ad[sb]")}
         bodies = {name for name in files if name.endswith(".adb")}
         specs = {name for name in files.keys() - bodies if f"{name[:-1]}b" not in bodies}
         others = {
@@ -246,12 +325,23 @@ class Program:
         }
         return tuple(sorted((bodies | specs) - others)) if others else ()
 
-    def proof_folders(self, driver: str) -> tuple[Path, Path]:
-        """Where gnatprove leaves its results: for the program, and for the runtime."""
-        return (
-            self.home(driver) / "checks" / "gnatprove",
-            ROOT / "obj" / f"checks-{driver}" / "gnatprove",
+    def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> Task:
+        """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""
+        own = self.home(driver) / "checks" / "gnatprove"
+        runtime = ROOT / "obj" / f"checks-{driver}" / "gnatprove"
+        return Task(
+            self.project,
+            self.scenario("checks", driver),
+            (own, runtime) if whole else (own,),
+            (self.generated, *self._user_folders(), *runtime_folders(driver)),
+            warnings=warnings,
+            whole=whole,
+            units=self.proved_units(),
         )
+
+    def _user_folders(self) -> tuple[Path, ...]:
+        part = next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
+        return tuple(self.checked.folder / place for place in source_folders(part))
 
 
 def programs_of(checked: Checked) -> tuple[Program, ...]:
@@ -264,8 +354,9 @@ def programs_of(checked: Checked) -> tuple[Program, ...]:
 
 def build_home(checked: Checked, driver: str) -> Path:
     """What is built of a model, below build/ of the checkout, apart for each driver."""
-    place = hashlib.sha256(str(checked.folder.resolve()).encode()).hexdigest()[:8]
-    return ROOT / "build" / f"{checked.stem}-{place}-{driver}"
+    place = checked.folder if _is_usual(checked.path) else checked.path
+    known = hashlib.sha256(str(place.resolve()).encode()).hexdigest()[:8]
+    return ROOT / "build" / f"{checked.stem}-{known}-{driver}"
 
 
 def default_driver(checked: Checked) -> str:

@@ -8,6 +8,8 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from . import children
+
 ROOT = Path(__file__).resolve().parent.parent
 """The checkout: where ravenchart.gpr and the runtime are."""
 
@@ -41,16 +43,12 @@ def run(tool: str, arguments: Sequence[str], where: Path, scenario: Mapping[str,
         raise ToolMissing(tool)
     paths = [str(ROOT), *filter(None, [os.environ.get("GPR_PROJECT_PATH")])]
     variables = [f"-X{name}={value}" for name, value in scenario.items()]
-    done = subprocess.run(
+    done = children.run(
         [tool, *arguments, *variables],
         cwd=where,
         env={**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        text=True,
         errors="replace",
-        check=False,
     )
     if done.returncode != 0:
         raise ToolFailed(done.stdout)
@@ -61,9 +59,7 @@ def filtered(tool: str, arguments: Sequence[str], text: str) -> str:
     """What a tool makes of a text; ToolMissing, or ToolFailed with what it printed."""
     if not have(tool):
         raise ToolMissing(tool)
-    done = subprocess.run(
-        [tool, *arguments], input=text, capture_output=True, encoding="utf-8", check=False
-    )
+    done = children.run([tool, *arguments], text, encoding="utf-8")
     if done.returncode != 0:
         raise ToolFailed(done.stderr)
     return done.stdout

@@ -84,9 +84,18 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$wanted" ]; then
       say "pip failed (above) on this checkout" >&2
       exit 2
    fi
-   printf '#!/bin/sh\nexec "%s/.venv/bin/python" -m ravenchart "$@"\n' "$(pwd)" > .venv/bin/ravenchart
-   chmod +x .venv/bin/ravenchart
    printf '%s' "$wanted" > "$stamp"
+fi
+
+# -P: a file yaml.py in the working folder is not imported. SIGINT waits until Python can
+# take it in order: env blocks it, and ravenchart/start.py lets it through.
+launcher=.venv/bin/ravenchart
+text='#!/bin/sh
+exec env --block-signal=INT "'"$(pwd)"'/.venv/bin/python" -P -m ravenchart.start "$@"'
+if [ "$(cat $launcher 2>/dev/null)" != "$text" ]; then
+   rm -f $launcher
+   printf '%s\n' "$text" > $launcher
+   chmod +x $launcher
 fi
 
 # The compiled part of the analysis; nothing happens when it is up to date.

@@ -24,6 +24,9 @@ is
       Stack_Bytes      => 65_536,
       Accepts          => Accepts,
       Setting          =>
-        (Bit_Rate => 500_000, Data_Rate => 2_000_000, Takes_Fd => True));
+        (Bit_Rate  => 500_000,
+         Data_Rate => 2_000_000,
+         Takes_Fd  => True,
+         Recovery  => Ravenchart.Can.On_Request));
 
 end Instance_Bus;

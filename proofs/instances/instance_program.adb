@@ -9,6 +9,7 @@ pragma Unreferenced (Instance_Simulator);
 with Instance_Store;
 with Instance_Tasks;
 with Ravenchart.Can;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
@@ -32,7 +33,9 @@ is
    Cyclic : Instance_Tasks.Cyclic.Statistics;
    Served : Instance_Tasks.Served.Statistics;
    Bus    : Ravenchart.Can.Counters;
+   Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
    Late   : Ravenchart.Nanoseconds;
+   Fed    : Ravenchart.Event_Count;
 begin
    Ravenchart.Hosts.Start;
    loop
@@ -43,9 +46,11 @@ begin
          Ravenchart.Hosts.Put_Trace (Item);
       end loop;
       exit when Ending;
+      Instance_Bus.Controller.Request_Recovery;
       Next := Next + Poll;
       delay until Next;
    end loop;
+   Ravenchart.Hosts.Put_Now;
    Instance_Tasks.Cyclic.Observe (Cyclic);
    Ravenchart.Hosts.Put_Processor
      (1, Cyclic.Releases, Cyclic.Misses, Cyclic.Worst_Response);
@@ -57,6 +62,8 @@ begin
    Ravenchart.Hosts.Put_Processor
      (2, Served.Releases, Served.Misses, Served.Worst_Response);
    Instance_Store.Counters.Read (Counts);
+   Instance_Bus.Controller.Read_Faults (Faults);
+   Counts (Ravenchart.Health.Can_Bus_Off) := Faults.Off_Entries;
    for Kind in Ravenchart.Health.Fault_Kind loop
       Ravenchart.Hosts.Put_Fault_Count (Kind, Counts (Kind));
    end loop;
@@ -66,5 +73,7 @@ begin
    Ravenchart.Hosts.Put_Lost ("can", Bus.Lost_In);
    Instance_Tasks.Probe.Read (Late);
    Ravenchart.Hosts.Put_Host_Latency (Late);
+   Instance_Tasks.Supervisor.Read (Fed);
+   Ravenchart.Hosts.Put_Feeds (Fed);
    Ravenchart.Hosts.Finish (Success => True);
 end Instance_Program;

@@ -17,7 +17,7 @@ with Ravenchart.Trace_Buffers;
 package Instance_Store
   with SPARK_Mode
 is
-   Ceiling : constant System.Priority := System.Default_Priority + 5;
+   Ceiling : constant System.Priority := System.Default_Priority + 7;
    --  Of every object here.
 
    type Reading is record

@@ -1,6 +1,7 @@
 with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Health;
+with Ravenchart.Liveness;
 with Ravenchart.Queueing;
 with Ravenchart.Timers;
 with Ravenchart.Traces;
@@ -191,5 +192,45 @@ is
          Instance_Store.Counters.Record_Fault (Ravenchart.Health.Overrun);
       end if;
    end Note_Overrun;
+
+   ----------
+   -- Look --
+   ----------
+
+   procedure Look
+     (Item      : Watched;
+      Elapsed   : Ravenchart.Nanoseconds;
+      Is_Silent : out Boolean)
+   is
+      Seen : Ravenchart.Liveness.Progress;
+   begin
+      case Item is
+         when Watched_Cyclic =>
+            Cyclic.Observe_Progress (Seen);
+            Is_Silent := Ravenchart.Liveness.Is_Silent
+              ((Offset => 1_000_000,
+                Period => 10_000_000,
+                Limit  => 15_000_000),
+               Seen,
+               Elapsed);
+         when Watched_Served =>
+            Served.Observe_Progress (Seen);
+            Is_Silent := Ravenchart.Liveness.Is_Stuck
+              (7_000_000, Seen, Elapsed);
+      end case;
+   end Look;
+
+   ------------------
+   -- Note_Silence --
+   ------------------
+
+   procedure Note_Silence (Item : Watched) is
+   begin
+      Instance_Store.Counters.Record_Fault (Ravenchart.Health.Silence);
+      Ravenchart.Failures.Note_Silence
+        (case Item is
+            when Watched_Cyclic => "cyclic",
+            when Watched_Served => "served");
+   end Note_Silence;
 
 end Instance_Tasks;

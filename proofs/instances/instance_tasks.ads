@@ -1,15 +1,18 @@
---  One periodic and one sporadic processor: together with Instance_Store and
---  Instance_Bus a small controller, as a model would generate it.
+--  One periodic and one sporadic processor, and what supervises them: together
+--  with Instance_Store and Instance_Bus a small controller, as a model would
+--  generate it.
 
 with System;
 with Ada.Real_Time;
 with Instance_Bus;
 with Instance_Store;
 with Ravenchart.Epochs;
+with Ravenchart.Failures;
 with Ravenchart.Host_Probes;
 with Ravenchart.Periodic_Processors;
 with Ravenchart.Schedules;
 with Ravenchart.Sporadic_Processors;
+with Ravenchart.Supervisors;
 
 package Instance_Tasks
   with
@@ -71,7 +74,8 @@ is
    --  An activity took so much processor time: it may be too much.
 
    package Cyclic is new Ravenchart.Periodic_Processors
-     (Activity_Id      => Job,
+     (Name             => "cyclic",
+      Activity_Id      => Job,
       Table_Type       => Job_Table,
       Table            => Jobs,
       Cycle            => 4,
@@ -79,24 +83,57 @@ is
       Offset           => 1_000_000,
       Deadline         => 10_000_000,
       Task_Priority    => System.Default_Priority + 4,
+      Ceiling          => System.Default_Priority + 7,
       Stack_Bytes      => 65_536,
       Execute          => Run_Job,
       On_Deadline_Miss => Note_Miss,
       On_Executed      => Note_Overrun);
 
    package Served is new Ravenchart.Sporadic_Processors
-     (Activity_Id        => Service,
+     (Name               => "served",
+      Activity_Id        => Service,
       Minimum_Separation => 2_000_000,
       Deadline           => 2_000_000,
       Task_Priority      => System.Default_Priority + 5,
+      Ceiling            => System.Default_Priority + 7,
       Stack_Bytes        => 65_536,
       Wait               => Await_Frame,
       Execute            => Run_Service,
       On_Deadline_Miss   => Note_Miss);
 
    package Probe is new Ravenchart.Host_Probes
-     (Period         => 1_000_000,
+     (Name           => "probe",
+      Period         => 1_000_000,
       Probe_Priority => System.Default_Priority + 10,
       Stack_Bytes    => 65_536);
+
+   type Watched is (Watched_Served, Watched_Cyclic);
+   --  The processors, the most urgent first.
+
+   procedure Look
+     (Item      : Watched;
+      Elapsed   : Ravenchart.Nanoseconds;
+      Is_Silent : out Boolean);
+   --  Is it silent?
+
+   procedure Note_Silence (Item : Watched)
+   with
+     Global =>
+       (In_Out => (Instance_Store.Counters.State,
+                   Ravenchart.Failures.State));
+   --  It is.
+
+   package Supervisor is new Ravenchart.Supervisors
+     (Processor_Id  => Watched,
+      Name          => "supervisor",
+      Period        => 10_000_000,
+      Patience      => 1_000_000_000,
+      Task_Priority => System.Default_Priority + 7,
+      Ceiling       => System.Default_Priority + 7,
+      Stack_Bytes   => 65_536,
+      Look          => Look,
+      On_Silence    => Note_Silence,
+      Feed_Watchdog => Ravenchart.Failures.Feed_Watchdog,
+      Give_Up       => Ravenchart.Failures.Give_Up);
 
 end Instance_Tasks;

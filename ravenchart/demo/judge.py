@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
@@ -9,6 +10,7 @@ from analysis.journeys import Journey
 from analysis.observed import Observation
 from analysis.report import Comparison, StepRow
 from analysis.units import microseconds
+from gen.model import Processor, System
 from hw_can.bench.runner import ScenarioResult
 from hw_can.bench.scenario import TraceCheck
 from ravenchart.demo.process import Ended
@@ -27,6 +29,65 @@ def check_trace(checks: Sequence[TraceCheck], seen: Observation) -> tuple[StepRo
         passed, outcome, at = _reached(check, seen)
         rows.append(StepRow(str(check), outcome, passed, at))
     return tuple(rows)
+
+
+OWN_TIME = 100_000_000
+"""Time in ns by which releases may lag behind where no real-time priority orders them."""
+
+
+def stops(ended: Ended) -> Iterator[str]:
+    """Why the controller ended unasked: the first of all reasons for which a run fails."""
+    yield from (f"the controller stopped itself: {reason}" for reason in ended.reasons)
+    if ended.exit_code < 0 and not ended.killed:
+        yield f"the controller was ended by {_signal(-ended.exit_code)}"
+
+
+def _signal(number: int) -> str:
+    """A signal by its name; of SIGSEGV what leads to it."""
+    name = signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"
+    if number == signal.SIGSEGV:
+        name += ": a stack overflow, or an access to memory that it does not have"
+    return name
+
+
+def unaccounted(
+    system: System, seen: Observation, compared: Sequence[Comparison], *, real_time: bool
+) -> Iterator[str]:
+    """Processors whose releases do not agree with the time that went by.
+
+    A release must have completed when its longest response was over: the deadline, what was
+    observed of others, and what the host withheld. No release begins before it is due.
+    """
+    withheld = max((seen.stolen or 0, *(row.withheld for row in compared)))
+    own = 0 if real_time else OWN_TIME
+    for processor in system.processors:
+        counts = seen.processors.get(processor.name)
+        if counts is None:
+            if seen.complete and seen.processors:
+                yield f"the trace does not say how often {processor.name} was released"
+            continue
+        if counts.now is None:
+            yield f"the trace does not say when the releases of {processor.name} were counted"
+            continue
+        limit = max(processor.deadline, counts.worst_response) + withheld + own
+        least = _due(processor, counts.now - limit)
+        most = _due(processor, counts.now) + 1
+        if processor.released_by is None and counts.releases < least:
+            yield (
+                f"{processor.name} completed {counts.releases} releases in "
+                f"{counts.now / 1e9:.3f} s, but at least {least} were due by then"
+            )
+        elif counts.releases > most:
+            yield (
+                f"{processor.name} completed {counts.releases} releases in "
+                f"{counts.now / 1e9:.3f} s, but no more than {most} were due by then"
+            )
+
+
+def _due(processor: Processor, elapsed: int) -> int:
+    """Releases that are due until then; of a sporadic processor at most."""
+    since = elapsed - processor.offset
+    return 0 if since < 0 else since // processor.period + 1
 
 
 def failures(
@@ -50,7 +111,7 @@ def failures(
     yield from (f"{c.text}: {c.outcome}" for c in checks if not c.passed)
     if ended.killed:
         yield "the controller did not end when asked to, and was killed"
-    elif ended.exit_code != 0:
+    elif ended.exit_code > 0 and not ended.reasons:
         yield f"the controller ended with exit code {ended.exit_code}"
     if seen is not None:
         if not seen.complete:

@@ -14,6 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from .. import children
+
+ERROR = "error: "
+"""How a controller begins a line about a failure of its own."""
+
 START_LIMIT = 10.0
 """How long a controller may take to open its bus, in s."""
 
@@ -43,6 +48,12 @@ class Ended:
     warnings: tuple[str, ...]
     stolen: int = 0
 
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why it stopped itself, in its own words; nothing where it was asked to."""
+        own = (line for line in self.warnings if line.startswith(ERROR))
+        return tuple(line.removeprefix(ERROR) for line in own) if self.exit_code else ()
+
 
 def stolen_time(core: int) -> int:
     """Time in ns that a hypervisor has taken of a core so far: `steal` of proc(5)."""
@@ -64,13 +75,13 @@ class ControllerProcess:
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         try:
-            self._process = subprocess.Popen(
+            self._process = children.popen(
                 [executable.absolute()],
+                core=core,
                 env={**os.environ, **told},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                preexec_fn=lambda: os.sched_setaffinity(0, {core}),
             )
         except OSError as fault:
             raise StartError(f"{executable} cannot be started: {fault.strerror}") from None

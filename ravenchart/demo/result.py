@@ -14,7 +14,7 @@ from hw_can.bench.runner import ScenarioResult
 from hw_can.bench.scenario import Scenario
 
 from .plots import Mark, Span
-from .process import Ended
+from .process import ERROR, Ended
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,9 @@ def notes(
                 f"{task.task} took {microseconds(task.observed)} us, above its bound: the host "
                 f"withheld the core for up to {microseconds(task.withheld)} us"
             )
-    yield from (f"the controller says: {line}" for line in ended.warnings)
+    reasons = {f"{ERROR}{reason}" for reason in ended.reasons}
+    said = (line for line in ended.warnings if line not in reasons)
+    yield from (f"the controller says: {line}" for line in said)
     if result is not None and result.skipped_ticks:
         yield f"the host held the bench up: {result.skipped_ticks} feedback cycles were skipped"
     if result is not None and result.unknown_frames:

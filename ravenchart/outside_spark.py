@@ -1,0 +1,91 @@
+"""What may be outside SPARK in a proof, each with the reason: a TOML file.
+
+A unit or subprogram outside SPARK is proved of nothing, yet every check that gnatprove made may
+be proved. So each of them is named here, or the proof fails::
+
+    "Demo.Sensor.Activities.Read" = "reads a register; covered by test T-12"
+
+A name covers what is declared inside it.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from .spark_results import Outside
+
+FILE = "outside_spark.toml"
+"""Its name, beside a model."""
+
+
+class WrongList(Exception):  # noqa: N818
+    """The file is no list of names with reasons; the text says where and why."""
+
+
+def reasons_for_model(folder: Path) -> dict[str, str]:
+    """Name to reason for the models in ``folder``; empty where there is no file."""
+    path = folder / FILE
+    return _reasons(path, _table(path)) if path.is_file() else {}
+
+
+def reasons_for_target(path: Path, target: str) -> dict[str, str]:
+    """Name to reason for one target of ``make prove``: a table of the file."""
+    table = _table(path).get(target, {})
+    if not isinstance(table, dict):
+        raise WrongList(f"{path}: error: expected a table [{target}]")
+    return _reasons(path, table)
+
+
+def _table(path: Path) -> dict[str, object]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
+        raise WrongList(f"{path}: error: {problem}") from None
+
+
+def _reasons(path: Path, table: Mapping[str, object]) -> dict[str, str]:
+    reasons = {}
+    for name, reason in table.items():
+        if not isinstance(reason, str) or not reason.strip():
+            raise WrongList(f'{path}: error: {name} has no reason: write "{name}" = "why"')
+        reasons[name] = reason
+    return reasons
+
+
+def _covers(name: str, found: Outside) -> bool:
+    return f"{found.name.lower()}.".startswith(f"{name.lower()}.")
+
+
+def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outside, ...]:
+    """What is outside SPARK and not in the list."""
+    return tuple(o for o in found if not any(_covers(name, o) for name in reasons))
+
+
+def idle(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[str, ...]:
+    """Names of the list that cover nothing."""
+    return tuple(name for name in reasons if not any(_covers(name, o) for o in found))
+
+
+def agree(found: Sequence[Outside], reasons: Mapping[str, str]) -> bool:
+    """Whether the list names what is outside SPARK, and nothing else."""
+    return not refused(found, reasons) and not idle(found, reasons)
+
+
+def lines(found: Sequence[Outside], reasons: Mapping[str, str]) -> list[str]:
+    """Each name of the list with its reason, then what is refused, then what covers nothing."""
+    used = [name for name in reasons if name not in idle(found, reasons)]
+    return [
+        *(f"outside SPARK: {name} ({reasons[name]})" for name in used),
+        *(
+            f"error: {o.name} ({o.location}) is outside SPARK: no check of its body is made\n"
+            f"  hint: write `with SPARK_Mode`, or name it with a reason in {FILE}"
+            for o in refused(found, reasons)
+        ),
+        *(
+            f"error: {name} stands in {FILE}, but nothing of that name is outside SPARK\n"
+            "  hint: delete the line"
+            for name in idle(found, reasons)
+        ),
+    ]

@@ -1,0 +1,126 @@
+"""What gnatprove found, read from the files that one run leaves in a result folder.
+
+Each analysed unit has a `.spark` file (JSON) with its checks and with what of it is in SPARK,
+and an `.ali` file that names its sources. gnatprove's own summary counts every file of the
+object folders that it knows, so a number from there depends on what ran before; the numbers
+here are those of the folders given.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """One subprogram, task or package, and what was proved of it."""
+
+    path: str
+    checks: int
+    provers: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Outside:
+    """A unit or subprogram that gnatprove did not analyse, or analysed without its body."""
+
+    name: str
+    location: str
+    """File and line of its declaration; the file alone of a whole unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """The outcome of one run."""
+
+    checks: int
+    justified: int
+    unproved: int
+    assumed: int
+    """Statements `pragma Assume`."""
+    outside: tuple[Outside, ...]
+    files: frozenset[str]
+    """Names of the sources that were analysed, and of all that these depend on."""
+    entities: tuple[Entity, ...]
+
+
+def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Results:
+    """The results in ``folders``; nothing of another run may lie there.
+
+    ``analysed`` are the source files that gnatprove was asked for, if not for all.
+    """
+    found = [(path.stem, json.loads(path.read_text("utf-8"))) for path in _files(folders, "spark")]
+    units = [
+        unit
+        for unit in map(_unit, _files(folders, "ali"))
+        if not analysed or unit.files & {*analysed}
+    ]
+    checks = justified = unproved = assumed = 0
+    tallies: dict[str, tuple[int, set[str]]] = {}
+    for _, unit in found:
+        assumed += len(unit.get("pragma_assume", ()))
+        for check in _checks(unit):
+            checks += 1
+            justified += "suppressed" in check
+            unproved += "suppressed" not in check and check["severity"] != "info"
+        for check in unit.get("proof", ()):
+            count, provers = tallies.get(check["entity"]["name"], (0, set()))
+            provers |= set(check.get("stats", ()))
+            tallies[check["entity"]["name"]] = (count + 1, provers)
+    entities = tuple(
+        Entity(name, count, tuple(sorted(provers)))
+        for name, (count, provers) in sorted(tallies.items())
+    )
+    seen = {name for name, unit in found if unit["spark"]}
+    outside = {
+        *(o for _, unit in found for o in _outside(unit)),
+        *(Outside(u.name, u.first) for u in units if not u.generic and u.stem not in seen),
+    }
+    files = frozenset(name for unit in units for name in unit.sources)
+    ordered = tuple(sorted(outside, key=lambda o: (o.name, o.location)))
+    return Results(checks, justified, unproved, assumed, ordered, files, entities)
+
+
+def _files(folders: Sequence[Path], ending: str) -> list[Path]:
+    return sorted(path for folder in folders for path in folder.glob(f"*.{ending}"))
+
+
+def _checks(unit: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Checks of flow analysis and of proof; warnings, such as an unused value, are none."""
+    for check in (*unit.get("flow", ()), *unit.get("proof", ())):
+        if check["severity"] != "warning":
+            yield check
+
+
+def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
+    """What is not wholly in SPARK: "spec" without its body, "no" with nothing of it."""
+    for entity in unit["spark"]:
+        if entity["spark"] != "all":
+            at = entity["sloc"][0]
+            yield Outside(entity["name"], f"{at['file']}:{at['line']}")
+
+
+@dataclass(frozen=True, slots=True)
+class _Unit:
+    """A library unit by its `.ali` file: the lines U (the unit) and D (what it depends on)."""
+
+    stem: str
+    name: str
+    first: str
+    """Its body, or its spec where it has no body."""
+    files: frozenset[str]
+    generic: bool
+    sources: tuple[str, ...]
+
+
+def _unit(path: Path) -> _Unit:
+    lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines() if line]
+    units = [words for words in lines if words[0] == "U"]
+    sources = tuple(words[1] for words in lines if words[0] == "D" and "/" not in words[1])
+    name = units[0][1].partition("%")[0]
+    files = frozenset(words[2] for words in units)
+    return _Unit(path.stem, name, units[0][2], files, "GE" in units[0], sources)

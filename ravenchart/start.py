@@ -1,0 +1,129 @@
+"""The entry point: a light module that is ready for signals before anything else is imported.
+
+It keeps the working folder off the module search path, turns a request to stop into an
+orderly end, and gives every kind of end its own exit status.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+import traceback
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+
+INTERNAL = 70
+"""An exception that nobody caught: a fault of Ravenchart (EX_SOFTWARE of sysexits.h)."""
+
+SIGNALLED = 128
+"""Ended by signal n: the exit status is 128 + n, as a shell reports it."""
+
+ROOT = Path(__file__).resolve().parent.parent
+
+STATUSES = """\
+exit status:
+  0    done; every deadline and limit is kept, the proof or the run passed
+  1    the model, its proof, its timing or its run has errors
+  2    the call is wrong, or a file, program or bus that it needs is missing
+  70   internal error: a fault of Ravenchart, shown with its traceback
+  129, 130, 143   stopped by SIGHUP, SIGINT (Ctrl-C) or SIGTERM
+  141  nobody reads the output any more, as in `| head`
+"""
+
+
+class Stopped(BaseException):
+    """A signal asks the process to end; every ``finally`` on the way out still runs."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit status. For the start of a process only."""
+    try:
+        _heed_signals()
+        forget_working_folder()
+        return _command(arguments)
+    except (Stopped, KeyboardInterrupt) as stopped:
+        number = stopped.number if isinstance(stopped, Stopped) else signal.SIGINT
+        _say("ravenchart: interrupted" if number == signal.SIGINT else "ravenchart: stopped")
+        return SIGNALLED + number
+    except Exception as fault:
+        if isinstance(fault, BrokenPipeError) and _reader_is_gone():
+            return _unread()
+        _say(traceback.format_exc())
+        _say("ravenchart: internal error (above): a fault of Ravenchart, not of the model")
+        return INTERNAL
+
+
+def forget_working_folder() -> None:
+    """Take the working folder off the module search path, unless it is the checkout.
+
+    `python -m` puts it first: a file `yaml.py` of the user would be imported for PyYAML.
+    """
+    here = Path.cwd().resolve()
+    if here != ROOT:
+        sys.path[:] = [place for place in sys.path if Path(place or ".").resolve() != here]
+
+
+def _command(arguments: Sequence[str] | None) -> int:
+    """The command itself, imported only now; its output has been written when it returns."""
+    from rich.console import Console
+
+    from .__main__ import main as command
+
+    setattr(Console, "on_broken_pipe", _again)  # noqa: B010 - rich asks for a subclass
+    try:
+        status = command(arguments)
+    except SystemExit as ended:  # argparse: --help and wrong calls
+        status = ended.code if isinstance(ended.code, int) else 2
+    sys.stdout.flush()
+    return status
+
+
+def _again(console: object) -> None:
+    """Within the handling of a broken pipe, where rich would end with status 1."""
+    raise
+
+
+def _heed_signals() -> None:
+    """SIGINT, SIGTERM and SIGHUP raise `Stopped`; one that waited since the start does now."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        ignored = signal.getsignal(number) is signal.SIG_IGN
+        if number == signal.SIGINT or not ignored:  # `nohup` ignores SIGHUP
+            signal.signal(number, _stop)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    raise Stopped(number)
+
+
+def _reader_is_gone() -> bool:
+    """Whether standard output or error is a pipe that nobody reads."""
+    polled = select.poll()
+    for number in (1, 2):
+        polled.register(number, 0)
+    return any(found & select.POLLERR for _, found in polled.poll(0))
+
+
+def _unread() -> int:
+    """End without a word: Python would complain once more when it flushes at its end."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    for number in (1, 2):
+        os.dup2(null, number)
+    return SIGNALLED + signal.SIGPIPE
+
+
+def _say(text: str) -> None:
+    with suppress(OSError):
+        print(text.rstrip(), file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
