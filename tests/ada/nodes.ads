@@ -25,7 +25,11 @@ package Nodes is
         (Bit_Rate  => 500_000,
          Data_Rate => 2_000_000,
          Takes_Fd  =>
-           not Ada.Environment_Variables.Exists ("CAN_ECHO_CLASSIC")));
+           not Ada.Environment_Variables.Exists ("CAN_ECHO_CLASSIC"),
+         Recovery  =>
+           (if Ada.Environment_Variables.Exists ("CAN_ECHO_ON_REQUEST")
+            then Ravenchart.Can.On_Request
+            else Ravenchart.Can.Automatic)));
 
    procedure Send
      (F : Ravenchart.Can.Frame; Status : out Ravenchart.Can.Send_Status);

@@ -70,7 +70,8 @@ package Workload is
    Period : constant := 10_000_000;
 
    package Cyclic is new Ravenchart.Periodic_Processors
-     (Activity_Id      => Job,
+     (Name             => "cyclic",
+      Activity_Id      => Job,
       Table_Type       => Job_Table,
       Table            => Jobs,
       Cycle            => 2,
@@ -78,12 +79,14 @@ package Workload is
       Offset           => 2_000_000,
       Deadline         => Period,
       Task_Priority    => System.Default_Priority + 4,
+      Ceiling          => System.Default_Priority + 4,
       Stack_Bytes      => 65_536,
       Execute          => Run_Cyclic,
       On_Deadline_Miss => Ignore_Miss);
 
    package Late is new Ravenchart.Periodic_Processors
-     (Activity_Id      => Job,
+     (Name             => "late",
+      Activity_Id      => Job,
       Table_Type       => Job_Table,
       Table            => Jobs,
       Cycle            => 2,
@@ -91,6 +94,7 @@ package Workload is
       Offset           => 0,
       Deadline         => Period,
       Task_Priority    => System.Default_Priority + 3,
+      Ceiling          => System.Default_Priority + 3,
       Stack_Bytes      => 65_536,
       Execute          => Run_Late,
       On_Deadline_Miss => Note_Miss,
@@ -103,10 +107,12 @@ package Workload is
       Ceiling      => System.Default_Priority + 8);
 
    package Sporadic is new Ravenchart.Sporadic_Processors
-     (Activity_Id        => Job,
+     (Name               => "sporadic",
+      Activity_Id        => Job,
       Minimum_Separation => 20_000_000,
       Deadline           => 20_000_000,
       Task_Priority      => System.Default_Priority + 5,
+      Ceiling            => System.Default_Priority + 5,
       Stack_Bytes        => 65_536,
       Wait               => Wait_Sporadic,
       Execute            => Run_Sporadic,

@@ -132,11 +132,11 @@ def _procedure(system: System, message: Message, frames: int) -> str:
    begin
       for I in 1 .. {frames} loop
          Frame := Drawn (Near, {message.length});
-         Codecs.Unpack_{codec} (Frame{part}, Item, Valid);
+         Codecs.{codec}.Unpack (Frame{part}, Item, Valid);
          if Valid then
             Expect ({in_range});
             {_mask(system, message)}
-            Again{part} := Codecs.Pack_{codec} (Item);
+            Again{part} := Codecs.{codec}.Pack (Item);
             for I in Mask'Range loop
                Mask (I) := Mask (I) and Frame (I);
             end loop;

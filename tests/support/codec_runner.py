@@ -45,12 +45,12 @@ def _cases(system: System, message: Message) -> tuple[str, str]:
     reads = "\n".join(_read(system, message, s) for s in message.signals)
     shows = "\n".join(_shown(system, s) for s in message.signals)
     pack = (
-        f"declare {start}; begin {reads} {frame} := Codecs.Pack_{codec} (Item);"
+        f"declare {start}; begin {reads} {frame} := Codecs.{codec}.Pack (Item);"
         f" Put_Bytes ({message.length}); end;"
     )
     unpack = (
         f"declare {start}; Valid : Boolean; begin Get_Bytes ({message.length});"
-        f" Codecs.Unpack_{codec} ({frame}, Item, Valid);"
+        f" Codecs.{codec}.Unpack ({frame}, Item, Valid);"
         f' Put (if Valid then "1 " else "0 "); {shows} end;'
     )
     return pack, unpack

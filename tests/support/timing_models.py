@@ -53,7 +53,7 @@ components:
       act: {period: 10 ms, wcet: 100 us, body: [{send: valve, with: i}]}
 instances: {d: {component: Dst, node: cpu}}
 messages:
-  cmd: {bus: can0, id: 0x110, to: d.i, period: 100 ms}
+  cmd: {bus: can0, id: 0x110, to: d.i, period: 100 ms, sporadic: no}
   valve: {bus: can0, id: 0x120, from: d.valve}
 chains:
   cmd: {path: [cmd, d.act, valve], age: 200 ms, reaction: 200 ms}

@@ -10,7 +10,8 @@ from gen.model import System
 from ravenchart.toolchain import ROOT
 
 MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
-BUS = "  link: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8, transmit_depth: 8}\n"
+_TEXT = MODEL.read_text(encoding="utf-8")
+BUS = _TEXT[_TEXT.index("  link:\n") : _TEXT.index("\ninstances:")]
 RECEPTION = (
     "  reception: {released_by: link, period: 1 ms, stack: 32 KiB, activities: [link.receive]}\n"
 )
@@ -41,3 +42,14 @@ def system_of(*replacements: tuple[str, str]) -> System:
 def said(found: Loaded) -> str:
     """Its diagnostics, as they are printed."""
     return "\n".join(render(one, found.sources) for one in found.diagnostics)
+
+
+AFTER = "    recovery: {after: 100 ms}\n"
+
+
+def by_chart(text: str) -> str:
+    """The text of a file of the example, so that its charts request recovery from bus-off."""
+    asked = "    recovery: {on: [servo.Rejoin, supervisor.Rejoin]}\n"
+    again = "rejoin: {from: Safe_Off_Bus, every: 200 ms, effect: [{raise: Rejoin}]}\n"
+    text = text.replace(AFTER, asked).replace("Bus_Back]\n    data", "Bus_Back, Rejoin]\n    data")
+    return text.replace("connected:", f"{again}          connected:")

@@ -20,8 +20,10 @@ MAINS = (
     "test_arbitration",
     "test_wire",
     "test_fault_confinement",
+    "test_fault_notices",
     "test_bus",
     "test_processors",
+    "test_supervision",
     "test_host",
     "test_controller",
 )
@@ -44,6 +46,19 @@ def mode(request: pytest.FixtureRequest) -> str:
 @pytest.mark.parametrize("main", MAINS)
 def test_every_fact_holds(mode: str, main: str) -> None:
     _holds(ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / main)
+
+
+def test_the_supervisor_ends_a_program_whose_main_program_does_not(mode: str) -> None:
+    program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "test_supervision"
+    done = subprocess.run([program, "wait"], capture_output=True, text=True, timeout=40)
+    assert done.returncode == 1
+    lines = done.stderr.splitlines()
+    silent = "is silent: a release has not completed by its deadline and the margin of its"
+    reasons = [line for line in lines if line.startswith("error: ")]
+    assert {line.split()[1] for line in reasons if silent in line} == {"stuck", "served"}
+    assert reasons[-1] == (
+        "error: the main program did not end the controller in time: its report is missing"
+    )
 
 
 @pytest.mark.parametrize("mode", ["checks", "release"])

@@ -199,8 +199,42 @@ def test_a_node_that_is_bus_off_recovers(echo: Path) -> None:
         now = a.wait(lambda now: now.sent + now.lost_out == 300)
         assert now.state == "ERROR_ACTIVE" and now.rejected == 0
         assert 1 <= now.lost_out < 300
+        assert now.off == now.back >= 1
         found = counted(taken(bus, now.sent))
         assert found == sorted(found) and found[-1] == 300
+
+
+HELD = ("bitrate=10000", "event=3000000000:hold_recessive", "event=4000000000:let_go")
+
+
+def test_a_node_that_recovers_on_request_is_bus_off_until_then(echo: Path) -> None:
+    with (
+        started(*HELD) as channel,
+        RavenchartBus(channel) as bus,
+        node(echo, 0, channel, CAN_ECHO_ON_REQUEST="300") as a,
+    ):
+        a.wait_for("ERROR_ACTIVE")
+        order_burst(bus, 300)
+        assert a.wait_for("BUS_OFF").off == 1
+        fell = time.monotonic()
+        a.wait(lambda now: now.back == 1)
+        # and 128 times 11 bits of 100 us behind the request
+        assert time.monotonic() - fell >= 0.3
+        now = a.wait(lambda now: now.sent + now.lost_out == 300)
+        assert now.state == "ERROR_ACTIVE" and now.off == now.back
+
+
+def test_a_node_that_nobody_asks_to_recover_stays_bus_off(echo: Path) -> None:
+    with (
+        started(*HELD) as channel,
+        RavenchartBus(channel) as bus,
+        node(echo, 0, channel, CAN_ECHO_ON_REQUEST="0") as a,
+    ):
+        a.wait_for("ERROR_ACTIVE")
+        order_burst(bus, 300)
+        a.wait_for("BUS_OFF")
+        time.sleep(3)
+        assert (a.now.state, a.now.off, a.now.back) == ("BUS_OFF", 1, 0)
 
 
 def test_a_full_queue_rejects(echo: Path) -> None:

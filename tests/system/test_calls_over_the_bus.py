@@ -86,13 +86,7 @@ def test_both_programs_are_proved_without_a_warning(name: str, tmp_path: Path) -
     checked = steps.check(copy / "model.yaml")
     steps.write_program(checked)
     for made in steps.programs_of(checked):
-        proof = proving.prove(
-            made.project,
-            made.scenario("checks", "bus"),
-            made.proof_folders("bus")[:1],
-            (made.generated,),
-            warnings="error",
-            units=made.proved_units(),
-        )
+        proof = proving.prove(made.proof("bus", warnings="error"))
         assert proof.clean, proof.summary()
-        assert proof.checks > 100
+        assert proof.results.outside == ()
+        assert proof.results.checks > 100

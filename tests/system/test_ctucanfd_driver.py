@@ -119,6 +119,23 @@ def test_state_and_counters_follow_the_registers(program: Path, card: Card) -> N
         driver.reports("ERROR_ACTIVE", 0, 0)
 
 
+@pytest.mark.parametrize(("wait_ms", "asked"), [("0", False), ("200", True)])
+def test_a_core_that_recovers_on_request_is_asked_when_that_comes(
+    wait_ms: str, program: Path, card: Card, monkeypatch: pytest.MonkeyPatch, *, asked: bool
+) -> None:
+    monkeypatch.setenv("CAN_ECHO_ON_REQUEST", wait_ms)
+    with running(program, card) as driver:
+        driver.stands(lambda now: now.state == "ERROR_ACTIVE", "ERROR_ACTIVE")
+        card[COMMAND] = 0
+        card[REC_TEC], card[FAULT_STATE] = 0x0100_0000, OFF
+        driver.reports("BUS_OFF", 256, 0)
+        assert driver.echo.came(lambda: card[COMMAND] == 1 << 4, 2.0) == asked
+        card[REC_TEC], card[FAULT_STATE] = 0, ACTIVE
+        driver.reports("ERROR_ACTIVE", 0, 0)
+        now = driver.settled()
+        assert (now.passive, now.off, now.back) == (0, 1, 1)
+
+
 def test_a_core_that_joins_the_bus_is_stopped_until_then(program: Path, card: Card) -> None:
     card[FAULT_STATE] = OFF
     with running(program, card) as driver:

@@ -51,14 +51,27 @@ def test_the_tank_builds_runs_and_keeps_its_level(
     assert "verdict: PASS" in said
 
 
-def test_a_budget_of_15_ms_is_refused_with_the_task_and_its_place(
+def test_the_one_wcet_that_the_page_raises_is_refused_with_the_task_that_it_names(
     tank: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    words = " ".join(PAGE.split())
+    told = re.search(
+        r"Raise the `wcet` of `(\w+)` to `([\d.]+ ms)`: `check` refuses the model\. "
+        r"It names the task without a response-time bound, `(\w+)`, and the tasks that preempt",
+        words,
+    )
+    assert told is not None
+    raised, wcet, task = told.groups()
     model = tank / "model.yaml"
-    model.write_text(model.read_text().replace("wcet: 200 us", "wcet: 15 ms"))
+    text, count = re.subn(
+        rf"(\n +{raised}:\n +period: \w+ ms\n +wcet: )[^\n]+", rf"\g<1>{wcet}", model.read_text()
+    )
+    assert count == 1
+    model.write_text(text)
     assert main(["check", str(model)]) == 1
     said = capsys.readouterr().err
-    assert re.search(r"model.yaml:\d+:\d+: error: (controller|simulation)", said)
+    assert re.search(rf"model.yaml:\d+:\d+: error: {task} has no response-time bound", said)
+    assert "note: it is preempted by simulation" in said
 
 
 @pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")

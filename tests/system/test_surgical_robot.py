@@ -125,16 +125,10 @@ def test_every_deployment_is_proved(change: tuple[str, str, str], variant: Varia
     steps.write_program(checked)
     (made,) = steps.programs_of(checked)
     driver = steps.default_driver(checked)
-    proof = proving.prove(
-        made.project,
-        made.scenario("checks", driver),
-        made.proof_folders(driver)[:1],
-        (checked.folder,),
-        warnings="error",
-        units=made.proved_units(),
-    )
+    proof = proving.prove(made.proof(driver, warnings="error"))
     assert proof.clean, proof.summary()
-    assert proof.checks > 100
+    assert proof.results.outside == ()
+    assert proof.results.checks > 100
 
 
 def test_the_supervisor_is_the_same_over_its_own_servo_loop_and_over_drives(

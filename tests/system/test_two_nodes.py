@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
-import shutil
+import json
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,16 +14,19 @@ from rich.console import Console
 from ravenchart import simulate, steps
 from ravenchart.run import RunRequest, controller, run_model
 from ravenchart.toolchain import ROOT
+from tests.support.two_nodes import by_chart
 
 EXAMPLE = ROOT / "examples" / "two_nodes"
 SERVO = "servo: {component: Linear_Servo, node: "
 
 
-def copied(to: Path, node: str = "drive") -> steps.Checked:
+def copied(
+    to: Path, node: str = "drive", change: Callable[[str], str] = lambda text: text
+) -> steps.Checked:
     """The example with its servo on that node, and its program written."""
     to.mkdir()
     for source in EXAMPLE.glob("*.yaml"):
-        shutil.copy(source, to)
+        (to / source.name).write_text(change(source.read_text()))
     text = (to / "model.yaml").read_text()
     assert text.count(f"{SERVO}drive") == 1
     (to / "model.yaml").write_text(text.replace(f"{SERVO}drive", SERVO + node))
@@ -36,10 +41,8 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> steps.Checked:
     return copied(tmp_path_factory.mktemp("two_nodes") / "apart")
 
 
-@pytest.mark.parametrize(("scenario", "chains"), [("scenario", True), ("cut_bus", False)])
-def test_both_nodes_do_what_the_scenario_expects(
-    checked: steps.Checked, tmp_path: Path, scenario: str, *, chains: bool
-) -> None:
+def played(checked: steps.Checked, scenario: str, to: Path) -> str:
+    """What a run of the scenario prints, which must pass; its traces are in ``to``."""
     controllers = tuple(controller(made) for made in steps.programs_of(checked))
     shown = io.StringIO()
     request = RunRequest(
@@ -48,12 +51,87 @@ def test_both_nodes_do_what_the_scenario_expects(
         checked.folder / "generated",
         checked.folder / f"{scenario}.yaml",
         0.0,
-        tmp_path,
+        to,
     )
     passed = run_model(request, Console(file=shown, width=80))
     assert passed, shown.getvalue()
-    assert ("longest reactions of chains" in shown.getvalue()) == chains
-    assert (tmp_path / "report.html").is_file()
+    assert (to / "report.html").is_file()
+    return shown.getvalue()
+
+
+@pytest.mark.parametrize(("scenario", "chains"), [("scenario", True), ("cut_bus", False)])
+def test_both_nodes_do_what_the_scenario_expects(
+    checked: steps.Checked, tmp_path: Path, scenario: str, *, chains: bool
+) -> None:
+    shown = played(checked, scenario, tmp_path)
+    assert ("longest reactions of chains" in shown) == chains
+
+
+def faults(to: Path, node: str) -> tuple[int, int]:
+    """How often the controller of a node became error-passive and bus-off, as it reports."""
+    counts = dict(re.findall(r"^H (\w+) (\d+)$", (to / f"trace-{node}.txt").read_text(), re.M))
+    found = {kind.lower(): int(count) for kind, count in counts.items()}
+    return found["can_error_passive"], found["can_bus_off"]
+
+
+def noted(checked: steps.Checked, to: Path, node: str, kind: str, element: str) -> list[int]:
+    """When the trace of a node notes something of an element, in ns."""
+    folder = checked.folder / "generated" / node
+    rows = json.loads((folder / "trace.json").read_text())["elements"]
+    numbers = {str(row["id"]) for row in rows if row["element"] == element}
+    lines = (line.split() for line in (to / f"trace-{node}.txt").read_text().splitlines())
+    return [
+        int(words[1])
+        for words in lines
+        if words[0] == "T" and words[2].lower() == kind and words[3] in numbers
+    ]
+
+
+def test_who_is_alone_is_error_passive_and_never_bus_off(
+    checked: steps.Checked, tmp_path: Path
+) -> None:
+    played(checked, "cut_bus", tmp_path)
+    # the panel starts alone too; the bench acknowledges what the drive sends
+    assert faults(tmp_path, "panel")[0] in (1, 2)
+    assert faults(tmp_path, "panel")[1] == 0
+    assert faults(tmp_path, "drive") == (0, 0)
+
+
+def test_a_bus_that_is_held_dominant_makes_both_error_passive(
+    checked: steps.Checked, tmp_path: Path
+) -> None:
+    played(checked, "held_dominant", tmp_path)
+    assert faults(tmp_path, "drive") == (1, 0)
+    assert faults(tmp_path, "panel")[0] in (1, 2)
+    assert faults(tmp_path, "panel")[1] == 0
+
+
+def test_a_bus_that_is_held_recessive_makes_both_bus_off_again_and_again(
+    checked: steps.Checked, tmp_path: Path
+) -> None:
+    played(checked, "held_recessive", tmp_path)
+    for node, component in (("panel", "supervisor"), ("drive", "servo")):
+        _, off = faults(tmp_path, node)
+        # 100 ms of delay from one to the next, and the look that finds it
+        assert 10 <= off <= 20
+        events = noted(checked, tmp_path, node, "raised", f"{component}.Bus_Failed")
+        assert len(events) >= off
+        # the event is raised by the look that finds the fault, and the chart takes it then
+        found = noted(checked, tmp_path, node, "fault", f"{node}.link")
+        assert len(found) >= off
+        assert all(any(0 <= e - f < 5_000_000 for e in events) for f in found)
+
+
+def test_charts_that_request_recovery_bring_both_nodes_back(tmp_path: Path) -> None:
+    checked = copied(tmp_path / "asked", change=by_chart)
+    out = tmp_path / "out"
+    played(checked, "held_recessive", out)
+    for node, component in (("panel", "supervisor"), ("drive", "servo")):
+        asked = noted(checked, out, node, "raised", f"{component}.Rejoin")
+        _, off = faults(out, node)
+        # once in 200 ms: so often the node tries the bus again, and no oftener
+        assert 5 <= len(asked) <= 15
+        assert off <= len(asked) + 1
 
 
 def test_one_line_moves_the_servo_and_no_component_changes(
@@ -84,3 +162,21 @@ def test_a_simulation_does_the_same_on_one_node_and_on_two(
     )
     assert apart == together == interpreted
     assert "Homeward.entry" in apart
+
+
+def test_a_simulation_raises_the_events_of_the_bus_from_its_events_file(
+    checked: steps.Checked, tmp_path: Path
+) -> None:
+    events = tmp_path / "events.yaml"
+    events.write_text(
+        "- {at: 500 ms, raise: servo.Bus_Failed}\n"
+        "- {at: 700 ms, raise: servo.Bus_Back}\n"
+        "- {until: 1 s}\n"
+    )
+    simulated, interpreted = (
+        simulate.simulated(checked, events, interpreter=alone, as_json=False)
+        for alone in (False, True)
+    )
+    assert simulated == interpreted
+    times = re.findall(r"^ *(\S+ \w+).*(Safe_Off_Bus\.(?:entry|exit))", simulated, re.M)
+    assert [behaviour for _, behaviour in times] == ["Safe_Off_Bus.entry", "Safe_Off_Bus.exit"]

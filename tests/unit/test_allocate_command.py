@@ -22,9 +22,9 @@ def analysed(path: Path) -> Analysis:
     return analyse(loaded.system)
 
 
-def pasted(text: str, folder: Path) -> Path:
-    """The robot's model with other processors."""
-    for part in ROBOT.glob("*.yaml"):
+def pasted(text: str, folder: Path, home: Path = ROBOT) -> Path:
+    """A model with other processors."""
+    for part in home.glob("*.yaml"):
         shutil.copy(part, folder)
     model = folder / "model.yaml"
     old = model.read_text(encoding="utf-8")
@@ -45,8 +45,7 @@ def test_what_is_proposed_is_what_the_model_then_has(strategy: str, tmp_path: Pa
     for name in after.tasks:
         assert after.found.from_event(name) == proposal.analysis.found.from_event(name), name
         assert after.slack(name) == proposal.analysis.slack(name)
-    #  Only the search for slack parts what a chain hands on at once.
-    assert after.schedulable == proposal.analysis.schedulable == (strategy != "slack")
+    assert after.schedulable and proposal.analysis.schedulable
 
 
 def test_few_tasks_are_fewest_and_sporadic_ones_stay() -> None:
@@ -74,3 +73,87 @@ def test_events_of_misses_and_offsets_go_with_the_rows() -> None:
     misses = {m for p in before.system.processors for m in p.on_deadline_miss}
     text = allocate.yaml(allocate.propose(before, "period"))
     assert all(f"      - {instance}.{event}" in text for instance, event in misses)
+
+
+NODES = ROBOT.parents[1] / "tests" / "nodes"
+
+
+@pytest.mark.parametrize("strategy", allocate.STRATEGIES)
+@pytest.mark.parametrize(
+    "home", [ROBOT.parent / "two_nodes", *(NODES / n for n in ("commands", "gripper", "tactile"))]
+)
+def test_what_is_printed_for_several_nodes_is_a_model(
+    home: Path, strategy: str, tmp_path: Path
+) -> None:
+    proposal = allocate.propose(analysed(home / "model.yaml"), strategy)
+    after = analysed(pasted(allocate.yaml(proposal), tmp_path, home))
+    assert after.schedulable
+    assert set(after.tasks) == set(proposal.analysis.tasks)
+    for name in after.tasks:
+        assert after.found.from_event(name) == proposal.analysis.found.from_event(name), name
+
+
+HEAD = """\
+system: Small
+types: {Word: {range: [0, 100]}}
+nodes: {cpu: {context_switch: 5 us, critical_section: 50 us}}
+instances: {k: {component: C, node: cpu}}
+shutdown: {raises: [], grace: 0 ms}
+"""
+
+SHORT = (
+    HEAD
+    + """\
+components:
+  C:
+    data: {n: {type: Word, initial: 0}, m: {type: Word, initial: 0}}
+    activities:
+      a: {period: 10 ms, wcet: 20 us, body: [{set: n, to: 1}]}
+      b: {period: 20 ms, wcet: 500 us, body: [{set: m, to: n}]}
+processors:
+  work: {node: cpu, stack: 32 KiB, activities: [k.a, k.b]}
+"""
+)
+"""A row alone is shorter than the critical section, so it cannot be a processor by itself."""
+
+SENDS = (
+    HEAD
+    + """\
+components:
+  C:
+    ports: {word: {out: Word}}
+    data: {m: {type: Word, initial: 0}}
+    activities:
+      long: {period: 20 ms, wcet: 6 ms, body: [{set: m, to: 1}]}
+      tell: {period: 20 ms, wcet: 60 us, body: [{send: word, with: 1}]}
+processors:
+  one: {node: cpu, stack: 32 KiB, activities: [k.long]}
+  two: {node: cpu, stack: 32 KiB, activities: [k.tell], priority: 2}
+buses: {can0: {bit_rate: 500 kbit/s, driver_wcet: 60 us, receive_depth: 4, transmit_depth: 4}}
+messages: {told: {bus: can0, id: 1, from: k.word, deadline: 3 ms}}
+"""
+)
+"""The message is late where its sender waits for the other row: in one table, or below it."""
+
+
+@pytest.mark.parametrize("strategy", allocate.STRATEGIES)
+@pytest.mark.parametrize("text", [SHORT, SENDS])
+def test_every_strategy_keeps_sections_and_deadlines_of_messages(
+    text: str, strategy: str, tmp_path: Path
+) -> None:
+    model = tmp_path / "model.yaml"
+    model.write_text(text)
+    assert main(["allocate", str(model), "--strategy", strategy]) == OK
+    proposal = allocate.propose(analysed(model), strategy)
+    (tmp_path / "new").mkdir()
+    after = analysed(pasted(allocate.yaml(proposal), tmp_path / "new", tmp_path))
+    assert after.schedulable
+
+
+def test_tables_that_do_not_exist_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = tmp_path / "model.yaml"
+    model.write_text(SENDS.replace("deadline: 3 ms", "deadline: 100 us"))
+    assert main(["allocate", str(model), "--strategy", "slack"]) == 1
+    assert "No tables were found that keep every deadline and limit" in capsys.readouterr().out

@@ -79,7 +79,7 @@ def test_a_trace_without_its_last_line_is_incomplete() -> None:
         ("T 1 STATE 10 99", "joint_x.Motion has no state number 99"),
         ("T 1 STATE 10 -1", "joint_x.Motion has no state number -1"),
         ("T 1 TRANSITION 10 1", "joint_x.Motion has no transition number 1"),
-        ("T 1 STATE 11 0", "element 11, joint_x.feedback, is a port, not a region"),
+        ("T 1 STATE 11 0", "element 11, joint_x.feedback, is a port, not a region or a bus"),
         ("T 1 SENT 77 0", "the map has no element 77"),
         ("T 1 DREAMT 10 0", "unknown kind 'DREAMT'"),
         ("P 10 1 2 3", "element 10, joint_x.Motion, is a region, not a processor"),

@@ -215,7 +215,7 @@ def test_one_call_runs_prints_and_reports(tmp_path: Path) -> None:
     assert (files.out / "positions.png").read_bytes().startswith(b"\x89PNG")
     files.scenario.write_text("{")
     assert not run_model(request(files, files.scenario), console)
-    assert "scenario.yaml:1: error: " in shown.getvalue()
+    assert "scenario.yaml:1:2: error: " in shown.getvalue()
 
 
 def test_a_controller_can_run_without_a_scenario(tmp_path: Path) -> None:

@@ -9,6 +9,8 @@ import pytest
 from hw_can.bench.scenario import (
     STEPS,
     Expect,
+    Hold,
+    LetGo,
     ScenarioError,
     Send,
     WaitFor,
@@ -71,62 +73,103 @@ def test_every_step_reads_as_a_sentence() -> None:
 FIRST_STEP = len(scenario_text("").splitlines()) + 1
 
 
-@pytest.mark.parametrize(
-    ("step", "message"),
-    [
-        ("{wait: 5}", "steps.0.wait: expected a number and one of us, ms, s, such as 5 ms"),
-        ("{wait: 5 mm}", "steps.0.wait: expected a number and one of us, ms, s, such as 5 ms"),
-        (
-            "{wait: -5 ms}",
-            "steps.0.wait: Input should be greater than or equal to 0",
-        ),
-        ("{pull: x, switch: left}", "steps.0.switch: Input should be 'low' or 'high'"),
-        ("{pull: q, switch: low}", "steps.0: there is no drive q"),
-        ("{expect: {q: 1 mm}, tolerance: 1 mm}", "steps.0: there is no drive q"),
-        ("{stop_feedback: q}", "steps.0: there is no drive q"),
-        ("{kill_bench: false}", "steps.0.kill_bench: Input should be True"),
-        ("{wait: 1 s, hurry: 1}", "steps.0.hurry: Extra inputs are not permitted"),
-        ("{send: m}", "steps.0.with: Field required"),
-        (
-            "{dance: 1}",
-            "steps.0: exactly one of send, wait_for, expect, expect_stop, wait, pull, release, "
-            "stop_feedback, kill_bench is wanted",
-        ),
-    ],
+STEP_KINDS = (
+    "`send`, `wait_for`, `expect`, `expect_stop`, `wait`, `pull`, `release`, `stop_feedback`, "
+    "`kill_bench`"
 )
-def test_a_wrong_step_is_named_with_its_line(step: str, message: str) -> None:
+NO_DRIVE = "there is no drive `q` [RV-1304]"
+
+
+@pytest.mark.parametrize(
+    ("step", "caret", "message"),
+    [
+        (
+            "{wait: 5}", "5}",
+            "`wait` must be a number and one of us, ms, s, such as `5 ms`, not `5` [RV-1303]",
+        ),
+        (
+            "{wait: 5 mm}", "5 mm",
+            "`wait` must be a number and one of us, ms, s, such as `5 ms`, not `5 mm` [RV-1303]",
+        ),
+        ("{wait: -5 ms}", "-5", "`wait` must be at least 0, not `-5 ms` [RV-1303]"),
+        (
+            "{pull: x, switch: left}", "left",
+            "`switch` must be `low` or `high`, not `left` [RV-1303]",
+        ),
+        ("{pull: q, switch: low}", "q,", NO_DRIVE),
+        ("{expect: {q: 1 mm}, tolerance: 1 mm}", "q:", NO_DRIVE),
+        ("{stop_feedback: q}", "q}", NO_DRIVE),
+        ("{kill_bench: false}", "false", "`kill_bench` must be `true`, not `false` [RV-1303]"),
+        ("{wait: 1 s, hurry: 1}", "hurry", "`hurry` has no place here [RV-1302]"),
+        ("{send: m}", "{send", "the key `with` is missing [RV-1302]"),
+        ("{send: m, with: 5}", "5", "`with` must be a mapping, `{key: value}`, not `5` [RV-1303]"),
+        (
+            "{wait_for: m, is: 5, within: 1 s}", "m,",
+            "`wait_for` must be `owner.name`, not `m` [RV-1303]",
+        ),
+        ("dance", "dance", "this must be a mapping, `{key: value}` [RV-1303]"),
+        (
+            "{dance: 1}", "{dance",
+            f"must have exactly one of {STEP_KINDS}; found none of them [RV-1302]",
+        ),
+        ("{wait: 1 s, release: x}", "{wait",
+         f"must have exactly one of {STEP_KINDS}; found `wait` and `release` [RV-1302]"),
+    ],
+)  # fmt: skip
+def test_a_wrong_step_is_named_with_its_place(step: str, caret: str, message: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         parse_scenario(scenario_text(f"  - {step}\n"))
-    assert str(caught.value) == f"scenario.yaml:{FIRST_STEP}: error: {message}"
+    head, line, pointer = str(caught.value).splitlines()[:3]
+    shown = line.partition("| ")[2]
+    column = shown.index(caret) + 1
+    assert head == f"scenario.yaml:{FIRST_STEP}:{column}: error: {message}"
+    assert pointer.partition("| ")[2] == " " * (column - 1) + "^"
+
+
+def test_hints_list_what_there_is() -> None:
+    hints = {
+        "{pull: q, switch: low}": "the drives are x",
+        "{wait: 1 s, hurry: 1}": "the keys here are `wait`",
+        "{send: m}": "the keys are `send`, `with`",
+    }
+    for step, hint in hints.items():
+        with pytest.raises(ScenarioError) as caught:
+            parse_scenario(scenario_text(f"  - {step}\n"))
+        assert str(caught.value).splitlines()[-1].endswith(f"hint: {hint}")
 
 
 def test_all_mistakes_are_told_at_once_in_the_files_order() -> None:
     with pytest.raises(ScenarioError) as caught:
         parse_scenario(scenario_text("  - {wait: 1}\n  - {jump: 1}\n  - {wait: 2}\n"))
-    lines = str(caught.value).splitlines()
+    lines = [line for line in str(caught.value).splitlines() if ": error: " in line]
     places = [line.split(":")[1] for line in lines]
     assert places == [str(FIRST_STEP + n) for n in range(3)]
 
 
 def test_an_axis_that_cannot_be_is_refused_at_its_drive() -> None:
     text = scenario_text(ONE_STEP).replace("start: 10 mm", "start: 10 m")
-    with pytest.raises(ScenarioError, match=r"^scenario.yaml:3: error: drives.x: start lies"):
+    with pytest.raises(
+        ScenarioError, match=r"^scenario.yaml:3:3: error: the drive x cannot be: start lies"
+    ):
         parse_scenario(text)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a: [", r"scenario.yaml:\d+: error: "),
-        ("[1]", "scenario.yaml:1: error: a scenario is a mapping"),
-        ("", "scenario.yaml:1: error: a scenario is a mapping"),
-        ("scenario: x\ndrives: 1\nsteps: [{wait: 1 s}]\n", ":2: error: drives: "),
+        ("a: [", r"scenario.yaml:\d+:\d+: error: .*RV-0106"),
+        ("[1]", "scenario.yaml:1:1: error: a scenario is a mapping"),
+        ("", "scenario.yaml:1:1: error: a scenario is a mapping"),
+        ("scenario: x\ndrives: 1\nsteps: [{wait: 1 s}]\n", ":2:9: error: `drives` must be a map"),
         (
             "scenario: x\nbus: [{at: 2 s, cut: b}, {at: 2 s, mend: true}]\nsteps: [{wait: 1 s}]\n",
-            ":2: error: bus.1: comes no later than the event before it",
+            ":2:31: error: 2 s is not after 2 s of the event above",
         ),
-        ("scenario: x\nbus: [{at: 2 s}]\nsteps: [{wait: 1 s}]\n", ":2: error: bus.0"),
-        (scenario_text(" []\n"), "steps: List should have at least 1 item"),
+        (
+            "scenario: x\nbus: [{at: 2 s}]\nsteps: [{wait: 1 s}]\n",
+            ":2:7: error: must have exactly one",
+        ),
+        (scenario_text(" []\n"), "`steps` must be at least one item"),
     ],
 )
 def test_a_file_that_is_no_scenario_is_refused(text: str, message: str) -> None:
@@ -136,10 +179,23 @@ def test_a_file_that_is_no_scenario_is_refused(text: str, message: str) -> None:
 
 def test_a_time_limit_of_the_trace_needs_what_it_counts_from() -> None:
     checks = "expect_trace:\n  - {region: a.B, reaches: C, within: 1 s}\n"
-    with pytest.raises(ScenarioError, match="within and after_last or after_silence go together"):
+    with pytest.raises(
+        ScenarioError, match="`within` needs one of `after_last` and `after_silence`"
+    ):
         parse_scenario(scenario_text(ONE_STEP, checks))
 
 
 def test_a_missing_file_is_an_error_in_words(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioError, match="cannot be read"):
+    with pytest.raises(ScenarioError, match=r"none.yaml:1:1: error: cannot read .*: no such file"):
         load_scenario(tmp_path / "none.yaml")
+
+
+def test_a_bus_can_be_held_at_either_level_and_let_go() -> None:
+    bus = "bus: [{at: 1 s, hold: LEVEL}, {at: 2 s, let_go: true}]\n"
+    text = f"scenario: x\n{bus}steps: [{{wait: 1 s}}]\n"
+    for level in ("dominant", "recessive"):
+        held, let_go = parse_scenario(text.replace("LEVEL", level)).bus_events
+        assert isinstance(held, Hold) and (held.at, held.hold) == (1.0, level)
+        assert isinstance(let_go, LetGo)
+    with pytest.raises(ScenarioError, match="dominant"):
+        parse_scenario(text.replace("LEVEL", "high"))

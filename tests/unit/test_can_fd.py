@@ -71,7 +71,7 @@ def test_a_frame_is_sent_at_the_data_rate_where_there_is_one(
 ) -> None:
     body = files_of(text, tmp_path)["pump_house-can_bus.adb"]
     assert f"Rate => Ravenchart.Can.Fd_Frames.{rate}_Rate" in body
-    assert "Words => Codecs.Pack_Report (Item)" in body
+    assert "Words => Codecs.Type_Report.Pack (Item)" in body
 
 
 def test_the_report_and_the_picture_say_what_is_can_fd_and_how_fast() -> None:
@@ -102,7 +102,8 @@ def test_the_controller_takes_fd_where_such_frames_are_on_its_bus(
     text: str, setting: str, tmp_path: Path
 ) -> None:
     spec = files_of(text, tmp_path)["pump_house-can_bus.ads"]
-    assert f"Setting => {setting}" in " ".join(spec.split())
+    automatic = setting.replace(")", ", Recovery => Ravenchart.Can.Automatic)")
+    assert f"Setting => {automatic}" in " ".join(spec.split())
 
 
 @pytest.mark.parametrize("rate", ["5 kbit/s", "20 Mbit/s", "fast"])

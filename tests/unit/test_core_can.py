@@ -10,10 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analysis.core import holistic
 from analysis.core.bus import Bus, Errors, Frame
 from analysis.core.can import analyse, load, response_under
 from analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits, rank
+from analysis.core.holistic import Network
 from analysis.core.responses import Reason
+from analysis.core.tasks import Task
 
 BUS = Bus(bit_time=1)
 
@@ -179,3 +182,34 @@ def test_one_response_alone_is_the_same(frames: list[Frame]) -> None:
     for n, response in enumerate(analyse(frames, BUS)):
         alone = response_under(frames[n], frames[:n], frames[n + 1 :], BUS)
         assert (alone.bound, alone.instances) == (response.bound, response.instances)
+
+
+# --- What is said of full buses, and what a frame's receivers may count on ---------------
+
+
+@pytest.mark.parametrize("reloaded", [False, True])
+def test_an_overloaded_bus_is_the_reason_why_a_queue_has_no_bound(reloaded: bool) -> None:
+    queued = [
+        Frame(name, rank, 100, 100, 60, queue="node", reloaded=reloaded)
+        for rank, name in enumerate(("a", "b"))
+    ]
+    for found in analyse([*queued, Frame("c", 9, 100, 100, 1)], Bus(1)):
+        assert found.bound is None
+        assert found.reason in (Reason.OVERLOAD, Reason.RIVAL)
+        if found.frame.queue:
+            assert found.reason is Reason.OVERLOAD
+            assert found.level.load == Fraction(121, 100)
+
+
+def test_a_receiver_may_have_a_frame_three_bits_before_the_bus_is_free() -> None:
+    """A frame of one length still makes what it releases up to three bits early."""
+    for best, late in ((50, 6), (40, 16), (3, 50), (0, 50)):
+        network = Network(
+            tasks=(Task("act", 1, 100, 100, 5, core="a"), Task("low", 0, 100, 100, 1, core="a")),
+            frames={"bus": (Frame("m", 1, 100, 100, 50, best=best),)},
+            buses={"bus": Bus(2)},
+            released_by={"act": "m"},
+        )
+        found = holistic.analyse(network)
+        assert found.inherited["act"] == late
+        assert found.from_event("act") == 55

@@ -151,7 +151,10 @@ def test_objects_of_the_robot_have_the_users_that_the_model_implies() -> None:
     assert found["joint_x.Motion"] == {"supervision", "control"}
     assert found["joint_x.Motion.queue"] == {"supervision", "control"}
     assert "joint_x.Monitoring.queue" not in found
-    assert found["coordinator.Mission.queue"] == {"supervision", "main"}
+    supervisor = "controller.supervisor"
+    assert found["coordinator.Mission.queue"] == {"supervision", "main", supervisor}
+    assert found["control.monitor"] == {"control", supervisor}
+    assert found["controller.supervisor.board"] == {supervisor, "main"}
 
 
 def test_trace_is_there_only_when_it_has_room() -> None:

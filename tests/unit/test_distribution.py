@@ -84,7 +84,8 @@ def test_a_message_reaches_every_node_that_listens() -> None:
         ("  servo: {comp", "  listener: {component: Ear, node: log}\n  servo: {comp"),
         (
             "processors:",
-            "processors:\n  logging: {stack: 8 KiB, activities: [listener.ports, listener.listen]}",
+            "processors:\n  logging: {stack: 8 KiB, "
+            "activities: [link.watch, listener.ports, listener.listen]}",
         ),
         (
             "  - {from: servo.report",

@@ -106,7 +106,7 @@ def tree(expression: Expression) -> object:
         ("-length + 1", ("+", ("neg", "length"), 1)),
         ("- 5", -5),
         ("-(length)", ("neg", "length")),
-        ("0x10 + 1_000", ("+", 16, 1000)),
+        ("0x10 + 1_000", 1016),
         ("done or done and not done", ("or", "done", ("and", "done", ("not", "done")))),
         ("(done or done) and done", ("and", ("or", "done", "done"), "done")),
         ("not length < 3", ("not", ("<", "length", 3))),

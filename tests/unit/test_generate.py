@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+import shutil
 from pathlib import Path
 
 import pytest
 
 from gen.generate import generate
 from ravenchart import house, steps
+from ravenchart.__main__ import OK, main
 from ravenchart.toolchain import ROOT
 
 EXAMPLES = house.EXAMPLES
@@ -24,6 +27,11 @@ def test_generated_files_are_those_in_the_repository(name: str) -> None:
     files = [p for p in folder.rglob("*") if p.is_file() and p.name != steps.MANIFEST]
     there = {p.relative_to(folder).as_posix(): p.read_text() for p in files}
     assert _files(name) == there
+    listed = (folder / steps.MANIFEST).read_text().splitlines()
+    assert listed == [
+        f"{hashlib.sha256(text.encode()).hexdigest()}  {name}"
+        for name, text in sorted(there.items())
+    ]
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -35,8 +43,6 @@ def test_lines_fit_79_columns_and_name_no_path_or_date(name: str) -> None:
 
 
 def test_regenerating_replaces_nothing_and_leaves_user_code_alone(tmp_path: Path) -> None:
-    import shutil
-
     folder = tmp_path / "robot"
     shutil.copytree(ROOT / "examples" / "cartesian_robot", folder)
     own = folder / "user" / "notes.txt"
@@ -51,8 +57,6 @@ def test_regenerating_replaces_nothing_and_leaves_user_code_alone(tmp_path: Path
 
 
 def test_a_file_that_is_no_longer_generated_goes_and_a_strange_one_stays(tmp_path: Path) -> None:
-    import shutil
-
     folder = tmp_path / "three"
     shutil.copytree(ROOT / "examples" / "three_components", folder)
     checked = steps.check(folder / "model.yaml")
@@ -65,3 +69,35 @@ def test_a_file_that_is_no_longer_generated_goes_and_a_strange_one_stays(tmp_pat
     steps.write_program(checked)
     assert not (generated / "old_unit.ads").exists()
     assert (generated / "keep.txt").read_text() == "keep"
+
+
+def test_an_edit_of_a_generated_file_is_named_and_kept(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "three"
+    shutil.copytree(ROOT / "examples" / "three_components", folder)
+    model = str(folder / "model.yaml")
+    assert main(["generate", model]) == OK
+    spec = folder / "generated" / "three_components.ads"
+    made = spec.read_text()
+    spec.write_text(f"{made}--  by hand\n")
+    capsys.readouterr()
+    assert main(["generate", model]) == OK
+    assert capsys.readouterr().err == (
+        f"warning: {spec} was edited by hand and is generated again; "
+        "your version is kept as three_components.ads.edited\n"
+    )
+    assert spec.read_text() == made
+    assert spec.with_name("three_components.ads.edited").read_text() == f"{made}--  by hand\n"
+    assert main(["generate", model]) == OK
+    assert "edited" not in capsys.readouterr().err
+
+
+def test_a_generation_that_was_cut_short_leaves_no_edits(tmp_path: Path) -> None:
+    folder = tmp_path / "three"
+    shutil.copytree(ROOT / "examples" / "three_components", folder)
+    checked = steps.check(folder / "model.yaml")
+    steps.write_program(checked)
+    manifest = folder / "generated" / steps.MANIFEST
+    manifest.write_text(manifest.read_text().replace(manifest.read_text()[:64], "0" * 64))
+    assert steps.write_program(checked).edited == ()

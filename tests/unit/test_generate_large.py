@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from cProfile import Profile
 from multiprocessing.context import BaseContext
@@ -49,9 +50,9 @@ def test_many_processes_make_the_same_as_one(monkeypatch: pytest.MonkeyPatch) ->
     alone = generate(system, Claims())
     started: list[int] = []
 
-    def counted(mp_context: BaseContext) -> ProcessPoolExecutor:
+    def counted(mp_context: BaseContext, initializer: Callable[[], None]) -> ProcessPoolExecutor:
         started.append(1)
-        return ProcessPoolExecutor(mp_context=mp_context)
+        return ProcessPoolExecutor(mp_context=mp_context, initializer=initializer)
 
     monkeypatch.setattr("gen.generate.MANY", 8)
     monkeypatch.setattr("gen.parallel.ProcessPoolExecutor", counted)

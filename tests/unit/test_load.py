@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from gen.diagnostics import render
 from gen.load import LARGEST, load
 from gen.terms import Origin
-from gen.tree import scalar
+from gen.tree import grow, scalar
 from tests.support.pump import PUMP, changed, codes, loaded, system_of
 
 ROOT = Path(__file__).parent.parent.parent
@@ -216,3 +217,13 @@ def test_rendering_prints_no_control_characters() -> None:
     result = loaded(b"system: \x1b[31m\n")
     shown = "\n".join(render(item, result.sources) for item in result.diagnostics)
     assert "\x1b" not in shown
+
+
+@pytest.mark.parametrize("opened", ["[", "{a: ", "[{a: "])
+def test_deep_nesting_is_refused_before_the_rest_is_read(opened: str) -> None:
+    text = "system: " + opened * (LARGEST // len(opened) - 8)
+    begun = time.process_time()
+    tree, found = grow(text, "model.yaml")
+    assert time.process_time() - begun < 8  # quadratic time would be hours
+    assert tree is None
+    assert [one.code for one in found] == ["RV-0107"]

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
+import random
 import time
+from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +17,7 @@ from analysis.core import holistic
 from analysis.plain.build import PlainSystem, load
 from analysis.plain.columns import KINDS, LARGEST
 from analysis.plain.results import analyse, everything
+from analysis.units import ratio
 from ravenchart.__main__ import main
 from tests.support.core_cases import two_nodes
 
@@ -402,6 +407,40 @@ def test_observed_times_are_held_against_budgets(
     times.write_text(seen, encoding="utf-8")
     assert main(["analyse", str(model), "--observed", str(times)]) == status
     assert told in "".join(capsys.readouterr())
+
+
+def log_uniform(chance: random.Random) -> list[int]:
+    """5,000 periods from 1 ms to 1000 s."""
+    return [int(math.exp(chance.uniform(math.log(10**6), math.log(10**12)))) for _ in range(5_000)]
+
+
+def huge_and_coprime(chance: random.Random) -> list[int]:
+    """500 periods near 10^15 ns, of which few share large factors."""
+    return [10**15 + 2 * number + 1 for number in chance.sample(range(10**6), 500)]
+
+
+@pytest.mark.parametrize("periods", [log_uniform, huge_and_coprime])
+def test_a_load_of_any_number_of_digits_is_printed_and_no_smaller_than_it_is(
+    periods: Callable[[random.Random], list[int]],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    lines = ["task,priority,period_ns,cost_ns,deadline_ns"]
+    given = [(period, period // 20_000) for period in periods(random.Random(5))]
+    lines += [f"t{n},{len(given) - n},{p},{c},{p}" for n, (p, c) in enumerate(given)]
+    (tmp_path / "set.csv").write_text("\n".join(lines) + "\n")
+    main(["analyse", str(tmp_path / "set.csv"), "--json"])
+    (text,) = json.loads(capsys.readouterr().out)["load"].values()
+    top, bottom = map(int, text.split("/"))
+    exact = sum(Fraction(cost, period) for period, cost in given)
+    assert exact.denominator > 10**4300
+    assert exact <= Fraction(top, bottom) < exact + Fraction(1, 10**18)
+
+
+def test_a_load_of_few_digits_is_exact() -> None:
+    assert ratio(Fraction(1, 3)) == "1/3"
+    assert ratio(Fraction(2, 10**18 - 1)) == f"2/{10**18 - 1}"
+    assert ratio(Fraction(1, 3 * 10**18)) == f"1/{10**18}"
 
 
 def test_every_column_is_described() -> None:

@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from gen.diagnostics import CODES
+from gen.load import load
 from gen.reference import TITLES, pages, schema
 
 ROOT = Path(__file__).parent.parent.parent
@@ -29,7 +30,7 @@ def test_every_key_has_a_description() -> None:
 
 
 def test_every_code_is_used() -> None:
-    rooms = [ROOT / name for name in ("gen", "analysis", "behaviour", "ravenchart")]
+    rooms = [ROOT / name for name in ("gen", "analysis", "behaviour", "hw_can", "ravenchart")]
     source = "".join(path.read_text() for room in rooms for path in room.rglob("*.py"))
     assert [code for code in CODES if source.count(code) < 2] == []
 
@@ -38,3 +39,27 @@ def test_schema_accepts_the_keys_of_the_examples() -> None:
     known = set(schema()["properties"])
     for path in (ROOT / "examples").glob("*/model.yaml"):
         assert set(yaml.safe_load(path.read_text())) <= known
+
+
+def test_the_reference_says_of_nodes_and_connections_what_the_loader_takes() -> None:
+    """Two nodes, and connections between them, are a model; a second bus is none."""
+    keys = schema()["properties"]
+    loaded = load(ROOT / "examples" / "two_nodes" / "model.yaml")
+    assert loaded.system is not None and len(loaded.system.nodes) == 2
+    assert "one or several" in keys["nodes"]["description"]
+    assert "between two" in keys["connections"]["description"]
+    assert keys["buses"]["description"] == "The CAN bus: at most one."
+    for page in pages().values():
+        assert "in this version" not in page
+
+
+def test_the_page_of_drivers_says_what_the_loopback_driver_does() -> None:
+    source = (ROOT / "hw_can" / "loopback" / "ravenchart-can-controllers.adb").read_text()
+    assert "which receives what it sends" in " ".join(source.split()).replace(" -- ", " ")
+    assert "Accepts (Any_Frames.Id (F)" in source
+    (line,) = [
+        line
+        for line in (ROOT / "docs" / "drivers.md").read_text().splitlines()
+        if line.startswith("| `loopback` |")
+    ]
+    assert "it receives what it sends, as far as its acceptance filter takes that" in line

@@ -1,0 +1,385 @@
+"""Tasks that die or no longer end a release: seen, reported with the reason, and answered."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from analysis.observed import Observation
+from ravenchart import run, steps
+from ravenchart.__main__ import main
+from ravenchart.demo.result import RunResult
+from ravenchart.toolchain import ROOT
+
+SECONDS = 2.0
+
+BODY = """\
+with Ada.Environment_Variables;
+with Ada.Real_Time;
+
+package body Three_Components.Station.Activities
+with SPARK_Mode => Off
+is
+   use type Ravenchart.Number;
+
+   Fault : constant Character :=
+     Ada.Environment_Variables.Value ("RAVENCHART_TEST_FAULT", "none") (1);
+
+   Turns : Natural := 0
+   with Volatile;
+
+   function Deeper (Turn : Natural) return Natural;
+
+   function Deeper (Turn : Natural) return Natural is
+      Place : array (1 .. 1_000) of Natural := (others => Turn)
+      with Volatile;
+   begin
+      Place (2) := Turn;
+      return (if Turn = 0 then 0 else Deeper (Place (1) + 1) + Place (2));
+   end Deeper;
+
+   procedure Work
+     (Token_In     : Station.Token_In_View;
+      Held         : out Three_Components.Token;
+      Raise_Worked : out Boolean) is
+   begin
+      Turns := Turns + 1;
+      if Turns = 10 and then Fault = 'a' then
+         pragma Assert (Turns = 11);
+      elsif Turns = 10 and then Fault = 'r' then
+         raise Program_Error with "by hand";
+      elsif Turns = 10 and then Fault = 'o' then
+         Turns := Deeper (1);
+      elsif Turns = 10 and then Fault = 's' then
+         delay until Ada.Real_Time.Time_Last;
+      elsif Turns = 10 and then Fault = 'l' then
+         while Turns = 10 loop
+            null;
+         end loop;
+      end if;
+      Held := Token'Min (Token_In.Value, 999) + 1;
+      Raise_Worked := True;
+   end Work;
+end Three_Components.Station.Activities;
+"""
+
+WATCHED = re.compile(r" +(supervision|on_silence): .*\n")
+
+OWN = re.compile(r"(        body:\n          - set: held.*?          - raise: Worked\n)", re.S)
+
+
+@dataclass(frozen=True)
+class Faulty:
+    """The three components with a fault in a user's body: how a run of them ended."""
+
+    result: RunResult
+    fed: int
+
+    @property
+    def seen(self) -> Observation:
+        """Its trace."""
+        assert self.result.observation is not None
+        return self.result.observation
+
+
+Built = tuple[steps.Checked, steps.Program, Path]
+"""A model, its program and the executable."""
+
+Breaking = Callable[..., Faulty]
+
+
+def _model(folder: Path) -> Path:
+    """The example, with the work of a station in Ada; no stale files of it."""
+    model = folder / "model.yaml"
+    text, changed = OWN.subn("        body: user\n", model.read_text())
+    assert changed == 1
+    model.write_text(text)
+    (folder / "user").mkdir()
+    body = folder / "user" / "three_components-station-activities.adb"
+    body.write_text(BODY)
+    return model
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, bool], Built]:
+    """A function that builds the example with the faulty body once for each mode."""
+    made: dict[tuple[str, bool], Built] = {}
+
+    def build(mode: str, supervised: bool) -> Built:
+        if (mode, supervised) not in made:
+            folder = tmp_path_factory.mktemp("faulty") / "three_components"
+            shutil.copytree(ROOT / "examples" / "three_components", folder)
+            model = _model(folder)
+            if not supervised:
+                text, changed = WATCHED.subn("", model.read_text())
+                assert changed == 3
+                model.write_text(text)
+            checked = steps.check(model)
+            steps.write_program(checked)
+            program = steps.programs_of(checked)[0]
+            made[mode, supervised] = checked, program, program.build(mode)
+        return made[mode, supervised]
+
+    return build
+
+
+@pytest.fixture
+def breaking(
+    built: Callable[[str, bool], Built], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Breaking:
+    """A function that runs the example with a fault in it."""
+
+    def broken(fault: str, mode: str, *, supervised: bool = True) -> Faulty:
+        checked, program, executable = built(mode, supervised)
+        watchdog = tmp_path / "watchdog"
+        watchdog.write_bytes(b"")
+        monkeypatch.setenv("RAVENCHART_WATCHDOG", str(watchdog))
+        monkeypatch.setenv("RAVENCHART_TEST_FAULT", fault)
+        result = run.run_alone(
+            executable,
+            program.generated / "trace.json",
+            SECONDS,
+            tmp_path / "report",
+            analysis=checked.analysis,
+        )
+        return Faulty(result, watchdog.stat().st_size)
+
+    return broken
+
+
+DEATHS = (
+    ("assert", "checks", "ASSERTION_ERROR"),
+    ("raise", "release", "PROGRAM_ERROR: by hand"),
+)
+
+
+@pytest.mark.parametrize(("fault", "mode", "reason"), DEATHS)
+def test_a_task_that_dies_ends_the_controller_with_its_name_and_its_reason(
+    breaking: Breaking, fault: str, mode: str, reason: str
+) -> None:
+    found = breaking(fault, mode)
+    assert found.result.ended.exit_code == 1
+    first = found.result.failures[0]
+    assert first.startswith("the controller stopped itself: processor_3 has ended by ")
+    assert reason in first
+    assert found.result.verdict.endswith(first)
+    assert found.seen.complete  # the report is written on this way too
+    assert found.seen.end < SECONDS * 1e9 / 2
+
+
+@pytest.mark.parametrize("mode", ["checks", "release"])
+def test_an_endless_loop_is_found_once_and_answered_by_the_chart(
+    breaking: Breaking, mode: str
+) -> None:
+    found = breaking("loop", mode)
+    seen = found.seen
+    assert found.result.ended.exit_code == 1
+    assert "processor_3 is silent" in found.result.failures[0]
+    assert seen.faults["Silence"] == 1
+    faults = seen.of("fault", "processor_3")
+    assert len(faults) == 1
+    #  processor_1 is more urgent than the loop, and its chart has reacted
+    assert "Alone" in seen.states_visited()["one.Watching"]
+    alone = next(v.start for v in seen.visits("one.Watching") if v.state == "Alone")
+    assert alone >= faults[0].time
+    #  found within deadline, margin, a period of the supervision, and what a busy host takes
+    counts = seen.processors["processor_3"]
+    due = counts.releases * 10_000_000
+    assert due + 260_000_000 <= faults[0].time <= due + 260_000_000 + 10_000_000 + 500_000_000
+    #  from then on nothing feeds the watchdog
+    assert seen.feeds == found.fed
+    assert 0 < found.fed <= faults[0].time // 10_000_000
+
+
+def test_a_run_without_supervision_sees_that_releases_are_missing(breaking: Breaking) -> None:
+    found = breaking("sleep", "checks", supervised=False)
+    assert found.result.ended.exit_code == 0
+    #  on a busy host others may have missed a deadline, but not a release
+    (missing,) = (failure for failure in found.result.failures if "releases in" in failure)
+    assert re.fullmatch(
+        r"processor_3 completed \d+ releases in [\d.]+ s, but at least \d+ were due by then",
+        missing,
+    )
+
+
+def test_the_command_fails_and_its_last_lines_have_the_reason(
+    built: Callable[[str, bool], Built],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    model = built("checks", True)[0].path
+    monkeypatch.setenv("RAVENCHART_TEST_FAULT", "assert")
+    assert main(["run", str(model), "--seconds", "2", "--report", str(tmp_path / "report")]) == 1
+    last = capsys.readouterr().out.rstrip().splitlines()[-2:]
+    assert any("verdict: FAIL" in line and "ASSERTION_ERROR" in line for line in last)
+
+
+def test_a_stack_overflow_ends_the_controller_and_the_verdict_says_so(breaking: Breaking) -> None:
+    found = breaking("overflow", "release")
+    assert found.result.ended.exit_code < 0
+    assert "SIGSEGV" in found.result.failures[0]
+
+
+def _by_priority(process: int) -> list[int]:
+    """The threads of a process with a real-time priority, the most urgent first."""
+    threads = [int(one.name) for one in Path(f"/proc/{process}/task").iterdir()]
+    urgency = {one: os.sched_getparam(one).sched_priority for one in threads}
+    return sorted((one for one in threads if urgency[one]), key=lambda one: -urgency[one])
+
+
+TASKS = (
+    (0, "controller.probe"),
+    (1, "controller.supervisor"),
+    (2, "a task without a name (a driver's or a user's)"),
+    (4, "reception"),
+)
+"""Tasks of the Cartesian robot by urgency: behind the supervisor the two of the bus's driver."""
+
+
+@dataclass(frozen=True)
+class Hit:
+    """How the Cartesian robot ended after a signal of the processor in one of its threads."""
+
+    status: int
+    reasons: tuple[str, ...]
+    trace: str
+
+
+def _hit(mode: str, place: int, folder: Path) -> Hit:
+    """An exception in the thread with that place by urgency, as a division by zero gives it."""
+    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    steps.write_program(checked)
+    program = steps.programs_of(checked)[0].build(mode)
+    trace = folder / "trace"
+    told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace)}
+    process = subprocess.Popen(
+        [program], env=os.environ | told, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        time.sleep(0.8)
+        threads = _by_priority(process.pid)
+        if not threads:
+            pytest.skip("needs real-time priorities, which tell the tasks apart")
+        hit = ctypes.CDLL(None, use_errno=True).tgkill
+        assert hit(process.pid, threads[place], int(signal.SIGFPE)) == 0
+        _, said = process.communicate(timeout=5)
+    finally:
+        process.kill()
+        process.wait()
+    reasons = tuple(line for line in said.splitlines() if line.startswith("error: "))
+    return Hit(process.returncode, reasons, trace.read_text())
+
+
+@pytest.mark.parametrize(("place", "name"), TASKS)
+@pytest.mark.parametrize("mode", ["checks", "release"])
+def test_whatever_task_is_hit_by_an_exception_the_controller_shuts_down(
+    tmp_path: Path, place: int, name: str, mode: str
+) -> None:
+    found = _hit(mode, place, tmp_path)
+    assert found.status == 1
+    assert found.reasons[0].startswith(f"error: {name} has ended by CONSTRAINT_ERROR: ")
+    assert found.trace.endswith("END\n")
+    #  the shutdown of the model was carried out: its chart has taken the event
+    generated = ROOT / "examples" / "cartesian_robot" / "generated"
+    elements = json.loads((generated / "trace.json").read_text())["elements"]
+    shutdown = next(e["id"] for e in elements if e["element"] == "coordinator.Shutdown")
+    assert re.search(rf"^T \d+ Raised {shutdown} ", found.trace, re.M)
+
+
+@pytest.mark.parametrize("mode", ["checks", "release"])
+def test_an_exception_in_the_main_program_ends_the_process(tmp_path: Path, mode: str) -> None:
+    found = _hit(mode, -1, tmp_path)
+    assert found.status == 1
+    (reason,) = found.reasons
+    assert reason.startswith("error: the main program has ended by CONSTRAINT_ERROR: ")
+
+
+def test_a_sporadic_processor_that_hangs_is_found_and_the_mission_ends(
+    copy_of: Callable[[str], Path], tmp_path: Path
+) -> None:
+    """The reception of the Cartesian robot hangs, with a frame in its hands."""
+    folder = copy_of("cartesian_robot")
+    checked = steps.check(folder / "model.yaml")
+    steps.write_program(checked)
+    program = steps.programs_of(checked)[0]
+    reception = program.generated / "cartesian_robot-reception.adb"
+    text = reception.read_text()
+    call = "            Robot_Bus.Receiver.Run_Receive;\n"
+    assert text.count(call) == 1
+    hang = "            delay until Ada.Real_Time.Time_Last;\n"
+    reception.write_text(f"with Ada.Real_Time;\n{text.replace(call, call + hang)}")
+    result = run.run_controller(
+        program.build(),
+        program.generated / "trace.json",
+        program.generated / "robot_bus.dbc",
+        folder / "scenario.yaml",
+        5.0,
+        tmp_path / "report",
+        analysis=checked.analysis,
+    )
+    assert not result.passed
+    assert "reception is silent" in result.failures[0]
+    seen = result.observation
+    assert seen is not None
+    assert seen.faults["Silence"] == 1
+    assert len(seen.of("fault", "reception")) == 1
+    assert "Shut_Down" in seen.states_visited()["coordinator.Mission"]
+
+
+def test_a_false_assertion_in_the_servo_of_the_surgical_robot_fails_the_run(
+    copy_of: Callable[[str], Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = copy_of("surgical_robot")
+    body = folder / "user" / "surgical_robot-servo-activities.adb"
+    line = "      Call_Set_Current := True;\n"
+    text = body.read_text()
+    assert text.count(line) == 1
+    body.write_text(text.replace(line, f"{line}      pragma Assert (Get_Velocity.Axis_1 > 9);\n"))
+    told = ["run", str(folder / "model.yaml"), "--seconds", "2", "--report", str(tmp_path / "out")]
+    assert main(told) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "verdict: FAIL: the controller stopped itself: servo_loop has ended by" in said
+    assert "ASSERTION_ERROR: surgical_robot-servo-activities.adb" in said
+
+
+def test_of_two_nodes_the_one_whose_task_dies_fails_the_run_of_both(
+    copy_of: Callable[[str], Path], tmp_path: Path
+) -> None:
+    folder = copy_of("two_nodes")
+    checked = steps.check(folder / "model.yaml")
+    steps.write_program(checked)
+    programs = {one.node: one for one in steps.programs_of(checked)}
+    table = programs["drive"].generated / "two_nodes-control.adb"
+    call = "      case Item is\n"
+    text = table.read_text()
+    assert text.count(call) == 1
+    dies = """\
+      if Item = Servo_Control then
+         raise Program_Error with "here";
+      end if;
+"""
+    table.write_text(text.replace(call, dies + call))
+    result = run.run_nodes(
+        [run.controller(one) for one in programs.values()],
+        checked.analysis,
+        folder / "generated" / "link.dbc",
+        None,
+        2.0,
+        tmp_path / "report",
+    )
+    assert result.failures[0] == (
+        "the controller stopped itself: control has ended by PROGRAM_ERROR: here"
+    )
+    assert result.ended.exit_code == 1
