@@ -5,22 +5,23 @@
 package body Cartesian_Robot.Codecs
 with SPARK_Mode
 is
-   function Bits_Of_Order_Kind
+   function Bits_Of_Type_Order_Kind
      (Item : Cartesian_Robot.Order_Kind)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Order_Kind'Pos (Item)))
    with
      Post =>
-       Bits_Of_Order_Kind'Result <= 3
-       and then Order_Kind_Of_Bits (Bits_Of_Order_Kind'Result) = Item;
+       Bits_Of_Type_Order_Kind'Result <= 3
+       and then Value_Of_Type_Order_Kind (Bits_Of_Type_Order_Kind'Result)
+         = Item;
 
-   function Bits_Of_Position
+   function Bits_Of_Type_Position
      (Item : Cartesian_Robot.Position)
      return Interfaces.Unsigned_32
    with
      Post =>
-       Bits_Of_Position'Result <= 520_000
-       and then Position_Of_Bits (Bits_Of_Position'Result) = Item
+       Bits_Of_Type_Position'Result <= 520_000
+       and then Value_Of_Type_Position (Bits_Of_Type_Position'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 524_287 :=
         Ravenchart.Number (Item) + 20_000;
@@ -29,34 +30,36 @@ is
    begin
       pragma Assert (Ravenchart.Number (Raw) = Whole);
       return Raw;
-   end Bits_Of_Position;
+   end Bits_Of_Type_Position;
 
-   function Bits_Of_Robot_Condition
+   function Bits_Of_Type_Robot_Condition
      (Item : Cartesian_Robot.Robot_Condition)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Robot_Condition'Pos (Item)))
    with
      Post =>
-       Bits_Of_Robot_Condition'Result <= 5
-       and then Robot_Condition_Of_Bits (Bits_Of_Robot_Condition'Result)
+       Bits_Of_Type_Robot_Condition'Result <= 5
+       and then Value_Of_Type_Robot_Condition
+           (Bits_Of_Type_Robot_Condition'Result)
          = Item;
 
-   function Bits_Of_Drive_Mode
+   function Bits_Of_Type_Drive_Mode
      (Item : Cartesian_Robot.Drive_Mode)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Drive_Mode'Pos (Item)))
    with
      Post =>
-       Bits_Of_Drive_Mode'Result <= 1
-       and then Drive_Mode_Of_Bits (Bits_Of_Drive_Mode'Result) = Item;
+       Bits_Of_Type_Drive_Mode'Result <= 1
+       and then Value_Of_Type_Drive_Mode (Bits_Of_Type_Drive_Mode'Result)
+         = Item;
 
-   function Bits_Of_Speed
+   function Bits_Of_Type_Speed
      (Item : Cartesian_Robot.Speed)
      return Interfaces.Unsigned_32
    with
      Post =>
-       Bits_Of_Speed'Result <= 800_000
-       and then Speed_Of_Bits (Bits_Of_Speed'Result) = Item
+       Bits_Of_Type_Speed'Result <= 800_000
+       and then Value_Of_Type_Speed (Bits_Of_Type_Speed'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 1_048_575 :=
         Ravenchart.Number (Item) + 400_000;
@@ -65,15 +68,17 @@ is
    begin
       pragma Assert (Ravenchart.Number (Raw) = Whole);
       return Raw;
-   end Bits_Of_Speed;
+   end Bits_Of_Type_Speed;
 
-   function Bits_Of_Encoder_Count
+   function Bits_Of_Type_Encoder_Count
      (Item : Cartesian_Robot.Encoder_Count)
      return Interfaces.Unsigned_32
    with
      Post =>
-       Bits_Of_Encoder_Count'Result <= 2_000_000
-       and then Encoder_Count_Of_Bits (Bits_Of_Encoder_Count'Result) = Item
+       Bits_Of_Type_Encoder_Count'Result <= 2_000_000
+       and then Value_Of_Type_Encoder_Count
+           (Bits_Of_Type_Encoder_Count'Result)
+         = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 2_097_151 :=
         Ravenchart.Number (Item) + 1_000_000;
@@ -82,289 +87,856 @@ is
    begin
       pragma Assert (Ravenchart.Number (Raw) = Whole);
       return Raw;
-   end Bits_Of_Encoder_Count;
+   end Bits_Of_Type_Encoder_Count;
 
-   function Bits_Of_Switch
+   function Bits_Of_Type_Switch
      (Item : Cartesian_Robot.Switch)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Switch'Pos (Item)))
    with
      Post =>
-       Bits_Of_Switch'Result <= 2
-       and then Switch_Of_Bits (Bits_Of_Switch'Result) = Item;
+       Bits_Of_Type_Switch'Result <= 2
+       and then Value_Of_Type_Switch (Bits_Of_Type_Switch'Result) = Item;
 
-   function Bits_Of_Drive_Condition
+   function Bits_Of_Type_Drive_Condition
      (Item : Cartesian_Robot.Drive_Condition)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Cartesian_Robot.Drive_Condition'Pos (Item)))
    with
      Post =>
-       Bits_Of_Drive_Condition'Result <= 1
-       and then Drive_Condition_Of_Bits (Bits_Of_Drive_Condition'Result)
+       Bits_Of_Type_Drive_Condition'Result <= 1
+       and then Value_Of_Type_Drive_Condition
+           (Bits_Of_Type_Drive_Condition'Result)
          = Item;
 
-   function Word_Of_Robot_Order
-     (Kind_Raw : Interfaces.Unsigned_8;
-      X_Raw    : Interfaces.Unsigned_32;
-      Y_Raw    : Interfaces.Unsigned_32;
-      Z_Raw    : Interfaces.Unsigned_32)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Kind_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (X_Raw), 2)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Y_Raw), 21)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Z_Raw), 40))
-   with
-     Pre =>
-       Kind_Raw <= 16#3#
-       and then X_Raw <= 16#7FFFF#
-       and then Y_Raw <= 16#7FFFF#
-       and then Z_Raw <= 16#7FFFF#,
-     Post =>
-       Robot_Order_Kind_Raw (Word_Of_Robot_Order'Result) = Kind_Raw
-       and then Robot_Order_X_Raw (Word_Of_Robot_Order'Result) = X_Raw
-       and then Robot_Order_Y_Raw (Word_Of_Robot_Order'Result) = Y_Raw
-       and then Robot_Order_Z_Raw (Word_Of_Robot_Order'Result) = Z_Raw;
+   package body Type_Robot_Order is
+      procedure Lemma_Bits_Kind (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Kind (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Kind)
+      is
+      begin
+         null;
+      end Lemma_Bits_Kind;
 
-   function Pack_Robot_Order
-     (Item : Cartesian_Robot.Robot_Order)
-     return Interfaces.Unsigned_64 is
-      Kind_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Order_Kind (Item.Kind);
-      X_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.X);
-      Y_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.Y);
-      Z_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.Z);
-   begin
-      return Word_Of_Robot_Order (Kind_Raw, X_Raw, Y_Raw, Z_Raw);
-   end Pack_Robot_Order;
+      procedure Lemma_Value_Kind (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#3#,
+        Post =>
+          (Raw <= 3)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Kind)
+             in 0 .. 3)
+          and then (if Raw <= 3
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Kind)
+                   = Cartesian_Robot.Order_Kind'Pos
+                       (Value_Of_Type_Order_Kind (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Kind)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Kind;
 
-   procedure Unpack_Robot_Order
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Robot_Order;
-      Valid : out Boolean) is
-      Kind_Raw : constant Interfaces.Unsigned_8 :=
-        Robot_Order_Kind_Raw (Word);
-      X_Raw : constant Interfaces.Unsigned_32 := Robot_Order_X_Raw (Word);
-      Y_Raw : constant Interfaces.Unsigned_32 := Robot_Order_Y_Raw (Word);
-      Z_Raw : constant Interfaces.Unsigned_32 := Robot_Order_Z_Raw (Word);
-   begin
-      Valid :=
-        Kind_Raw <= 3
-        and then X_Raw <= 520_000
-        and then Y_Raw <= 520_000
-        and then Z_Raw <= 520_000;
-      if Valid then
-         Item :=
-           (Kind => Order_Kind_Of_Bits (Kind_Raw),
-            X => Position_Of_Bits (X_Raw),
-            Y => Position_Of_Bits (Y_Raw),
-            Z => Position_Of_Bits (Z_Raw));
-      else
-         Item := Cartesian_Robot.Default_Robot_Order;
-      end if;
-   end Unpack_Robot_Order;
+      procedure Lemma_Bits_X (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_X (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_X)
+      is
+      begin
+         null;
+      end Lemma_Bits_X;
 
-   procedure Lemma_Robot_Order_Survives (Item : Cartesian_Robot.Robot_Order) is
-      Copy : Cartesian_Robot.Robot_Order;
-      Valid : Boolean;
-   begin
-      Unpack_Robot_Order (Pack_Robot_Order (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Robot_Order_Survives;
+      procedure Lemma_Value_X (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#7FFFF#,
+        Post =>
+          (Raw <= 520_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_X)
+             in 0 .. 520_000)
+          and then (if Raw <= 520_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_X)
+                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
+                      - Signal_X.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_X)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_X;
 
-   function Word_Of_Robot_Report
-     (Condition_Raw : Interfaces.Unsigned_8;
-      X_Raw         : Interfaces.Unsigned_32;
-      Y_Raw         : Interfaces.Unsigned_32)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Condition_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (X_Raw), 3)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Y_Raw), 22))
-   with
-     Pre =>
-       Condition_Raw <= 16#7#
-       and then X_Raw <= 16#7FFFF#
-       and then Y_Raw <= 16#7FFFF#,
-     Post =>
-       Robot_Report_Condition_Raw (Word_Of_Robot_Report'Result)
-       = Condition_Raw
-       and then Robot_Report_X_Raw (Word_Of_Robot_Report'Result) = X_Raw
-       and then Robot_Report_Y_Raw (Word_Of_Robot_Report'Result) = Y_Raw;
+      procedure Lemma_Bits_Y (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Y (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Y)
+      is
+      begin
+         null;
+      end Lemma_Bits_Y;
 
-   function Pack_Robot_Report
-     (Item : Cartesian_Robot.Robot_Report)
-     return Interfaces.Unsigned_64 is
-      Condition_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Robot_Condition (Item.Condition);
-      X_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.X);
-      Y_Raw : constant Interfaces.Unsigned_32 := Bits_Of_Position (Item.Y);
-   begin
-      return Word_Of_Robot_Report (Condition_Raw, X_Raw, Y_Raw);
-   end Pack_Robot_Report;
+      procedure Lemma_Value_Y (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#7FFFF#,
+        Post =>
+          (Raw <= 520_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Y)
+             in 0 .. 520_000)
+          and then (if Raw <= 520_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Y)
+                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
+                      - Signal_Y.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Y)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Y;
 
-   procedure Unpack_Robot_Report
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Robot_Report;
-      Valid : out Boolean) is
-      Condition_Raw : constant Interfaces.Unsigned_8 :=
-        Robot_Report_Condition_Raw (Word);
-      X_Raw : constant Interfaces.Unsigned_32 := Robot_Report_X_Raw (Word);
-      Y_Raw : constant Interfaces.Unsigned_32 := Robot_Report_Y_Raw (Word);
-   begin
-      Valid :=
-        Condition_Raw <= 5
-        and then X_Raw <= 520_000
-        and then Y_Raw <= 520_000;
-      if Valid then
-         Item :=
-           (Condition => Robot_Condition_Of_Bits (Condition_Raw),
-            X => Position_Of_Bits (X_Raw),
-            Y => Position_Of_Bits (Y_Raw));
-      else
-         Item := Cartesian_Robot.Default_Robot_Report;
-      end if;
-   end Unpack_Robot_Report;
+      procedure Lemma_Bits_Z (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Z (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Z)
+      is
+      begin
+         null;
+      end Lemma_Bits_Z;
 
-   procedure Lemma_Robot_Report_Survives
-     (Item : Cartesian_Robot.Robot_Report) is
-      Copy : Cartesian_Robot.Robot_Report;
-      Valid : Boolean;
-   begin
-      Unpack_Robot_Report (Pack_Robot_Report (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Robot_Report_Survives;
+      procedure Lemma_Value_Z (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#7FFFF#,
+        Post =>
+          (Raw <= 520_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Z)
+             in 0 .. 520_000)
+          and then (if Raw <= 520_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Z)
+                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
+                      - Signal_Z.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Z)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Z;
 
-   function Word_Of_Drive_Set_Point
-     (Mode_Raw  : Interfaces.Unsigned_8;
-      Speed_Raw : Interfaces.Unsigned_32)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Mode_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Speed_Raw), 1))
-   with
-     Pre => Mode_Raw <= 16#1# and then Speed_Raw <= 16#FFFFF#,
-     Post =>
-       Drive_Set_Point_Mode_Raw (Word_Of_Drive_Set_Point'Result) = Mode_Raw
-       and then Drive_Set_Point_Speed_Raw (Word_Of_Drive_Set_Point'Result)
-         = Speed_Raw;
+      function Word_Of
+        (Local_Kind : Interfaces.Unsigned_8;
+         Local_X    : Interfaces.Unsigned_32;
+         Local_Y    : Interfaces.Unsigned_32;
+         Local_Z    : Interfaces.Unsigned_32)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Kind)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_X), 2)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Y), 21)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Z), 40))
+      with
+        Pre =>
+          Local_Kind <= 16#3#
+          and then Local_X <= 16#7FFFF#
+          and then Local_Y <= 16#7FFFF#
+          and then Local_Z <= 16#7FFFF#,
+        Post =>
+          Raw_Of_Kind (Word_Of'Result) = Local_Kind
+          and then Raw_Of_X (Word_Of'Result) = Local_X
+          and then Raw_Of_Y (Word_Of'Result) = Local_Y
+          and then Raw_Of_Z (Word_Of'Result) = Local_Z;
 
-   function Pack_Drive_Set_Point
-     (Item : Cartesian_Robot.Drive_Set_Point)
-     return Interfaces.Unsigned_64 is
-      Mode_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Drive_Mode (Item.Mode);
-      Speed_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Speed (Item.Speed);
-   begin
-      return Word_Of_Drive_Set_Point (Mode_Raw, Speed_Raw);
-   end Pack_Drive_Set_Point;
+      function Pack
+        (Item : Cartesian_Robot.Robot_Order)
+        return Interfaces.Unsigned_64 is
+         Local_Kind : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Order_Kind (Item.Kind);
+         Local_X : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.X);
+         Local_Y : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.Y);
+         Local_Z : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.Z);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Kind, Local_X, Local_Y, Local_Z);
+      begin
+         Lemma_Bits_Kind (Frame);
+         Lemma_Value_Kind (Local_Kind);
+         Lemma_Bits_X (Frame);
+         Lemma_Value_X (Local_X);
+         Lemma_Bits_Y (Frame);
+         Lemma_Value_Y (Local_Y);
+         Lemma_Bits_Z (Frame);
+         Lemma_Value_Z (Local_Z);
+         return Frame;
+      end Pack;
 
-   procedure Unpack_Drive_Set_Point
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Drive_Set_Point;
-      Valid : out Boolean) is
-      Mode_Raw : constant Interfaces.Unsigned_8 :=
-        Drive_Set_Point_Mode_Raw (Word);
-      Speed_Raw : constant Interfaces.Unsigned_32 :=
-        Drive_Set_Point_Speed_Raw (Word);
-   begin
-      Valid := Mode_Raw <= 1 and then Speed_Raw <= 800_000;
-      if Valid then
-         Item :=
-           (Mode => Drive_Mode_Of_Bits (Mode_Raw),
-            Speed => Speed_Of_Bits (Speed_Raw));
-      else
-         Item := Cartesian_Robot.Default_Drive_Set_Point;
-      end if;
-   end Unpack_Drive_Set_Point;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Robot_Order;
+         Valid : out Boolean) is
+         Local_Kind : constant Interfaces.Unsigned_8 := Raw_Of_Kind (Word);
+         Local_X : constant Interfaces.Unsigned_32 := Raw_Of_X (Word);
+         Local_Y : constant Interfaces.Unsigned_32 := Raw_Of_Y (Word);
+         Local_Z : constant Interfaces.Unsigned_32 := Raw_Of_Z (Word);
+      begin
+         Lemma_Bits_Kind (Word);
+         Lemma_Value_Kind (Local_Kind);
+         Lemma_Bits_X (Word);
+         Lemma_Value_X (Local_X);
+         Lemma_Bits_Y (Word);
+         Lemma_Value_Y (Local_Y);
+         Lemma_Bits_Z (Word);
+         Lemma_Value_Z (Local_Z);
+         Valid :=
+           Local_Kind <= 3
+           and then Local_X <= 520_000
+           and then Local_Y <= 520_000
+           and then Local_Z <= 520_000;
+         if Valid then
+            Item :=
+              (Kind => Value_Of_Type_Order_Kind (Local_Kind),
+               X => Value_Of_Type_Position (Local_X),
+               Y => Value_Of_Type_Position (Local_Y),
+               Z => Value_Of_Type_Position (Local_Z));
+         else
+            Item := Cartesian_Robot.Default_Robot_Order;
+         end if;
+      end Unpack;
 
-   procedure Lemma_Drive_Set_Point_Survives
-     (Item : Cartesian_Robot.Drive_Set_Point) is
-      Copy : Cartesian_Robot.Drive_Set_Point;
-      Valid : Boolean;
-   begin
-      Unpack_Drive_Set_Point (Pack_Drive_Set_Point (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Drive_Set_Point_Survives;
+      procedure Lemma_Survives (Item : Cartesian_Robot.Robot_Order) is
+         Copy : Cartesian_Robot.Robot_Order;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Robot_Order;
 
-   function Word_Of_Drive_Feedback
-     (Count_Raw     : Interfaces.Unsigned_32;
-      Speed_Raw     : Interfaces.Unsigned_32;
-      Limit_Raw     : Interfaces.Unsigned_8;
-      Condition_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Count_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Speed_Raw), 21)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Limit_Raw), 41)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Condition_Raw), 43))
-   with
-     Pre =>
-       Count_Raw <= 16#1FFFFF#
-       and then Speed_Raw <= 16#FFFFF#
-       and then Limit_Raw <= 16#3#
-       and then Condition_Raw <= 16#1#,
-     Post =>
-       Drive_Feedback_Count_Raw (Word_Of_Drive_Feedback'Result) = Count_Raw
-       and then Drive_Feedback_Speed_Raw (Word_Of_Drive_Feedback'Result)
-         = Speed_Raw
-       and then Drive_Feedback_Limit_Raw (Word_Of_Drive_Feedback'Result)
-         = Limit_Raw
-       and then Drive_Feedback_Condition_Raw (Word_Of_Drive_Feedback'Result)
-         = Condition_Raw;
+   package body Type_Robot_Report is
+      procedure Lemma_Bits_Condition (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Condition (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Condition)
+      is
+      begin
+         null;
+      end Lemma_Bits_Condition;
 
-   function Pack_Drive_Feedback
-     (Item : Cartesian_Robot.Drive_Feedback)
-     return Interfaces.Unsigned_64 is
-      Count_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Encoder_Count (Item.Count);
-      Speed_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Speed (Item.Speed);
-      Limit_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Switch (Item.Limit);
-      Condition_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Drive_Condition (Item.Condition);
-   begin
-      return
-        Word_Of_Drive_Feedback
-          (Count_Raw,
-           Speed_Raw,
-           Limit_Raw,
-           Condition_Raw);
-   end Pack_Drive_Feedback;
+      procedure Lemma_Value_Condition (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#7#,
+        Post =>
+          (Raw <= 5)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Condition)
+             in 0 .. 5)
+          and then (if Raw <= 5
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Condition)
+                   = Cartesian_Robot.Robot_Condition'Pos
+                       (Value_Of_Type_Robot_Condition (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Condition)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Condition;
 
-   procedure Unpack_Drive_Feedback
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Drive_Feedback;
-      Valid : out Boolean) is
-      Count_Raw : constant Interfaces.Unsigned_32 :=
-        Drive_Feedback_Count_Raw (Word);
-      Speed_Raw : constant Interfaces.Unsigned_32 :=
-        Drive_Feedback_Speed_Raw (Word);
-      Limit_Raw : constant Interfaces.Unsigned_8 :=
-        Drive_Feedback_Limit_Raw (Word);
-      Condition_Raw : constant Interfaces.Unsigned_8 :=
-        Drive_Feedback_Condition_Raw (Word);
-   begin
-      Valid :=
-        Count_Raw <= 2_000_000
-        and then Speed_Raw <= 800_000
-        and then Limit_Raw <= 2
-        and then Condition_Raw <= 1;
-      if Valid then
-         Item :=
-           (Count => Encoder_Count_Of_Bits (Count_Raw),
-            Speed => Speed_Of_Bits (Speed_Raw),
-            Limit => Switch_Of_Bits (Limit_Raw),
-            Condition => Drive_Condition_Of_Bits (Condition_Raw));
-      else
-         Item := Cartesian_Robot.Default_Drive_Feedback;
-      end if;
-   end Unpack_Drive_Feedback;
+      procedure Lemma_Bits_X (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_X (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_X)
+      is
+      begin
+         null;
+      end Lemma_Bits_X;
 
-   procedure Lemma_Drive_Feedback_Survives
-     (Item : Cartesian_Robot.Drive_Feedback) is
-      Copy : Cartesian_Robot.Drive_Feedback;
-      Valid : Boolean;
-   begin
-      Unpack_Drive_Feedback (Pack_Drive_Feedback (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Drive_Feedback_Survives;
+      procedure Lemma_Value_X (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#7FFFF#,
+        Post =>
+          (Raw <= 520_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_X)
+             in 0 .. 520_000)
+          and then (if Raw <= 520_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_X)
+                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
+                      - Signal_X.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_X)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_X;
+
+      procedure Lemma_Bits_Y (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Y (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Y)
+      is
+      begin
+         null;
+      end Lemma_Bits_Y;
+
+      procedure Lemma_Value_Y (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#7FFFF#,
+        Post =>
+          (Raw <= 520_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Y)
+             in 0 .. 520_000)
+          and then (if Raw <= 520_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Y)
+                   = (Ravenchart.Number (Value_Of_Type_Position (Raw))
+                      - Signal_Y.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Y)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Y;
+
+      function Word_Of
+        (Local_Condition : Interfaces.Unsigned_8;
+         Local_X         : Interfaces.Unsigned_32;
+         Local_Y         : Interfaces.Unsigned_32)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Condition)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_X), 3)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Y), 22))
+      with
+        Pre =>
+          Local_Condition <= 16#7#
+          and then Local_X <= 16#7FFFF#
+          and then Local_Y <= 16#7FFFF#,
+        Post =>
+          Raw_Of_Condition (Word_Of'Result) = Local_Condition
+          and then Raw_Of_X (Word_Of'Result) = Local_X
+          and then Raw_Of_Y (Word_Of'Result) = Local_Y;
+
+      function Pack
+        (Item : Cartesian_Robot.Robot_Report)
+        return Interfaces.Unsigned_64 is
+         Local_Condition : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Robot_Condition (Item.Condition);
+         Local_X : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.X);
+         Local_Y : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.Y);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Condition, Local_X, Local_Y);
+      begin
+         Lemma_Bits_Condition (Frame);
+         Lemma_Value_Condition (Local_Condition);
+         Lemma_Bits_X (Frame);
+         Lemma_Value_X (Local_X);
+         Lemma_Bits_Y (Frame);
+         Lemma_Value_Y (Local_Y);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Robot_Report;
+         Valid : out Boolean) is
+         Local_Condition : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Condition (Word);
+         Local_X : constant Interfaces.Unsigned_32 := Raw_Of_X (Word);
+         Local_Y : constant Interfaces.Unsigned_32 := Raw_Of_Y (Word);
+      begin
+         Lemma_Bits_Condition (Word);
+         Lemma_Value_Condition (Local_Condition);
+         Lemma_Bits_X (Word);
+         Lemma_Value_X (Local_X);
+         Lemma_Bits_Y (Word);
+         Lemma_Value_Y (Local_Y);
+         Valid :=
+           Local_Condition <= 5
+           and then Local_X <= 520_000
+           and then Local_Y <= 520_000;
+         if Valid then
+            Item :=
+              (Condition => Value_Of_Type_Robot_Condition (Local_Condition),
+               X => Value_Of_Type_Position (Local_X),
+               Y => Value_Of_Type_Position (Local_Y));
+         else
+            Item := Cartesian_Robot.Default_Robot_Report;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Cartesian_Robot.Robot_Report) is
+         Copy : Cartesian_Robot.Robot_Report;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Robot_Report;
+
+   package body Type_Drive_Set_Point is
+      procedure Lemma_Bits_Mode (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Mode (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Mode)
+      is
+      begin
+         null;
+      end Lemma_Bits_Mode;
+
+      procedure Lemma_Value_Mode (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 1)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Mode)
+             in 0 .. 1)
+          and then (if Raw <= 1
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Mode)
+                   = Cartesian_Robot.Drive_Mode'Pos
+                       (Value_Of_Type_Drive_Mode (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Mode)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Mode;
+
+      procedure Lemma_Bits_Speed (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Speed (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Speed)
+      is
+      begin
+         null;
+      end Lemma_Bits_Speed;
+
+      procedure Lemma_Value_Speed (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#FFFFF#,
+        Post =>
+          (Raw <= 800_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Speed)
+             in 0 .. 800_000)
+          and then (if Raw <= 800_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Speed)
+                   = (Ravenchart.Number (Value_Of_Type_Speed (Raw))
+                      - Signal_Speed.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Speed)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Speed;
+
+      function Word_Of
+        (Local_Mode  : Interfaces.Unsigned_8;
+         Local_Speed : Interfaces.Unsigned_32)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Mode)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Speed), 1))
+      with
+        Pre => Local_Mode <= 16#1# and then Local_Speed <= 16#FFFFF#,
+        Post =>
+          Raw_Of_Mode (Word_Of'Result) = Local_Mode
+          and then Raw_Of_Speed (Word_Of'Result) = Local_Speed;
+
+      function Pack
+        (Item : Cartesian_Robot.Drive_Set_Point)
+        return Interfaces.Unsigned_64 is
+         Local_Mode : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Drive_Mode (Item.Mode);
+         Local_Speed : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Speed (Item.Speed);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Mode, Local_Speed);
+      begin
+         Lemma_Bits_Mode (Frame);
+         Lemma_Value_Mode (Local_Mode);
+         Lemma_Bits_Speed (Frame);
+         Lemma_Value_Speed (Local_Speed);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Drive_Set_Point;
+         Valid : out Boolean) is
+         Local_Mode : constant Interfaces.Unsigned_8 := Raw_Of_Mode (Word);
+         Local_Speed : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Speed (Word);
+      begin
+         Lemma_Bits_Mode (Word);
+         Lemma_Value_Mode (Local_Mode);
+         Lemma_Bits_Speed (Word);
+         Lemma_Value_Speed (Local_Speed);
+         Valid := Local_Mode <= 1 and then Local_Speed <= 800_000;
+         if Valid then
+            Item :=
+              (Mode => Value_Of_Type_Drive_Mode (Local_Mode),
+               Speed => Value_Of_Type_Speed (Local_Speed));
+         else
+            Item := Cartesian_Robot.Default_Drive_Set_Point;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Cartesian_Robot.Drive_Set_Point) is
+         Copy : Cartesian_Robot.Drive_Set_Point;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Drive_Set_Point;
+
+   package body Type_Drive_Feedback is
+      procedure Lemma_Bits_Count (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Count (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Count)
+      is
+      begin
+         null;
+      end Lemma_Bits_Count;
+
+      procedure Lemma_Value_Count (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#1FFFFF#,
+        Post =>
+          (Raw <= 2_000_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Count)
+             in 0 .. 2_000_000)
+          and then (if Raw <= 2_000_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Count)
+                   = (Ravenchart.Number (Value_Of_Type_Encoder_Count (Raw))
+                      - Signal_Count.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Count)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Count;
+
+      procedure Lemma_Bits_Speed (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Speed (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Speed)
+      is
+      begin
+         null;
+      end Lemma_Bits_Speed;
+
+      procedure Lemma_Value_Speed (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#FFFFF#,
+        Post =>
+          (Raw <= 800_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Speed)
+             in 0 .. 800_000)
+          and then (if Raw <= 800_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Speed)
+                   = (Ravenchart.Number (Value_Of_Type_Speed (Raw))
+                      - Signal_Speed.Offset))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Speed)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Speed;
+
+      procedure Lemma_Bits_Limit (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Limit (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Limit)
+      is
+      begin
+         null;
+      end Lemma_Bits_Limit;
+
+      procedure Lemma_Value_Limit (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#3#,
+        Post =>
+          (Raw <= 2)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Limit)
+             in 0 .. 2)
+          and then (if Raw <= 2
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Limit)
+                   = Cartesian_Robot.Switch'Pos (Value_Of_Type_Switch (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Limit)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Limit;
+
+      procedure Lemma_Bits_Condition (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Condition (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Condition)
+      is
+      begin
+         null;
+      end Lemma_Bits_Condition;
+
+      procedure Lemma_Value_Condition (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 1)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Condition)
+             in 0 .. 1)
+          and then (if Raw <= 1
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Condition)
+                   = Cartesian_Robot.Drive_Condition'Pos
+                       (Value_Of_Type_Drive_Condition (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Condition)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Condition;
+
+      function Word_Of
+        (Local_Count     : Interfaces.Unsigned_32;
+         Local_Speed     : Interfaces.Unsigned_32;
+         Local_Limit     : Interfaces.Unsigned_8;
+         Local_Condition : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Count)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Speed), 21)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Limit), 41)
+         or Interfaces.Shift_Left
+             (Interfaces.Unsigned_64 (Local_Condition),
+              43))
+      with
+        Pre =>
+          Local_Count <= 16#1FFFFF#
+          and then Local_Speed <= 16#FFFFF#
+          and then Local_Limit <= 16#3#
+          and then Local_Condition <= 16#1#,
+        Post =>
+          Raw_Of_Count (Word_Of'Result) = Local_Count
+          and then Raw_Of_Speed (Word_Of'Result) = Local_Speed
+          and then Raw_Of_Limit (Word_Of'Result) = Local_Limit
+          and then Raw_Of_Condition (Word_Of'Result) = Local_Condition;
+
+      function Pack
+        (Item : Cartesian_Robot.Drive_Feedback)
+        return Interfaces.Unsigned_64 is
+         Local_Count : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Encoder_Count (Item.Count);
+         Local_Speed : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Speed (Item.Speed);
+         Local_Limit : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Switch (Item.Limit);
+         Local_Condition : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Drive_Condition (Item.Condition);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Count, Local_Speed, Local_Limit, Local_Condition);
+      begin
+         Lemma_Bits_Count (Frame);
+         Lemma_Value_Count (Local_Count);
+         Lemma_Bits_Speed (Frame);
+         Lemma_Value_Speed (Local_Speed);
+         Lemma_Bits_Limit (Frame);
+         Lemma_Value_Limit (Local_Limit);
+         Lemma_Bits_Condition (Frame);
+         Lemma_Value_Condition (Local_Condition);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Drive_Feedback;
+         Valid : out Boolean) is
+         Local_Count : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Count (Word);
+         Local_Speed : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Speed (Word);
+         Local_Limit : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Limit (Word);
+         Local_Condition : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Condition (Word);
+      begin
+         Lemma_Bits_Count (Word);
+         Lemma_Value_Count (Local_Count);
+         Lemma_Bits_Speed (Word);
+         Lemma_Value_Speed (Local_Speed);
+         Lemma_Bits_Limit (Word);
+         Lemma_Value_Limit (Local_Limit);
+         Lemma_Bits_Condition (Word);
+         Lemma_Value_Condition (Local_Condition);
+         Valid :=
+           Local_Count <= 2_000_000
+           and then Local_Speed <= 800_000
+           and then Local_Limit <= 2
+           and then Local_Condition <= 1;
+         if Valid then
+            Item :=
+              (Count => Value_Of_Type_Encoder_Count (Local_Count),
+               Speed => Value_Of_Type_Speed (Local_Speed),
+               Limit => Value_Of_Type_Switch (Local_Limit),
+               Condition => Value_Of_Type_Drive_Condition (Local_Condition));
+         else
+            Item := Cartesian_Robot.Default_Drive_Feedback;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Cartesian_Robot.Drive_Feedback) is
+         Copy : Cartesian_Robot.Drive_Feedback;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Drive_Feedback;
 end Cartesian_Robot.Codecs;

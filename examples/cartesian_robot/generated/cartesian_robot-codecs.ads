@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Layouts;
 
 package Cartesian_Robot.Codecs
 with SPARK_Mode, Pure
@@ -12,323 +13,437 @@ is
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
-   function Order_Kind_Of_Bits
+   function Value_Of_Type_Order_Kind
      (Raw : Interfaces.Unsigned_8)
      return Cartesian_Robot.Order_Kind is
      (Cartesian_Robot.Order_Kind'Val (Raw))
    with Pre => Raw <= 3;
 
-   function Position_Of_Bits
+   function Value_Of_Type_Position
      (Raw : Interfaces.Unsigned_32)
      return Cartesian_Robot.Position is
      (Cartesian_Robot.Position (Ravenchart.Number (Raw) - 20_000))
    with Pre => Raw <= 520_000;
 
-   function Robot_Condition_Of_Bits
+   function Value_Of_Type_Robot_Condition
      (Raw : Interfaces.Unsigned_8)
      return Cartesian_Robot.Robot_Condition is
      (Cartesian_Robot.Robot_Condition'Val (Raw))
    with Pre => Raw <= 5;
 
-   function Drive_Mode_Of_Bits
+   function Value_Of_Type_Drive_Mode
      (Raw : Interfaces.Unsigned_8)
      return Cartesian_Robot.Drive_Mode is
      (Cartesian_Robot.Drive_Mode'Val (Raw))
    with Pre => Raw <= 1;
 
-   function Speed_Of_Bits
+   function Value_Of_Type_Speed
      (Raw : Interfaces.Unsigned_32)
      return Cartesian_Robot.Speed is
      (Cartesian_Robot.Speed (Ravenchart.Number (Raw) - 400_000))
    with Pre => Raw <= 800_000;
 
-   function Encoder_Count_Of_Bits
+   function Value_Of_Type_Encoder_Count
      (Raw : Interfaces.Unsigned_32)
      return Cartesian_Robot.Encoder_Count is
      (Cartesian_Robot.Encoder_Count (Ravenchart.Number (Raw) - 1_000_000))
    with Pre => Raw <= 2_000_000;
 
-   function Switch_Of_Bits
+   function Value_Of_Type_Switch
      (Raw : Interfaces.Unsigned_8)
      return Cartesian_Robot.Switch is
      (Cartesian_Robot.Switch'Val (Raw))
    with Pre => Raw <= 2;
 
-   function Drive_Condition_Of_Bits
+   function Value_Of_Type_Drive_Condition
      (Raw : Interfaces.Unsigned_8)
      return Cartesian_Robot.Drive_Condition is
      (Cartesian_Robot.Drive_Condition'Val (Raw))
    with Pre => Raw <= 1;
 
-   function Robot_Order_Kind_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#3#));
-   --  [Robot_Order.kind] bits 0 .. 1
+   package Type_Robot_Order is
+      --  [Robot_Order.kind] bits 0 .. 1
+      Signal_Kind : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 2,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Robot_Order_X_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 2) and 16#7FFFF#));
-   --  [Robot_Order.x] bits 2 .. 20
+      --  [Robot_Order.x] bits 2 .. 20
+      Signal_X : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 2,
+         Width => 19,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-20_000));
 
-   function Robot_Order_Y_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 21) and 16#7FFFF#));
-   --  [Robot_Order.y] bits 21 .. 39
+      --  [Robot_Order.y] bits 21 .. 39
+      Signal_Y : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 21,
+         Width => 19,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-20_000));
 
-   function Robot_Order_Z_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 40) and 16#7FFFF#));
-   --  [Robot_Order.z] bits 40 .. 58
+      --  [Robot_Order.z] bits 40 .. 58
+      Signal_Z : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 40,
+         Width => 19,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-20_000));
 
-   function Pack_Robot_Order
-     (Item : Cartesian_Robot.Robot_Order)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Robot_Order_Kind_Raw (Pack_Robot_Order'Result) <= 3
-       and then Order_Kind_Of_Bits
-           (Robot_Order_Kind_Raw (Pack_Robot_Order'Result))
-         = Item.Kind
-       and then Robot_Order_X_Raw (Pack_Robot_Order'Result) <= 520_000
-       and then Position_Of_Bits
-           (Robot_Order_X_Raw (Pack_Robot_Order'Result))
-         = Item.X
-       and then Robot_Order_Y_Raw (Pack_Robot_Order'Result) <= 520_000
-       and then Position_Of_Bits
-           (Robot_Order_Y_Raw (Pack_Robot_Order'Result))
-         = Item.Y
-       and then Robot_Order_Z_Raw (Pack_Robot_Order'Result) <= 520_000
-       and then Position_Of_Bits
-           (Robot_Order_Z_Raw (Pack_Robot_Order'Result))
-         = Item.Z;
+      function Raw_Of_Kind
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#3#));
 
-   procedure Unpack_Robot_Order
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Robot_Order;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Robot_Order_Kind_Raw (Word) <= 3
-          and then Robot_Order_X_Raw (Word) <= 520_000
-          and then Robot_Order_Y_Raw (Word) <= 520_000
-          and then Robot_Order_Z_Raw (Word) <= 520_000)
-       and then (if Valid
-             then Item.Kind
-                = Order_Kind_Of_Bits (Robot_Order_Kind_Raw (Word))
-                and then Item.X
-                  = Position_Of_Bits (Robot_Order_X_Raw (Word))
-                and then Item.Y
-                  = Position_Of_Bits (Robot_Order_Y_Raw (Word))
-                and then Item.Z
-                  = Position_Of_Bits (Robot_Order_Z_Raw (Word))
-          else Item = Cartesian_Robot.Default_Robot_Order);
-   --  Valid when all bits stand for values.
+      function Raw_Of_X
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 2) and 16#7FFFF#));
 
-   procedure Lemma_Robot_Order_Survives (Item : Cartesian_Robot.Robot_Order)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Raw_Of_Y
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 21) and 16#7FFFF#));
 
-   function Robot_Report_Condition_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#7#));
-   --  [Robot_Report.condition] bits 0 .. 2
+      function Raw_Of_Z
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 40) and 16#7FFFF#));
 
-   function Robot_Report_X_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 3) and 16#7FFFF#));
-   --  [Robot_Report.x] bits 3 .. 21
+      function Pack
+        (Item : Cartesian_Robot.Robot_Order)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Kind)
+          = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_X)
+            = (Ravenchart.Number (Item.X) - Signal_X.Offset)
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Y)
+            = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Z)
+            = (Ravenchart.Number (Item.Z) - Signal_Z.Offset)
+          and then (Pack'Result and 16#F800000000000000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function Robot_Report_Y_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 22) and 16#7FFFF#));
-   --  [Robot_Report.y] bits 22 .. 40
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Robot_Order;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind) in 0 .. 3
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_X)
+               in 0 .. 520_000
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Y)
+               in 0 .. 520_000
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Z)
+               in 0 .. 520_000)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Kind)
+                   = Cartesian_Robot.Order_Kind'Pos (Item.Kind)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_X)
+                     = (Ravenchart.Number (Item.X) - Signal_X.Offset)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Y)
+                     = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Z)
+                     = (Ravenchart.Number (Item.Z) - Signal_Z.Offset)
+             else Item = Cartesian_Robot.Default_Robot_Order);
+      --  Valid when all bits stand for values.
 
-   function Pack_Robot_Report
-     (Item : Cartesian_Robot.Robot_Report)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Robot_Report_Condition_Raw (Pack_Robot_Report'Result) <= 5
-       and then Robot_Condition_Of_Bits
-           (Robot_Report_Condition_Raw (Pack_Robot_Report'Result))
-         = Item.Condition
-       and then Robot_Report_X_Raw (Pack_Robot_Report'Result) <= 520_000
-       and then Position_Of_Bits
-           (Robot_Report_X_Raw (Pack_Robot_Report'Result))
-         = Item.X
-       and then Robot_Report_Y_Raw (Pack_Robot_Report'Result) <= 520_000
-       and then Position_Of_Bits
-           (Robot_Report_Y_Raw (Pack_Robot_Report'Result))
-         = Item.Y;
+      procedure Lemma_Survives (Item : Cartesian_Robot.Robot_Order)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Robot_Order;
 
-   procedure Unpack_Robot_Report
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Robot_Report;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Robot_Report_Condition_Raw (Word) <= 5
-          and then Robot_Report_X_Raw (Word) <= 520_000
-          and then Robot_Report_Y_Raw (Word) <= 520_000)
-       and then (if Valid
-             then Item.Condition
-                = Robot_Condition_Of_Bits
-                    (Robot_Report_Condition_Raw (Word))
-                and then Item.X
-                  = Position_Of_Bits (Robot_Report_X_Raw (Word))
-                and then Item.Y
-                  = Position_Of_Bits (Robot_Report_Y_Raw (Word))
-          else Item = Cartesian_Robot.Default_Robot_Report);
-   --  Valid when all bits stand for values.
+   package Type_Robot_Report is
+      --  [Robot_Report.condition] bits 0 .. 2
+      Signal_Condition : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 3,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Lemma_Robot_Report_Survives
-     (Item : Cartesian_Robot.Robot_Report)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      --  [Robot_Report.x] bits 3 .. 21
+      Signal_X : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 3,
+         Width => 19,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-20_000));
 
-   function Drive_Set_Point_Mode_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#1#));
-   --  [Drive_Set_Point.mode] bits 0 .. 0
+      --  [Robot_Report.y] bits 22 .. 40
+      Signal_Y : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 22,
+         Width => 19,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-20_000));
 
-   function Drive_Set_Point_Speed_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 1) and 16#FFFFF#));
-   --  [Drive_Set_Point.speed] bits 1 .. 20
+      function Raw_Of_Condition
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#7#));
 
-   function Pack_Drive_Set_Point
-     (Item : Cartesian_Robot.Drive_Set_Point)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result) <= 1
-       and then Drive_Mode_Of_Bits
-           (Drive_Set_Point_Mode_Raw (Pack_Drive_Set_Point'Result))
-         = Item.Mode
-       and then Drive_Set_Point_Speed_Raw (Pack_Drive_Set_Point'Result)
-         <= 800_000
-       and then Speed_Of_Bits
-           (Drive_Set_Point_Speed_Raw (Pack_Drive_Set_Point'Result))
-         = Item.Speed;
+      function Raw_Of_X
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 3) and 16#7FFFF#));
 
-   procedure Unpack_Drive_Set_Point
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Drive_Set_Point;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Drive_Set_Point_Mode_Raw (Word) <= 1
-          and then Drive_Set_Point_Speed_Raw (Word) <= 800_000)
-       and then (if Valid
-             then Item.Mode
-                = Drive_Mode_Of_Bits (Drive_Set_Point_Mode_Raw (Word))
-                and then Item.Speed
-                  = Speed_Of_Bits (Drive_Set_Point_Speed_Raw (Word))
-          else Item = Cartesian_Robot.Default_Drive_Set_Point);
-   --  Valid when all bits stand for values.
+      function Raw_Of_Y
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 22) and 16#7FFFF#));
 
-   procedure Lemma_Drive_Set_Point_Survives
-     (Item : Cartesian_Robot.Drive_Set_Point)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Pack
+        (Item : Cartesian_Robot.Robot_Report)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Condition)
+          = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_X)
+            = (Ravenchart.Number (Item.X) - Signal_X.Offset)
+          and then Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Y)
+            = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+          and then (Pack'Result and 16#FFFFFE0000000000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function Drive_Feedback_Count_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32 (Word and 16#1FFFFF#));
-   --  [Drive_Feedback.count] bits 0 .. 20
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Robot_Report;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Condition)
+             in 0 .. 5
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_X)
+               in 0 .. 520_000
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Y)
+               in 0 .. 520_000)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In
+                     (Word,
+                      Signal_Condition)
+                   = Cartesian_Robot.Robot_Condition'Pos (Item.Condition)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_X)
+                     = (Ravenchart.Number (Item.X) - Signal_X.Offset)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Y)
+                     = (Ravenchart.Number (Item.Y) - Signal_Y.Offset)
+             else Item = Cartesian_Robot.Default_Robot_Report);
+      --  Valid when all bits stand for values.
 
-   function Drive_Feedback_Speed_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 21) and 16#FFFFF#));
-   --  [Drive_Feedback.speed] bits 21 .. 40
+      procedure Lemma_Survives (Item : Cartesian_Robot.Robot_Report)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Robot_Report;
 
-   function Drive_Feedback_Limit_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 41) and 16#3#));
-   --  [Drive_Feedback.limit] bits 41 .. 42
+   package Type_Drive_Set_Point is
+      --  [Drive_Set_Point.mode] bits 0 .. 0
+      Signal_Mode : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Drive_Feedback_Condition_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 43) and 16#1#));
-   --  [Drive_Feedback.condition] bits 43 .. 43
+      --  [Drive_Set_Point.speed] bits 1 .. 20
+      Signal_Speed : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 1,
+         Width => 20,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-400_000));
 
-   function Pack_Drive_Feedback
-     (Item : Cartesian_Robot.Drive_Feedback)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result) <= 2_000_000
-       and then Encoder_Count_Of_Bits
-           (Drive_Feedback_Count_Raw (Pack_Drive_Feedback'Result))
-         = Item.Count
-       and then Drive_Feedback_Speed_Raw (Pack_Drive_Feedback'Result)
-         <= 800_000
-       and then Speed_Of_Bits
-           (Drive_Feedback_Speed_Raw (Pack_Drive_Feedback'Result))
-         = Item.Speed
-       and then Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result) <= 2
-       and then Switch_Of_Bits
-           (Drive_Feedback_Limit_Raw (Pack_Drive_Feedback'Result))
-         = Item.Limit
-       and then Drive_Feedback_Condition_Raw (Pack_Drive_Feedback'Result)
-         <= 1
-       and then Drive_Condition_Of_Bits
-           (Drive_Feedback_Condition_Raw (Pack_Drive_Feedback'Result))
-         = Item.Condition;
+      function Raw_Of_Mode
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#1#));
 
-   procedure Unpack_Drive_Feedback
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Cartesian_Robot.Drive_Feedback;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Drive_Feedback_Count_Raw (Word) <= 2_000_000
-          and then Drive_Feedback_Speed_Raw (Word) <= 800_000
-          and then Drive_Feedback_Limit_Raw (Word) <= 2
-          and then Drive_Feedback_Condition_Raw (Word) <= 1)
-       and then (if Valid
-             then Item.Count
-                = Encoder_Count_Of_Bits (Drive_Feedback_Count_Raw (Word))
-                and then Item.Speed
-                  = Speed_Of_Bits (Drive_Feedback_Speed_Raw (Word))
-                and then Item.Limit
-                  = Switch_Of_Bits (Drive_Feedback_Limit_Raw (Word))
-                and then Item.Condition
-                  = Drive_Condition_Of_Bits
-                      (Drive_Feedback_Condition_Raw (Word))
-          else Item = Cartesian_Robot.Default_Drive_Feedback);
-   --  Valid when all bits stand for values.
+      function Raw_Of_Speed
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 1) and 16#FFFFF#));
 
-   procedure Lemma_Drive_Feedback_Survives
-     (Item : Cartesian_Robot.Drive_Feedback)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Pack
+        (Item : Cartesian_Robot.Drive_Set_Point)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Mode)
+          = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Speed)
+            = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
+          and then (Pack'Result and 16#FFFFFFFFFFE00000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Drive_Set_Point;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Mode) in 0 .. 1
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Speed)
+               in 0 .. 800_000)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Mode)
+                   = Cartesian_Robot.Drive_Mode'Pos (Item.Mode)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Speed)
+                     = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
+             else Item = Cartesian_Robot.Default_Drive_Set_Point);
+      --  Valid when all bits stand for values.
+
+      procedure Lemma_Survives (Item : Cartesian_Robot.Drive_Set_Point)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Drive_Set_Point;
+
+   package Type_Drive_Feedback is
+      --  [Drive_Feedback.count] bits 0 .. 20
+      Signal_Count : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 21,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-1_000_000));
+
+      --  [Drive_Feedback.speed] bits 21 .. 40
+      Signal_Speed : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 21,
+         Width => 20,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => (-400_000));
+
+      --  [Drive_Feedback.limit] bits 41 .. 42
+      Signal_Limit : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 41,
+         Width => 2,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
+
+      --  [Drive_Feedback.condition] bits 43 .. 43
+      Signal_Condition : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 43,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
+
+      function Raw_Of_Count
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32 (Word and 16#1FFFFF#));
+
+      function Raw_Of_Speed
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 21) and 16#FFFFF#));
+
+      function Raw_Of_Limit
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 41) and 16#3#));
+
+      function Raw_Of_Condition
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 43) and 16#1#));
+
+      function Pack
+        (Item : Cartesian_Robot.Drive_Feedback)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Count)
+          = (Ravenchart.Number (Item.Count) - Signal_Count.Offset)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Speed)
+            = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Limit)
+            = Cartesian_Robot.Switch'Pos (Item.Limit)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Condition)
+            = Cartesian_Robot.Drive_Condition'Pos (Item.Condition)
+          and then (Pack'Result and 16#FFFFF00000000000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Cartesian_Robot.Drive_Feedback;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Count)
+             in 0 .. 2_000_000
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Speed)
+               in 0 .. 800_000
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Limit)
+               in 0 .. 2
+             and then Ravenchart.Can.Layouts.Number_In
+                 (Word,
+                  Signal_Condition)
+               in 0 .. 1)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Count)
+                   = (Ravenchart.Number (Item.Count) - Signal_Count.Offset)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Speed)
+                     = (Ravenchart.Number (Item.Speed) - Signal_Speed.Offset)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Limit)
+                     = Cartesian_Robot.Switch'Pos (Item.Limit)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Condition)
+                     = Cartesian_Robot.Drive_Condition'Pos (Item.Condition)
+             else Item = Cartesian_Robot.Default_Drive_Feedback);
+      --  Valid when all bits stand for values.
+
+      procedure Lemma_Survives (Item : Cartesian_Robot.Drive_Feedback)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Drive_Feedback;
 end Cartesian_Robot.Codecs;

@@ -30,7 +30,8 @@ is
 
    --  [control]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "control",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
         (Joint_X_Ports => (Divisor => 1, Phase => 0),
@@ -47,6 +48,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
       Task_Priority => System.Default_Priority + 2,
+      Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

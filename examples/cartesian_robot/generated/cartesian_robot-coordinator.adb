@@ -93,7 +93,7 @@ is
      (Element_Type => Robot_Coordinator.Event,
       Null_Element => Robot_Coordinator.Commanded,
       Capacity => 8,
-      Ceiling => System.Default_Priority + 1,
+      Ceiling => System.Default_Priority + 6,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
    procedure Put_Command (Item : Cartesian_Robot.Robot_Order) is

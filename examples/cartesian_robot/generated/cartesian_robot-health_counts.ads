@@ -9,5 +9,5 @@ package Cartesian_Robot.Health_Counts
 with SPARK_Mode
 is
    package Counters is new Ravenchart.Health_Counters
-     (Ceiling => System.Default_Priority + 4);
+     (Ceiling => System.Default_Priority + 6);
 end Cartesian_Robot.Health_Counts;

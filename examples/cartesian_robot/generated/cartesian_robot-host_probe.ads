@@ -9,7 +9,8 @@ package Cartesian_Robot.Host_Probe
 with SPARK_Mode
 is
    package Probe is new Ravenchart.Host_Probes
-     (Period => 1_000_000,
-      Probe_Priority => System.Default_Priority + 6,
+     (Name => "controller.probe",
+      Period => 1_000_000,
+      Probe_Priority => System.Default_Priority + 7,
       Stack_Bytes => 16_384);
 end Cartesian_Robot.Host_Probe;

@@ -19,11 +19,13 @@ is
    --  [reception]
 
    package Processor is new Ravenchart.Sporadic_Processors
-     (Activity_Id => Row,
+     (Name => "reception",
+      Activity_Id => Row,
       Minimum_Separation => Timing_Certificate.Reception_T,
       Wait => Robot_Bus.Receiver.Wait,
       Deadline => Timing_Certificate.Reception_D,
       Task_Priority => System.Default_Priority + 4,
+      Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

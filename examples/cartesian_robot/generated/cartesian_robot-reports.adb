@@ -6,12 +6,14 @@ with Cartesian_Robot.Control;
 with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Host_Probe;
+with Cartesian_Robot.Liveness_Supervision;
 with Cartesian_Robot.Reception;
 with Cartesian_Robot.Robot_Bus;
 with Cartesian_Robot.Supervision;
 with Cartesian_Robot.Trace;
 with Cartesian_Robot.Trajectory;
 with Ravenchart.Can;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
@@ -114,13 +116,21 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Robot_Bus_Counters : Ravenchart.Can.Counters;
+      Robot_Bus_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
       Late : Ravenchart.Nanoseconds;
+      Fed : Ravenchart.Event_Count;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Trajectory;
       Report_Control;
       Report_Supervision;
       Health_Counts.Counters.Read (Faults);
+      Robot_Bus.Controller.Read_Faults (Robot_Bus_Faults);
+      Faults (Ravenchart.Health.Can_Error_Passive) :=
+        Robot_Bus_Faults.Passive_Entries;
+      Faults (Ravenchart.Health.Can_Bus_Off) :=
+        Robot_Bus_Faults.Off_Entries;
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;
@@ -138,5 +148,7 @@ is
          Robot_Bus_Counters.Rejected_Lines);
       Host_Probe.Probe.Read (Late);
       Ravenchart.Hosts.Put_Host_Latency (Late);
+      Liveness_Supervision.Supervisor.Read (Fed);
+      Ravenchart.Hosts.Put_Feeds (Fed);
    end Put_All;
 end Cartesian_Robot.Reports;

@@ -37,7 +37,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Robot_Order
+         Codecs.Type_Robot_Order.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Robot_Command_Item,
             Valid);
@@ -57,7 +57,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Drive_Feedback
+         Codecs.Type_Drive_Feedback.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             X_Feedback_Item,
             Valid);
@@ -77,7 +77,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Drive_Feedback
+         Codecs.Type_Drive_Feedback.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Y_Feedback_Item,
             Valid);
@@ -97,7 +97,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Drive_Feedback
+         Codecs.Type_Drive_Feedback.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Z_Feedback_Item,
             Valid);

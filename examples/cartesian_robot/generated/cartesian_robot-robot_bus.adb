@@ -23,7 +23,7 @@ is
               (Id => 384,
                Format => Ravenchart.Can.Standard,
                Length => 6,
-               Payload => Codecs.Pack_Robot_Report (Item))),
+               Payload => Codecs.Type_Robot_Report.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -50,7 +50,7 @@ is
               (Id => 272,
                Format => Ravenchart.Can.Standard,
                Length => 3,
-               Payload => Codecs.Pack_Drive_Set_Point (Item))),
+               Payload => Codecs.Type_Drive_Set_Point.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -77,7 +77,7 @@ is
               (Id => 273,
                Format => Ravenchart.Can.Standard,
                Length => 3,
-               Payload => Codecs.Pack_Drive_Set_Point (Item))),
+               Payload => Codecs.Type_Drive_Set_Point.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -104,7 +104,7 @@ is
               (Id => 274,
                Format => Ravenchart.Can.Standard,
                Length => 3,
-               Payload => Codecs.Pack_Drive_Set_Point (Item))),
+               Payload => Codecs.Type_Drive_Set_Point.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

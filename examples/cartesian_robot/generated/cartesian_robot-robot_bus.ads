@@ -26,7 +26,11 @@ is
       Receive_Depth => 32,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
-      Setting => (Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => False));
+      Setting =>
+        (Bit_Rate => 500_000,
+         Data_Rate => 0,
+         Takes_Fd => False,
+         Recovery => Ravenchart.Can.Automatic));
 
    procedure Send_Robot_Status (Item : Cartesian_Robot.Robot_Report);
    --  [robot_status] hand one frame to the controller; never blocks.

@@ -14,24 +14,25 @@ is
    --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Reception_R : constant := 495_000;
-   Trajectory_R : constant := 805_000;
-   Control_R : constant := 1_955_000;
-   Supervision_R : constant := 3_295_000;
-   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 935_000;
-   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 3_730_000;
-   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 2_390_000;
-   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 2_390_000;
-   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 2_390_000;
-   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 1_675_000;
-   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 1_905_000;
-   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 2_135_000;
+   Reception_R : constant := 555_000;
+   Trajectory_R : constant := 865_000;
+   Control_R : constant := 2_105_000;
+   Supervision_R : constant := 3_405_000;
+   Robot_Bus_Driver_Rx_Robot_Command_R : constant := 995_000;
+   Robot_Bus_Driver_Tx_Robot_Status_R : constant := 3_900_000;
+   Robot_Bus_Driver_Tx_X_Set_Point_R : constant := 2_600_000;
+   Robot_Bus_Driver_Tx_Y_Set_Point_R : constant := 2_600_000;
+   Robot_Bus_Driver_Tx_Z_Set_Point_R : constant := 2_600_000;
+   Robot_Bus_Driver_Rx_X_Feedback_R : constant := 1_735_000;
+   Robot_Bus_Driver_Rx_Y_Feedback_R : constant := 1_965_000;
+   Robot_Bus_Driver_Rx_Z_Feedback_R : constant := 2_195_000;
+   Controller_Supervisor_R : constant := 95_000;
    Controller_Probe_R : constant := 35_000;
    Robot_Bus_Robot_Command_R : constant := 500_000;
-   Robot_Bus_Robot_Status_R : constant := 5_430_000;
-   Robot_Bus_X_Set_Point_R : constant := 4_090_000;
-   Robot_Bus_Y_Set_Point_R : constant := 4_090_000;
-   Robot_Bus_Z_Set_Point_R : constant := 4_090_000;
+   Robot_Bus_Robot_Status_R : constant := 5_600_000;
+   Robot_Bus_X_Set_Point_R : constant := 4_300_000;
+   Robot_Bus_Y_Set_Point_R : constant := 4_300_000;
+   Robot_Bus_Z_Set_Point_R : constant := 4_300_000;
    Robot_Bus_X_Feedback_R : constant := 1_240_000;
    Robot_Bus_Y_Feedback_R : constant := 1_470_000;
    Robot_Bus_Z_Feedback_R : constant := 1_700_000;
@@ -126,7 +127,7 @@ is
 
    --  [robot_bus.driver_rx.robot_command] priority 5, the driver's work,
    --  released by robot_bus.robot_command, which is J late. B: supervision
-   --  may be inside robot_bus.transmit.
+   --  may be inside coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_Robot_Command_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
@@ -143,7 +144,7 @@ is
 
    --  [robot_bus.driver_tx.robot_status] priority 5, the driver's work,
    --  released by supervision, which is J late. B: supervision may be
-   --  inside robot_bus.transmit.
+   --  inside coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_Robot_Status_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
@@ -158,7 +159,7 @@ is
 
    --  [robot_bus.driver_tx.x_set_point] priority 5, the driver's work,
    --  released by control, which is J late. B: supervision may be inside
-   --  robot_bus.transmit.
+   --  coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
@@ -173,7 +174,7 @@ is
 
    --  [robot_bus.driver_tx.y_set_point] priority 5, the driver's work,
    --  released by control, which is J late. B: supervision may be inside
-   --  robot_bus.transmit.
+   --  coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
@@ -188,7 +189,7 @@ is
 
    --  [robot_bus.driver_tx.z_set_point] priority 5, the driver's work,
    --  released by control, which is J late. B: supervision may be inside
-   --  robot_bus.transmit.
+   --  coordinator.Mission.queue.
    Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
@@ -203,7 +204,7 @@ is
 
    --  [robot_bus.driver_rx.x_feedback] priority 5, the driver's work,
    --  released by robot_bus.x_feedback, which is J late. B: supervision may
-   --  be inside robot_bus.transmit.
+   --  be inside coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_X_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
@@ -218,7 +219,7 @@ is
 
    --  [robot_bus.driver_rx.y_feedback] priority 5, the driver's work,
    --  released by robot_bus.y_feedback, which is J late. B: supervision may
-   --  be inside robot_bus.transmit.
+   --  be inside coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
@@ -233,7 +234,7 @@ is
 
    --  [robot_bus.driver_rx.z_feedback] priority 5, the driver's work,
    --  released by robot_bus.z_feedback, which is J late. B: supervision may
-   --  be inside robot_bus.transmit.
+   --  be inside coordinator.Mission.queue.
    Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
@@ -246,7 +247,19 @@ is
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [controller.probe] priority 6, released every T. B: main may be
+   --  [controller.supervisor] priority 6, released every T. B: supervision
+   --  may be inside coordinator.Mission.queue.
+   Controller_Supervisor_Budget : constant := 50_000;
+   Controller_Supervisor_T : constant := 10_000_000;
+   Controller_Supervisor_D : constant := 10_000_000;
+   Controller_Supervisor_J : constant := 0;
+   Controller_Supervisor_A : constant :=
+     Controller_Supervisor_J + (Controller_Supervisor_T - 1);
+   Controller_Supervisor_C : constant :=
+     Controller_Supervisor_Budget + 2 * Controller_Context_Switch;
+   Controller_Supervisor_B : constant := Controller_Critical_Section;
+
+   --  [controller.probe] priority 7, released every T. B: main may be
    --  inside controller.probe.board.
    Controller_Probe_Budget : constant := 20_000;
    Controller_Probe_T : constant := 1_000_000;
@@ -424,6 +437,8 @@ is
      + (((Reception_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Reception_W + Controller_Supervisor_A) / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Reception_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -472,6 +487,8 @@ is
      + (((Trajectory_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Trajectory_W + Controller_Supervisor_A) / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Trajectory_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -521,6 +538,8 @@ is
      + (((Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Control_W + Controller_Supervisor_A) / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Control_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -540,7 +559,7 @@ is
    pragma Assert (Control_R <= Control_D);
 
    --  [joint_x.ports] done, from the event that releases its processor
-   Joint_X_Ports_Done : constant := 915_000;
+   Joint_X_Ports_Done : constant := 975_000;
    Joint_X_Ports_W : constant := Joint_X_Ports_Done - Control_J;
    Joint_X_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -572,6 +591,9 @@ is
      + (((Joint_X_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_X_Ports_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_X_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -584,7 +606,7 @@ is
 
    --  [joint_x.position_control] done, from the event that releases its
    --  processor
-   Joint_X_Position_Control_Done : constant := 1_255_000;
+   Joint_X_Position_Control_Done : constant := 1_315_000;
    Joint_X_Position_Control_W : constant :=
      Joint_X_Position_Control_Done - Control_J;
    Joint_X_Position_Control_Needs : constant :=
@@ -621,6 +643,9 @@ is
      + (((Joint_X_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_X_Position_Control_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_X_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -635,7 +660,7 @@ is
       & "can take longer than its claimed response time");
 
    --  [joint_y.ports] done, from the event that releases its processor
-   Joint_Y_Ports_Done : constant := 1_355_000;
+   Joint_Y_Ports_Done : constant := 1_415_000;
    Joint_Y_Ports_W : constant := Joint_Y_Ports_Done - Control_J;
    Joint_Y_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -670,6 +695,9 @@ is
      + (((Joint_Y_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Y_Ports_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_Y_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -682,7 +710,7 @@ is
 
    --  [joint_y.position_control] done, from the event that releases its
    --  processor
-   Joint_Y_Position_Control_Done : constant := 1_605_000;
+   Joint_Y_Position_Control_Done : constant := 1_665_000;
    Joint_Y_Position_Control_W : constant :=
      Joint_Y_Position_Control_Done - Control_J;
    Joint_Y_Position_Control_Needs : constant :=
@@ -722,6 +750,9 @@ is
      + (((Joint_Y_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Y_Position_Control_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_Y_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -736,7 +767,7 @@ is
       & "can take longer than its claimed response time");
 
    --  [joint_z.ports] done, from the event that releases its processor
-   Joint_Z_Ports_Done : constant := 1_705_000;
+   Joint_Z_Ports_Done : constant := 1_765_000;
    Joint_Z_Ports_W : constant := Joint_Z_Ports_Done - Control_J;
    Joint_Z_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -774,6 +805,9 @@ is
      + (((Joint_Z_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Z_Ports_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_Z_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -786,7 +820,7 @@ is
 
    --  [joint_z.position_control] done, from the event that releases its
    --  processor
-   Joint_Z_Position_Control_Done : constant := 1_955_000;
+   Joint_Z_Position_Control_Done : constant := 2_105_000;
    Joint_Z_Position_Control_W : constant :=
      Joint_Z_Position_Control_Done - Control_J;
    Joint_Z_Position_Control_Needs : constant :=
@@ -829,6 +863,9 @@ is
      + (((Joint_Z_Position_Control_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_Z_Position_Control_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_Z_Position_Control_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -874,6 +911,8 @@ is
      + (((Supervision_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Supervision_W + Controller_Supervisor_A) / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Supervision_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -893,7 +932,7 @@ is
    pragma Assert (Supervision_R <= Supervision_D);
 
    --  [coordinator.ports] done, from the event that releases its processor
-   Coordinator_Ports_Done : constant := 2_155_000;
+   Coordinator_Ports_Done : constant := 2_215_000;
    Coordinator_Ports_W : constant := Coordinator_Ports_Done - Supervision_J;
    Coordinator_Ports_Needs : constant :=
      2 * Controller_Context_Switch
@@ -926,6 +965,9 @@ is
      + (((Coordinator_Ports_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Coordinator_Ports_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Coordinator_Ports_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -939,7 +981,7 @@ is
       & "can take longer than its claimed response time");
 
    --  [joint_x.supervise] done, from the event that releases its processor
-   Joint_X_Supervise_Done : constant := 2_905_000;
+   Joint_X_Supervise_Done : constant := 2_965_000;
    Joint_X_Supervise_W : constant := Joint_X_Supervise_Done - Supervision_J;
    Joint_X_Supervise_Needs : constant :=
      2 * Controller_Context_Switch
@@ -977,6 +1019,9 @@ is
      + (((Joint_X_Supervise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Joint_X_Supervise_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Joint_X_Supervise_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -991,7 +1036,7 @@ is
 
    --  [coordinator.summarise] done, from the event that releases its
    --  processor
-   Coordinator_Summarise_Done : constant := 3_295_000;
+   Coordinator_Summarise_Done : constant := 3_405_000;
    Coordinator_Summarise_W : constant :=
      Coordinator_Summarise_Done - Supervision_J;
    Coordinator_Summarise_Needs : constant :=
@@ -1035,6 +1080,9 @@ is
      + (((Coordinator_Summarise_W + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Coordinator_Summarise_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Coordinator_Summarise_W + Controller_Probe_A) / Controller_Probe_T)
         * Controller_Probe_C);
 
@@ -1083,6 +1131,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Robot_Command_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Rx_Robot_Command_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1148,6 +1199,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_Robot_Status_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Tx_Robot_Status_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1213,6 +1267,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_X_Set_Point_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Tx_X_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1275,6 +1332,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_Y_Set_Point_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Tx_Y_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1337,6 +1397,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Tx_Z_Set_Point_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Tx_Z_Set_Point_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1399,6 +1462,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_X_Feedback_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Rx_X_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1461,6 +1527,9 @@ is
           + Robot_Bus_Driver_Rx_Z_Feedback_A)
          / Robot_Bus_Driver_Rx_Z_Feedback_T)
         * Robot_Bus_Driver_Rx_Z_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Y_Feedback_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Rx_Y_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1523,6 +1592,9 @@ is
           + Robot_Bus_Driver_Rx_Y_Feedback_A)
          / Robot_Bus_Driver_Rx_Y_Feedback_T)
         * Robot_Bus_Driver_Rx_Y_Feedback_C)
+     + (((Robot_Bus_Driver_Rx_Z_Feedback_W + Controller_Supervisor_A)
+         / Controller_Supervisor_T)
+        * Controller_Supervisor_C)
      + (((Robot_Bus_Driver_Rx_Z_Feedback_W + Controller_Probe_A)
          / Controller_Probe_T)
         * Controller_Probe_C);
@@ -1550,6 +1622,34 @@ is
    pragma Assert
      (Robot_Bus_Driver_Rx_Z_Feedback_R <= Robot_Bus_Driver_Rx_Z_Feedback_D);
 
+   --  [controller.supervisor] what can delay it: jobs of the same or higher
+   --  priority
+   Controller_Supervisor_W : constant :=
+     Controller_Supervisor_R - Controller_Supervisor_J;
+   Controller_Supervisor_Needs : constant :=
+     Controller_Supervisor_C
+     + Controller_Supervisor_B
+     + (((Controller_Supervisor_W + Controller_Probe_A) / Controller_Probe_T)
+        * Controller_Probe_C);
+
+   pragma Compile_Time_Error
+     (0 > Controller_Supervisor_W,
+      "controller.supervisor "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Controller_Supervisor_Needs > Controller_Supervisor_W,
+      "controller.supervisor "
+      & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Controller_Supervisor_J + Controller_Supervisor_W)
+      > Controller_Supervisor_T,
+      "controller.supervisor " & "can be released again before it completes");
+   pragma Compile_Time_Error
+     (Controller_Supervisor_R > Controller_Supervisor_D,
+      "controller.supervisor " & "can miss its deadline");
+   pragma Assert (Controller_Supervisor_Needs <= Controller_Supervisor_W);
+   pragma Assert (Controller_Supervisor_R <= Controller_Supervisor_D);
+
    --  [controller.probe] what can delay it: jobs of the same or higher
    --  priority
    Controller_Probe_W : constant := Controller_Probe_R - Controller_Probe_J;
@@ -1570,6 +1670,23 @@ is
       "controller.probe " & "can miss its deadline");
    pragma Assert (Controller_Probe_Needs <= Controller_Probe_W);
    pragma Assert (Controller_Probe_R <= Controller_Probe_D);
+
+   --  [controller] a release that has not completed L after it was due
+   --  makes its processor silent; the supervisor has reported that S after
+   --  the release was due
+   Controller_Margin : constant := 250_000_000;
+   Reception_L : constant := Reception_D + Controller_Margin;
+   Reception_S : constant :=
+     Reception_L + Controller_Supervisor_T + Controller_Supervisor_R;
+   Trajectory_L : constant := Trajectory_D + Controller_Margin;
+   Trajectory_S : constant :=
+     Trajectory_L + Controller_Supervisor_T + Controller_Supervisor_R;
+   Control_L : constant := Control_D + Controller_Margin;
+   Control_S : constant :=
+     Control_L + Controller_Supervisor_T + Controller_Supervisor_R;
+   Supervision_L : constant := Supervision_D + Controller_Margin;
+   Supervision_S : constant :=
+     Supervision_L + Controller_Supervisor_T + Controller_Supervisor_R;
 
    --  [robot_bus.robot_command] what can delay it: frames that go before
    --  it, and one of those that go behind it, the longest of which counts
@@ -2347,7 +2464,7 @@ is
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
 
-   Robot_Bus_X_Feedback_Turn : constant := 6_675_000;
+   Robot_Bus_X_Feedback_Turn : constant := 6_735_000;
 
    pragma Compile_Time_Error
      ((Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_1)
@@ -2466,7 +2583,7 @@ is
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
 
-   Robot_Bus_Y_Feedback_Turn : constant := 6_905_000;
+   Robot_Bus_Y_Feedback_Turn : constant := 6_965_000;
 
    pragma Compile_Time_Error
      ((Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_1)
@@ -2585,7 +2702,7 @@ is
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
 
-   Robot_Bus_Z_Feedback_Turn : constant := 5_135_000;
+   Robot_Bus_Z_Feedback_Turn : constant := 5_195_000;
 
    pragma Compile_Time_Error
      ((Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_1)
@@ -2604,7 +2721,7 @@ is
      Robot_Bus_Z_Feedback_Turn + (2 * Reception_R);
 
    --  [x_loop] from end to end. joint_x.ports samples.
-   Chain_X_Loop_Reaction : constant := 21_755_000;
+   Chain_X_Loop_Reaction : constant := 22_145_000;
    Chain_X_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_X_Loop_Reaction_Needs : constant :=
      Robot_Bus_X_Feedback_Handed + Control_T + Robot_Bus_X_Set_Point_R;
@@ -2618,7 +2735,7 @@ is
    pragma Assert
      (Chain_X_Loop_Reaction_Needs <= Chain_X_Loop_Reaction_Limit);
 
-   Chain_X_Loop_Age : constant := 16_755_000;
+   Chain_X_Loop_Age : constant := 17_145_000;
    Chain_X_Loop_Age_Limit : constant := 20_000_000;
    Chain_X_Loop_Age_Needs : constant :=
      Robot_Bus_X_Feedback_Handed
@@ -2634,7 +2751,7 @@ is
    pragma Assert (Chain_X_Loop_Age_Needs <= Chain_X_Loop_Age_Limit);
 
    --  [y_loop] from end to end. joint_y.ports samples.
-   Chain_Y_Loop_Reaction : constant := 21_985_000;
+   Chain_Y_Loop_Reaction : constant := 22_375_000;
    Chain_Y_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_Y_Loop_Reaction_Needs : constant :=
      Robot_Bus_Y_Feedback_Handed + Control_T + Robot_Bus_Y_Set_Point_R;
@@ -2648,7 +2765,7 @@ is
    pragma Assert
      (Chain_Y_Loop_Reaction_Needs <= Chain_Y_Loop_Reaction_Limit);
 
-   Chain_Y_Loop_Age : constant := 16_985_000;
+   Chain_Y_Loop_Age : constant := 17_375_000;
    Chain_Y_Loop_Age_Limit : constant := 20_000_000;
    Chain_Y_Loop_Age_Needs : constant :=
      Robot_Bus_Y_Feedback_Handed
@@ -2664,7 +2781,7 @@ is
    pragma Assert (Chain_Y_Loop_Age_Needs <= Chain_Y_Loop_Age_Limit);
 
    --  [z_loop] from end to end. joint_z.ports samples.
-   Chain_Z_Loop_Reaction : constant := 20_215_000;
+   Chain_Z_Loop_Reaction : constant := 20_605_000;
    Chain_Z_Loop_Reaction_Limit : constant := 25_000_000;
    Chain_Z_Loop_Reaction_Needs : constant :=
      Robot_Bus_Z_Feedback_Handed + Control_T + Robot_Bus_Z_Set_Point_R;
@@ -2678,7 +2795,7 @@ is
    pragma Assert
      (Chain_Z_Loop_Reaction_Needs <= Chain_Z_Loop_Reaction_Limit);
 
-   Chain_Z_Loop_Age : constant := 15_215_000;
+   Chain_Z_Loop_Age : constant := 15_605_000;
    Chain_Z_Loop_Age_Limit : constant := 20_000_000;
    Chain_Z_Loop_Age_Needs : constant :=
      Robot_Bus_Z_Feedback_Handed
@@ -2695,7 +2812,7 @@ is
 
    --  [status] from end to end. joint_x.ports samples. joint_x.supervise
    --  samples. coordinator.ports samples.
-   Chain_Status_Reaction : constant := 67_255_000;
+   Chain_Status_Reaction : constant := 67_725_000;
    Chain_Status_Reaction_Limit : constant := 80_000_000;
    Chain_Status_Reaction_Needs : constant :=
      Robot_Bus_X_Feedback_Handed
@@ -2715,7 +2832,7 @@ is
    pragma Assert
      (Chain_Status_Reaction_Needs <= Chain_Status_Reaction_Limit);
 
-   Chain_Status_Age : constant := 52_255_000;
+   Chain_Status_Age : constant := 52_725_000;
    Chain_Status_Age_Limit : constant := 60_000_000;
    Chain_Status_Age_Needs : constant :=
      Robot_Bus_X_Feedback_Handed

@@ -10,5 +10,5 @@ with SPARK_Mode
 is
    package Buffer is new Ravenchart.Trace_Buffers
      (Capacity => 4_096,
-      Ceiling => System.Default_Priority + 4);
+      Ceiling => System.Default_Priority + 6);
 end Cartesian_Robot.Trace;

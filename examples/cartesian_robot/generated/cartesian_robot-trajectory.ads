@@ -24,7 +24,8 @@ is
 
    --  [trajectory]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "trajectory",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
         (Joint_X_Trajectory_Step => (Divisor => 1, Phase => 0),
@@ -35,6 +36,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Trajectory_D,
       Task_Priority => System.Default_Priority + 3,
+      Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

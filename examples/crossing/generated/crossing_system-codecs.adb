@@ -10,239 +10,475 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function Bits_Of_Order
+   function Bits_Of_Type_Order
      (Item : Crossing_System.Order)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Order'Pos (Item)))
    with
      Post =>
-       Bits_Of_Order'Result <= 1
-       and then Order_Of_Bits (Bits_Of_Order'Result) = Item;
+       Bits_Of_Type_Order'Result <= 1
+       and then Value_Of_Type_Order (Bits_Of_Type_Order'Result) = Item;
 
-   function Bits_Of_Press
+   function Bits_Of_Type_Press
      (Item : Crossing_System.Press)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Press'Pos (Item)))
    with
      Post =>
-       Bits_Of_Press'Result <= 0
-       and then Press_Of_Bits (Bits_Of_Press'Result) = Item;
+       Bits_Of_Type_Press'Result <= 0
+       and then Value_Of_Type_Press (Bits_Of_Type_Press'Result) = Item;
 
-   function Bits_Of_Car_Light
+   function Bits_Of_Type_Car_Light
      (Item : Crossing_System.Car_Light)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Car_Light'Pos (Item)))
    with
      Post =>
-       Bits_Of_Car_Light'Result <= 4
-       and then Car_Light_Of_Bits (Bits_Of_Car_Light'Result) = Item;
+       Bits_Of_Type_Car_Light'Result <= 4
+       and then Value_Of_Type_Car_Light (Bits_Of_Type_Car_Light'Result)
+         = Item;
 
-   function Bits_Of_Walk_Light
+   function Bits_Of_Type_Walk_Light
      (Item : Crossing_System.Walk_Light)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Crossing_System.Walk_Light'Pos (Item)))
    with
      Post =>
-       Bits_Of_Walk_Light'Result <= 2
-       and then Walk_Light_Of_Bits (Bits_Of_Walk_Light'Result) = Item;
+       Bits_Of_Type_Walk_Light'Result <= 2
+       and then Value_Of_Type_Walk_Light (Bits_Of_Type_Walk_Light'Result)
+         = Item;
 
-   function Bits_Of_Boolean (Item : Boolean) return Interfaces.Unsigned_8 is
+   function Bits_Of_Type_Boolean
+     (Item : Boolean)
+     return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
-       Bits_Of_Boolean'Result <= 1
-       and then Boolean_Of_Bits (Bits_Of_Boolean'Result) = Item;
+       Bits_Of_Type_Boolean'Result <= 1
+       and then Value_Of_Type_Boolean (Bits_Of_Type_Boolean'Result) = Item;
 
-   function Word_Of_Order
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#1#,
-     Post => Order_Value_Raw (Word_Of_Order'Result) = Value_Raw;
+   package body Type_Order is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   function Pack_Order
-     (Item : Crossing_System.Order)
-     return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Order (Item);
-   begin
-      return Word_Of_Order (Value_Raw);
-   end Pack_Order;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 1)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 1)
+          and then (if Raw <= 1
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Crossing_System.Order'Pos (Value_Of_Type_Order (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
 
-   procedure Unpack_Order
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Order;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 := Order_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 1;
-      if Valid then
-         Item := Order_Of_Bits (Value_Raw);
-      else
-         Item := Crossing_System.Blink;
-      end if;
-   end Unpack_Order;
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#1#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
-   procedure Lemma_Order_Survives (Item : Crossing_System.Order) is
-      Copy : Crossing_System.Order;
-      Valid : Boolean;
-   begin
-      Unpack_Order (Pack_Order (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Order_Survives;
+      function Pack
+        (Item : Crossing_System.Order)
+        return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Order (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
 
-   function Word_Of_Press
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#1#,
-     Post => Press_Value_Raw (Word_Of_Press'Result) = Value_Raw;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Order;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 1;
+         if Valid then
+            Item := Value_Of_Type_Order (Local_Value);
+         else
+            Item := Crossing_System.Blink;
+         end if;
+      end Unpack;
 
-   function Pack_Press
-     (Item : Crossing_System.Press)
-     return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Press (Item);
-   begin
-      return Word_Of_Press (Value_Raw);
-   end Pack_Press;
+      procedure Lemma_Survives (Item : Crossing_System.Order) is
+         Copy : Crossing_System.Order;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Order;
 
-   procedure Unpack_Press
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Press;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 := Press_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 0;
-      if Valid then
-         Item := Press_Of_Bits (Value_Raw);
-      else
-         Item := Crossing_System.Pressed;
-      end if;
-   end Unpack_Press;
+   package body Type_Press is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   procedure Lemma_Press_Survives (Item : Crossing_System.Press) is
-      Copy : Crossing_System.Press;
-      Valid : Boolean;
-   begin
-      Unpack_Press (Pack_Press (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Press_Survives;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 0)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 0)
+          and then (if Raw <= 0
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Crossing_System.Press'Pos (Value_Of_Type_Press (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
 
-   function Word_Of_Car_Light
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#7#,
-     Post => Car_Light_Value_Raw (Word_Of_Car_Light'Result) = Value_Raw;
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#1#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
-   function Pack_Car_Light
-     (Item : Crossing_System.Car_Light)
-     return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Car_Light (Item);
-   begin
-      return Word_Of_Car_Light (Value_Raw);
-   end Pack_Car_Light;
+      function Pack
+        (Item : Crossing_System.Press)
+        return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Press (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
 
-   procedure Unpack_Car_Light
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Car_Light;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 :=
-        Car_Light_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 4;
-      if Valid then
-         Item := Car_Light_Of_Bits (Value_Raw);
-      else
-         Item := Crossing_System.Dark;
-      end if;
-   end Unpack_Car_Light;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Press;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 0;
+         if Valid then
+            Item := Value_Of_Type_Press (Local_Value);
+         else
+            Item := Crossing_System.Pressed;
+         end if;
+      end Unpack;
 
-   procedure Lemma_Car_Light_Survives (Item : Crossing_System.Car_Light) is
-      Copy : Crossing_System.Car_Light;
-      Valid : Boolean;
-   begin
-      Unpack_Car_Light (Pack_Car_Light (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Car_Light_Survives;
+      procedure Lemma_Survives (Item : Crossing_System.Press) is
+         Copy : Crossing_System.Press;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Press;
 
-   function Word_Of_Walk_Light
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#3#,
-     Post => Walk_Light_Value_Raw (Word_Of_Walk_Light'Result) = Value_Raw;
+   package body Type_Car_Light is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   function Pack_Walk_Light
-     (Item : Crossing_System.Walk_Light)
-     return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Walk_Light (Item);
-   begin
-      return Word_Of_Walk_Light (Value_Raw);
-   end Pack_Walk_Light;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#7#,
+        Post =>
+          (Raw <= 4)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 4)
+          and then (if Raw <= 4
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Crossing_System.Car_Light'Pos
+                       (Value_Of_Type_Car_Light (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
 
-   procedure Unpack_Walk_Light
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Walk_Light;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 :=
-        Walk_Light_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 2;
-      if Valid then
-         Item := Walk_Light_Of_Bits (Value_Raw);
-      else
-         Item := Crossing_System.Dark;
-      end if;
-   end Unpack_Walk_Light;
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#7#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
-   procedure Lemma_Walk_Light_Survives (Item : Crossing_System.Walk_Light) is
-      Copy : Crossing_System.Walk_Light;
-      Valid : Boolean;
-   begin
-      Unpack_Walk_Light (Pack_Walk_Light (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Walk_Light_Survives;
+      function Pack
+        (Item : Crossing_System.Car_Light)
+        return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Car_Light (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
 
-   function Word_Of_Boolean
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#1#,
-     Post => Boolean_Value_Raw (Word_Of_Boolean'Result) = Value_Raw;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Car_Light;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 4;
+         if Valid then
+            Item := Value_Of_Type_Car_Light (Local_Value);
+         else
+            Item := Crossing_System.Dark;
+         end if;
+      end Unpack;
 
-   function Pack_Boolean (Item : Boolean) return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Boolean (Item);
-   begin
-      return Word_Of_Boolean (Value_Raw);
-   end Pack_Boolean;
+      procedure Lemma_Survives (Item : Crossing_System.Car_Light) is
+         Copy : Crossing_System.Car_Light;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Car_Light;
 
-   procedure Unpack_Boolean
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Boolean;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 :=
-        Boolean_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 1;
-      if Valid then
-         Item := Boolean_Of_Bits (Value_Raw);
-      else
-         Item := False;
-      end if;
-   end Unpack_Boolean;
+   package body Type_Walk_Light is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   procedure Lemma_Boolean_Survives (Item : Boolean) is
-      Copy : Boolean;
-      Valid : Boolean;
-   begin
-      Unpack_Boolean (Pack_Boolean (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Boolean_Survives;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#3#,
+        Post =>
+          (Raw <= 2)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 2)
+          and then (if Raw <= 2
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Crossing_System.Walk_Light'Pos
+                       (Value_Of_Type_Walk_Light (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
+
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#3#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
+
+      function Pack
+        (Item : Crossing_System.Walk_Light)
+        return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Walk_Light (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Walk_Light;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 2;
+         if Valid then
+            Item := Value_Of_Type_Walk_Light (Local_Value);
+         else
+            Item := Crossing_System.Dark;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Crossing_System.Walk_Light) is
+         Copy : Crossing_System.Walk_Light;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Walk_Light;
+
+   package body Type_Boolean is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
+
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 1)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 1)
+          and then (if Raw <= 1
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Boolean'Pos (Value_Of_Type_Boolean (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
+
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#1#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
+
+      function Pack (Item : Boolean) return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Boolean (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Boolean;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 1;
+         if Valid then
+            Item := Value_Of_Type_Boolean (Local_Value);
+         else
+            Item := False;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Boolean) is
+         Copy : Boolean;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Boolean;
 end Crossing_System.Codecs;

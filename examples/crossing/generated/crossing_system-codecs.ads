@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Layouts;
 
 package Crossing_System.Codecs
 with SPARK_Mode, Pure
@@ -14,185 +15,248 @@ is
 
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
+   use type Ravenchart.Number;
 
-   function Order_Of_Bits
+   function Value_Of_Type_Order
      (Raw : Interfaces.Unsigned_8)
      return Crossing_System.Order is
      (Crossing_System.Order'Val (Raw))
    with Pre => Raw <= 1;
 
-   function Press_Of_Bits
+   function Value_Of_Type_Press
      (Raw : Interfaces.Unsigned_8)
      return Crossing_System.Press is
      (Crossing_System.Press'Val (Raw))
    with Pre => Raw <= 0;
 
-   function Car_Light_Of_Bits
+   function Value_Of_Type_Car_Light
      (Raw : Interfaces.Unsigned_8)
      return Crossing_System.Car_Light is
      (Crossing_System.Car_Light'Val (Raw))
    with Pre => Raw <= 4;
 
-   function Walk_Light_Of_Bits
+   function Value_Of_Type_Walk_Light
      (Raw : Interfaces.Unsigned_8)
      return Crossing_System.Walk_Light is
      (Crossing_System.Walk_Light'Val (Raw))
    with Pre => Raw <= 2;
 
-   function Boolean_Of_Bits (Raw : Interfaces.Unsigned_8) return Boolean is
+   function Value_Of_Type_Boolean
+     (Raw : Interfaces.Unsigned_8)
+     return Boolean is
      (Boolean'Val (Raw))
    with Pre => Raw <= 1;
 
-   function Order_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#1#));
-   --  [Order.value] bits 0 .. 0
+   package Type_Order is
+      --  [Order.value] bits 0 .. 0
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Pack_Order
-     (Item : Crossing_System.Order)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Order_Value_Raw (Pack_Order'Result) <= 1
-       and then Order_Of_Bits (Order_Value_Raw (Pack_Order'Result)) = Item;
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#1#));
 
-   procedure Unpack_Order
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Order;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Order_Value_Raw (Word) <= 1)
-       and then (if Valid
-             then Item = Order_Of_Bits (Order_Value_Raw (Word))
-          else Item = Crossing_System.Blink);
-   --  Valid when all bits stand for values.
+      function Pack
+        (Item : Crossing_System.Order)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Crossing_System.Order'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFFE#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   procedure Lemma_Order_Survives (Item : Crossing_System.Order)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Order;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 1)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Crossing_System.Order'Pos (Item)
+             else Item = Crossing_System.Blink);
+      --  Valid when all bits stand for values.
 
-   function Press_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#1#));
-   --  [Press.value] bits 0 .. 0
+      procedure Lemma_Survives (Item : Crossing_System.Order)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Order;
 
-   function Pack_Press
-     (Item : Crossing_System.Press)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Press_Value_Raw (Pack_Press'Result) <= 0
-       and then Press_Of_Bits (Press_Value_Raw (Pack_Press'Result)) = Item;
+   package Type_Press is
+      --  [Press.value] bits 0 .. 0
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Unpack_Press
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Press;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Press_Value_Raw (Word) <= 0)
-       and then (if Valid
-             then Item = Press_Of_Bits (Press_Value_Raw (Word))
-          else Item = Crossing_System.Pressed);
-   --  Valid when all bits stand for values.
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#1#));
 
-   procedure Lemma_Press_Survives (Item : Crossing_System.Press)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Pack
+        (Item : Crossing_System.Press)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Crossing_System.Press'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFFE#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function Car_Light_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#7#));
-   --  [Car_Light.value] bits 0 .. 2
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Press;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 0)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Crossing_System.Press'Pos (Item)
+             else Item = Crossing_System.Pressed);
+      --  Valid when all bits stand for values.
 
-   function Pack_Car_Light
-     (Item : Crossing_System.Car_Light)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Car_Light_Value_Raw (Pack_Car_Light'Result) <= 4
-       and then Car_Light_Of_Bits
-           (Car_Light_Value_Raw (Pack_Car_Light'Result))
-         = Item;
+      procedure Lemma_Survives (Item : Crossing_System.Press)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Press;
 
-   procedure Unpack_Car_Light
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Car_Light;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Car_Light_Value_Raw (Word) <= 4)
-       and then (if Valid
-             then Item = Car_Light_Of_Bits (Car_Light_Value_Raw (Word))
-          else Item = Crossing_System.Dark);
-   --  Valid when all bits stand for values.
+   package Type_Car_Light is
+      --  [Car_Light.value] bits 0 .. 2
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 3,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Lemma_Car_Light_Survives (Item : Crossing_System.Car_Light)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#7#));
 
-   function Walk_Light_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#3#));
-   --  [Walk_Light.value] bits 0 .. 1
+      function Pack
+        (Item : Crossing_System.Car_Light)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Crossing_System.Car_Light'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFF8#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function Pack_Walk_Light
-     (Item : Crossing_System.Walk_Light)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Walk_Light_Value_Raw (Pack_Walk_Light'Result) <= 2
-       and then Walk_Light_Of_Bits
-           (Walk_Light_Value_Raw (Pack_Walk_Light'Result))
-         = Item;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Car_Light;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 4)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Crossing_System.Car_Light'Pos (Item)
+             else Item = Crossing_System.Dark);
+      --  Valid when all bits stand for values.
 
-   procedure Unpack_Walk_Light
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Crossing_System.Walk_Light;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Walk_Light_Value_Raw (Word) <= 2)
-       and then (if Valid
-             then Item = Walk_Light_Of_Bits (Walk_Light_Value_Raw (Word))
-          else Item = Crossing_System.Dark);
-   --  Valid when all bits stand for values.
+      procedure Lemma_Survives (Item : Crossing_System.Car_Light)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Car_Light;
 
-   procedure Lemma_Walk_Light_Survives (Item : Crossing_System.Walk_Light)
-   with Ghost;
-   --  What is packed is what is unpacked.
+   package Type_Walk_Light is
+      --  [Walk_Light.value] bits 0 .. 1
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 2,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Boolean_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#1#));
-   --  [Boolean.value] bits 0 .. 0
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#3#));
 
-   function Pack_Boolean (Item : Boolean) return Interfaces.Unsigned_64
-   with
-     Post =>
-       Boolean_Value_Raw (Pack_Boolean'Result) <= 1
-       and then Boolean_Of_Bits (Boolean_Value_Raw (Pack_Boolean'Result))
-         = Item;
+      function Pack
+        (Item : Crossing_System.Walk_Light)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Crossing_System.Walk_Light'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFFC#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   procedure Unpack_Boolean
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Boolean;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Boolean_Value_Raw (Word) <= 1)
-       and then (if Valid
-             then Item = Boolean_Of_Bits (Boolean_Value_Raw (Word))
-          else Item = False);
-   --  Valid when all bits stand for values.
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Crossing_System.Walk_Light;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 2)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Crossing_System.Walk_Light'Pos (Item)
+             else Item = Crossing_System.Dark);
+      --  Valid when all bits stand for values.
 
-   procedure Lemma_Boolean_Survives (Item : Boolean)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      procedure Lemma_Survives (Item : Crossing_System.Walk_Light)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Walk_Light;
+
+   package Type_Boolean is
+      --  [Boolean.value] bits 0 .. 0
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
+
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#1#));
+
+      function Pack (Item : Boolean) return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Boolean'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFFE#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Boolean;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 1)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Boolean'Pos (Item)
+             else Item = False);
+      --  Valid when all bits stand for values.
+
+      procedure Lemma_Survives (Item : Boolean)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Boolean;
 end Crossing_System.Codecs;

@@ -26,7 +26,8 @@ is
 
    --  [control]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "control",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
         (School_Ports => (Divisor => 1, Phase => 0),
@@ -37,6 +38,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
       Task_Priority => System.Default_Priority + 1,
+      Ceiling => System.Default_Priority + 1,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

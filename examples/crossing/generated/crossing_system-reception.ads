@@ -24,11 +24,13 @@ is
    --  [reception]
 
    package Processor is new Ravenchart.Sporadic_Processors
-     (Activity_Id => Row,
+     (Name => "reception",
+      Activity_Id => Row,
       Minimum_Separation => Timing_Certificate.Reception_T,
       Wait => Street.Receiver.Wait,
       Deadline => Timing_Certificate.Reception_D,
       Task_Priority => System.Default_Priority + 2,
+      Ceiling => System.Default_Priority + 2,
       Stack_Bytes => 16_384,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

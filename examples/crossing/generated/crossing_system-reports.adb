@@ -9,6 +9,7 @@ with Crossing_System.Reception;
 with Crossing_System.Street;
 with Crossing_System.Trace;
 with Ravenchart.Can;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
@@ -78,10 +79,16 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Street_Counters : Ravenchart.Can.Counters;
+      Street_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Control;
       Health_Counts.Counters.Read (Faults);
+      Street.Controller.Read_Faults (Street_Faults);
+      Faults (Ravenchart.Health.Can_Error_Passive) :=
+        Street_Faults.Passive_Entries;
+      Faults (Ravenchart.Health.Can_Bus_Off) := Street_Faults.Off_Entries;
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;

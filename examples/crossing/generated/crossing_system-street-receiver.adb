@@ -37,7 +37,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Order
+         Codecs.Type_Order.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Order_Item,
             Valid);
@@ -57,7 +57,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Press
+         Codecs.Type_Press.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Button_Item,
             Valid);

@@ -28,7 +28,7 @@ is
               (Id => 288,
                Format => Ravenchart.Can.Standard,
                Length => 1,
-               Payload => Codecs.Pack_Car_Light (Item))),
+               Payload => Codecs.Type_Car_Light.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -55,7 +55,7 @@ is
               (Id => 289,
                Format => Ravenchart.Can.Standard,
                Length => 1,
-               Payload => Codecs.Pack_Walk_Light (Item))),
+               Payload => Codecs.Type_Walk_Light.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
@@ -82,7 +82,7 @@ is
               (Id => 290,
                Format => Ravenchart.Can.Standard,
                Length => 1,
-               Payload => Codecs.Pack_Boolean (Item))),
+               Payload => Codecs.Type_Boolean.Pack (Item))),
          Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Sign_Message, 0);
       if Status /= Ravenchart.Can.Queued then

@@ -10,22 +10,22 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function Bits_Of_Line
+   function Bits_Of_Type_Line
      (Item : Infusion_System.Line)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Line'Pos (Item)))
    with
      Post =>
-       Bits_Of_Line'Result <= 2
-       and then Line_Of_Bits (Bits_Of_Line'Result) = Item;
+       Bits_Of_Type_Line'Result <= 2
+       and then Value_Of_Type_Line (Bits_Of_Type_Line'Result) = Item;
 
-   function Bits_Of_Portion
+   function Bits_Of_Type_Portion
      (Item : Infusion_System.Portion)
      return Interfaces.Unsigned_16
    with
      Post =>
-       Bits_Of_Portion'Result <= 500
-       and then Portion_Of_Bits (Bits_Of_Portion'Result) = Item
+       Bits_Of_Type_Portion'Result <= 500
+       and then Value_Of_Type_Portion (Bits_Of_Type_Portion'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 511 :=
         Ravenchart.Number (Item);
@@ -34,24 +34,24 @@ is
    begin
       pragma Assert (Ravenchart.Number (Raw) = Whole);
       return Raw;
-   end Bits_Of_Portion;
+   end Bits_Of_Type_Portion;
 
-   function Bits_Of_Key
+   function Bits_Of_Type_Key
      (Item : Infusion_System.Key)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Key'Pos (Item)))
    with
      Post =>
-       Bits_Of_Key'Result <= 5
-       and then Key_Of_Bits (Bits_Of_Key'Result) = Item;
+       Bits_Of_Type_Key'Result <= 5
+       and then Value_Of_Type_Key (Bits_Of_Type_Key'Result) = Item;
 
-   function Bits_Of_Volume
+   function Bits_Of_Type_Volume
      (Item : Infusion_System.Volume)
      return Interfaces.Unsigned_32
    with
      Post =>
-       Bits_Of_Volume'Result <= 1_000_000
-       and then Volume_Of_Bits (Bits_Of_Volume'Result) = Item
+       Bits_Of_Type_Volume'Result <= 1_000_000
+       and then Value_Of_Type_Volume (Bits_Of_Type_Volume'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 1_048_575 :=
         Ravenchart.Number (Item);
@@ -60,206 +60,525 @@ is
    begin
       pragma Assert (Ravenchart.Number (Raw) = Whole);
       return Raw;
-   end Bits_Of_Volume;
+   end Bits_Of_Type_Volume;
 
-   function Bits_Of_Lamp
+   function Bits_Of_Type_Lamp
      (Item : Infusion_System.Lamp)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Infusion_System.Lamp'Pos (Item)))
    with
      Post =>
-       Bits_Of_Lamp'Result <= 2
-       and then Lamp_Of_Bits (Bits_Of_Lamp'Result) = Item;
+       Bits_Of_Type_Lamp'Result <= 2
+       and then Value_Of_Type_Lamp (Bits_Of_Type_Lamp'Result) = Item;
 
-   function Bits_Of_Boolean (Item : Boolean) return Interfaces.Unsigned_8 is
+   function Bits_Of_Type_Boolean
+     (Item : Boolean)
+     return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Boolean'Pos (Item)))
    with
      Post =>
-       Bits_Of_Boolean'Result <= 1
-       and then Boolean_Of_Bits (Bits_Of_Boolean'Result) = Item;
+       Bits_Of_Type_Boolean'Result <= 1
+       and then Value_Of_Type_Boolean (Bits_Of_Type_Boolean'Result) = Item;
 
-   function Word_Of_Line
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#3#,
-     Post => Line_Value_Raw (Word_Of_Line'Result) = Value_Raw;
+   package body Type_Line is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   function Pack_Line
-     (Item : Infusion_System.Line)
-     return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Line (Item);
-   begin
-      return Word_Of_Line (Value_Raw);
-   end Pack_Line;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#3#,
+        Post =>
+          (Raw <= 2)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 2)
+          and then (if Raw <= 2
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Infusion_System.Line'Pos (Value_Of_Type_Line (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
 
-   procedure Unpack_Line
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.Line;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 := Line_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 2;
-      if Valid then
-         Item := Line_Of_Bits (Value_Raw);
-      else
-         Item := Infusion_System.Clear;
-      end if;
-   end Unpack_Line;
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#3#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
-   procedure Lemma_Line_Survives (Item : Infusion_System.Line) is
-      Copy : Infusion_System.Line;
-      Valid : Boolean;
-   begin
-      Unpack_Line (Pack_Line (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Line_Survives;
+      function Pack
+        (Item : Infusion_System.Line)
+        return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Line (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
 
-   function Word_Of_Portion
-     (Value_Raw : Interfaces.Unsigned_16)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#1FF#,
-     Post => Portion_Value_Raw (Word_Of_Portion'Result) = Value_Raw;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.Line;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 2;
+         if Valid then
+            Item := Value_Of_Type_Line (Local_Value);
+         else
+            Item := Infusion_System.Clear;
+         end if;
+      end Unpack;
 
-   function Pack_Portion
-     (Item : Infusion_System.Portion)
-     return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_16 := Bits_Of_Portion (Item);
-   begin
-      return Word_Of_Portion (Value_Raw);
-   end Pack_Portion;
+      procedure Lemma_Survives (Item : Infusion_System.Line) is
+         Copy : Infusion_System.Line;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Line;
 
-   procedure Unpack_Portion
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.Portion;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_16 :=
-        Portion_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 500;
-      if Valid then
-         Item := Portion_Of_Bits (Value_Raw);
-      else
-         Item := 0;
-      end if;
-   end Unpack_Portion;
+   package body Type_Portion is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   procedure Lemma_Portion_Survives (Item : Infusion_System.Portion) is
-      Copy : Infusion_System.Portion;
-      Valid : Boolean;
-   begin
-      Unpack_Portion (Pack_Portion (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Portion_Survives;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_16)
+      with
+        Ghost,
+        Pre => Raw <= 16#1FF#,
+        Post =>
+          (Raw <= 500)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 500)
+          and then (if Raw <= 500
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Ravenchart.Number (Value_Of_Type_Portion (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
 
-   function Word_Of_Press
-     (Key_Raw    : Interfaces.Unsigned_8;
-      Amount_Raw : Interfaces.Unsigned_32)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Key_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Amount_Raw), 3))
-   with
-     Pre => Key_Raw <= 16#7# and then Amount_Raw <= 16#FFFFF#,
-     Post =>
-       Press_Key_Raw (Word_Of_Press'Result) = Key_Raw
-       and then Press_Amount_Raw (Word_Of_Press'Result) = Amount_Raw;
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_16)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#1FF#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
-   function Pack_Press
-     (Item : Infusion_System.Press)
-     return Interfaces.Unsigned_64 is
-      Key_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Key (Item.Key);
-      Amount_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Volume (Item.Amount);
-   begin
-      return Word_Of_Press (Key_Raw, Amount_Raw);
-   end Pack_Press;
+      function Pack
+        (Item : Infusion_System.Portion)
+        return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_16 :=
+           Bits_Of_Type_Portion (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
 
-   procedure Unpack_Press
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.Press;
-      Valid : out Boolean) is
-      Key_Raw : constant Interfaces.Unsigned_8 := Press_Key_Raw (Word);
-      Amount_Raw : constant Interfaces.Unsigned_32 :=
-        Press_Amount_Raw (Word);
-   begin
-      Valid := Key_Raw <= 5 and then Amount_Raw <= 1_000_000;
-      if Valid then
-         Item :=
-           (Key => Key_Of_Bits (Key_Raw),
-            Amount => Volume_Of_Bits (Amount_Raw));
-      else
-         Item := Infusion_System.Default_Press;
-      end if;
-   end Unpack_Press;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.Portion;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_16 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 500;
+         if Valid then
+            Item := Value_Of_Type_Portion (Local_Value);
+         else
+            Item := 0;
+         end if;
+      end Unpack;
 
-   procedure Lemma_Press_Survives (Item : Infusion_System.Press) is
-      Copy : Infusion_System.Press;
-      Valid : Boolean;
-   begin
-      Unpack_Press (Pack_Press (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Press_Survives;
+      procedure Lemma_Survives (Item : Infusion_System.Portion) is
+         Copy : Infusion_System.Portion;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Portion;
 
-   function Word_Of_View
-     (Given_Raw  : Interfaces.Unsigned_32;
-      Lamp_Raw   : Interfaces.Unsigned_8;
-      Buzzer_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Given_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Lamp_Raw), 20)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Buzzer_Raw), 22))
-   with
-     Pre =>
-       Given_Raw <= 16#FFFFF#
-       and then Lamp_Raw <= 16#3#
-       and then Buzzer_Raw <= 16#1#,
-     Post =>
-       View_Given_Raw (Word_Of_View'Result) = Given_Raw
-       and then View_Lamp_Raw (Word_Of_View'Result) = Lamp_Raw
-       and then View_Buzzer_Raw (Word_Of_View'Result) = Buzzer_Raw;
+   package body Type_Press is
+      procedure Lemma_Bits_Key (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Key (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Key)
+      is
+      begin
+         null;
+      end Lemma_Bits_Key;
 
-   function Pack_View
-     (Item : Infusion_System.View)
-     return Interfaces.Unsigned_64 is
-      Given_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Volume (Item.Given);
-      Lamp_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Lamp (Item.Lamp);
-      Buzzer_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Boolean (Item.Buzzer);
-   begin
-      return Word_Of_View (Given_Raw, Lamp_Raw, Buzzer_Raw);
-   end Pack_View;
+      procedure Lemma_Value_Key (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#7#,
+        Post =>
+          (Raw <= 5)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Key)
+             in 0 .. 5)
+          and then (if Raw <= 5
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Key)
+                   = Infusion_System.Key'Pos (Value_Of_Type_Key (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Key)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Key;
 
-   procedure Unpack_View
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.View;
-      Valid : out Boolean) is
-      Given_Raw : constant Interfaces.Unsigned_32 := View_Given_Raw (Word);
-      Lamp_Raw : constant Interfaces.Unsigned_8 := View_Lamp_Raw (Word);
-      Buzzer_Raw : constant Interfaces.Unsigned_8 := View_Buzzer_Raw (Word);
-   begin
-      Valid :=
-        Given_Raw <= 1_000_000
-        and then Lamp_Raw <= 2
-        and then Buzzer_Raw <= 1;
-      if Valid then
-         Item :=
-           (Given => Volume_Of_Bits (Given_Raw),
-            Lamp => Lamp_Of_Bits (Lamp_Raw),
-            Buzzer => Boolean_Of_Bits (Buzzer_Raw));
-      else
-         Item := Infusion_System.Default_View;
-      end if;
-   end Unpack_View;
+      procedure Lemma_Bits_Amount (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Amount (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Amount)
+      is
+      begin
+         null;
+      end Lemma_Bits_Amount;
 
-   procedure Lemma_View_Survives (Item : Infusion_System.View) is
-      Copy : Infusion_System.View;
-      Valid : Boolean;
-   begin
-      Unpack_View (Pack_View (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_View_Survives;
+      procedure Lemma_Value_Amount (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#FFFFF#,
+        Post =>
+          (Raw <= 1_000_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Amount)
+             in 0 .. 1_000_000)
+          and then (if Raw <= 1_000_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Amount)
+                   = Ravenchart.Number (Value_Of_Type_Volume (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Amount)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Amount;
+
+      function Word_Of
+        (Local_Key    : Interfaces.Unsigned_8;
+         Local_Amount : Interfaces.Unsigned_32)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Key)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Amount), 3))
+      with
+        Pre => Local_Key <= 16#7# and then Local_Amount <= 16#FFFFF#,
+        Post =>
+          Raw_Of_Key (Word_Of'Result) = Local_Key
+          and then Raw_Of_Amount (Word_Of'Result) = Local_Amount;
+
+      function Pack
+        (Item : Infusion_System.Press)
+        return Interfaces.Unsigned_64 is
+         Local_Key : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Key (Item.Key);
+         Local_Amount : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Volume (Item.Amount);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Key, Local_Amount);
+      begin
+         Lemma_Bits_Key (Frame);
+         Lemma_Value_Key (Local_Key);
+         Lemma_Bits_Amount (Frame);
+         Lemma_Value_Amount (Local_Amount);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.Press;
+         Valid : out Boolean) is
+         Local_Key : constant Interfaces.Unsigned_8 := Raw_Of_Key (Word);
+         Local_Amount : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Amount (Word);
+      begin
+         Lemma_Bits_Key (Word);
+         Lemma_Value_Key (Local_Key);
+         Lemma_Bits_Amount (Word);
+         Lemma_Value_Amount (Local_Amount);
+         Valid := Local_Key <= 5 and then Local_Amount <= 1_000_000;
+         if Valid then
+            Item :=
+              (Key => Value_Of_Type_Key (Local_Key),
+               Amount => Value_Of_Type_Volume (Local_Amount));
+         else
+            Item := Infusion_System.Default_Press;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Infusion_System.Press) is
+         Copy : Infusion_System.Press;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Press;
+
+   package body Type_View is
+      procedure Lemma_Bits_Given (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Given (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Given)
+      is
+      begin
+         null;
+      end Lemma_Bits_Given;
+
+      procedure Lemma_Value_Given (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#FFFFF#,
+        Post =>
+          (Raw <= 1_000_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Given)
+             in 0 .. 1_000_000)
+          and then (if Raw <= 1_000_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Given)
+                   = Ravenchart.Number (Value_Of_Type_Volume (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Given)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Given;
+
+      procedure Lemma_Bits_Lamp (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Lamp (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Lamp)
+      is
+      begin
+         null;
+      end Lemma_Bits_Lamp;
+
+      procedure Lemma_Value_Lamp (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#3#,
+        Post =>
+          (Raw <= 2)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Lamp)
+             in 0 .. 2)
+          and then (if Raw <= 2
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Lamp)
+                   = Infusion_System.Lamp'Pos (Value_Of_Type_Lamp (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Lamp)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Lamp;
+
+      procedure Lemma_Bits_Buzzer (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Buzzer (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Buzzer)
+      is
+      begin
+         null;
+      end Lemma_Bits_Buzzer;
+
+      procedure Lemma_Value_Buzzer (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 1)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Buzzer)
+             in 0 .. 1)
+          and then (if Raw <= 1
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Buzzer)
+                   = Boolean'Pos (Value_Of_Type_Boolean (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Buzzer)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Buzzer;
+
+      function Word_Of
+        (Local_Given  : Interfaces.Unsigned_32;
+         Local_Lamp   : Interfaces.Unsigned_8;
+         Local_Buzzer : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Given)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Lamp), 20)
+         or Interfaces.Shift_Left
+             (Interfaces.Unsigned_64 (Local_Buzzer),
+              22))
+      with
+        Pre =>
+          Local_Given <= 16#FFFFF#
+          and then Local_Lamp <= 16#3#
+          and then Local_Buzzer <= 16#1#,
+        Post =>
+          Raw_Of_Given (Word_Of'Result) = Local_Given
+          and then Raw_Of_Lamp (Word_Of'Result) = Local_Lamp
+          and then Raw_Of_Buzzer (Word_Of'Result) = Local_Buzzer;
+
+      function Pack
+        (Item : Infusion_System.View)
+        return Interfaces.Unsigned_64 is
+         Local_Given : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Volume (Item.Given);
+         Local_Lamp : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Lamp (Item.Lamp);
+         Local_Buzzer : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Boolean (Item.Buzzer);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Given, Local_Lamp, Local_Buzzer);
+      begin
+         Lemma_Bits_Given (Frame);
+         Lemma_Value_Given (Local_Given);
+         Lemma_Bits_Lamp (Frame);
+         Lemma_Value_Lamp (Local_Lamp);
+         Lemma_Bits_Buzzer (Frame);
+         Lemma_Value_Buzzer (Local_Buzzer);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.View;
+         Valid : out Boolean) is
+         Local_Given : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Given (Word);
+         Local_Lamp : constant Interfaces.Unsigned_8 := Raw_Of_Lamp (Word);
+         Local_Buzzer : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Buzzer (Word);
+      begin
+         Lemma_Bits_Given (Word);
+         Lemma_Value_Given (Local_Given);
+         Lemma_Bits_Lamp (Word);
+         Lemma_Value_Lamp (Local_Lamp);
+         Lemma_Bits_Buzzer (Word);
+         Lemma_Value_Buzzer (Local_Buzzer);
+         Valid :=
+           Local_Given <= 1_000_000
+           and then Local_Lamp <= 2
+           and then Local_Buzzer <= 1;
+         if Valid then
+            Item :=
+              (Given => Value_Of_Type_Volume (Local_Given),
+               Lamp => Value_Of_Type_Lamp (Local_Lamp),
+               Buzzer => Value_Of_Type_Boolean (Local_Buzzer));
+         else
+            Item := Infusion_System.Default_View;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Infusion_System.View) is
+         Copy : Infusion_System.View;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_View;
 end Infusion_System.Codecs;

@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Layouts;
 
 package Infusion_System.Codecs
 with SPARK_Mode, Pure
@@ -18,198 +19,285 @@ is
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
-   function Line_Of_Bits
+   function Value_Of_Type_Line
      (Raw : Interfaces.Unsigned_8)
      return Infusion_System.Line is
      (Infusion_System.Line'Val (Raw))
    with Pre => Raw <= 2;
 
-   function Portion_Of_Bits
+   function Value_Of_Type_Portion
      (Raw : Interfaces.Unsigned_16)
      return Infusion_System.Portion is
      (Infusion_System.Portion (Ravenchart.Number (Raw)))
    with Pre => Raw <= 500;
 
-   function Key_Of_Bits
+   function Value_Of_Type_Key
      (Raw : Interfaces.Unsigned_8)
      return Infusion_System.Key is
      (Infusion_System.Key'Val (Raw))
    with Pre => Raw <= 5;
 
-   function Volume_Of_Bits
+   function Value_Of_Type_Volume
      (Raw : Interfaces.Unsigned_32)
      return Infusion_System.Volume is
      (Infusion_System.Volume (Ravenchart.Number (Raw)))
    with Pre => Raw <= 1_000_000;
 
-   function Lamp_Of_Bits
+   function Value_Of_Type_Lamp
      (Raw : Interfaces.Unsigned_8)
      return Infusion_System.Lamp is
      (Infusion_System.Lamp'Val (Raw))
    with Pre => Raw <= 2;
 
-   function Boolean_Of_Bits (Raw : Interfaces.Unsigned_8) return Boolean is
+   function Value_Of_Type_Boolean
+     (Raw : Interfaces.Unsigned_8)
+     return Boolean is
      (Boolean'Val (Raw))
    with Pre => Raw <= 1;
 
-   function Line_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#3#));
-   --  [Line.value] bits 0 .. 1
+   package Type_Line is
+      --  [Line.value] bits 0 .. 1
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 2,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Pack_Line
-     (Item : Infusion_System.Line)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Line_Value_Raw (Pack_Line'Result) <= 2
-       and then Line_Of_Bits (Line_Value_Raw (Pack_Line'Result)) = Item;
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#3#));
 
-   procedure Unpack_Line
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.Line;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Line_Value_Raw (Word) <= 2)
-       and then (if Valid
-             then Item = Line_Of_Bits (Line_Value_Raw (Word))
-          else Item = Infusion_System.Clear);
-   --  Valid when all bits stand for values.
+      function Pack
+        (Item : Infusion_System.Line)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Infusion_System.Line'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFFC#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   procedure Lemma_Line_Survives (Item : Infusion_System.Line)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.Line;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 2)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Infusion_System.Line'Pos (Item)
+             else Item = Infusion_System.Clear);
+      --  Valid when all bits stand for values.
 
-   function Portion_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_16 is
-     (Interfaces.Unsigned_16 (Word and 16#1FF#));
-   --  [Portion.value] bits 0 .. 8
+      procedure Lemma_Survives (Item : Infusion_System.Line)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Line;
 
-   function Pack_Portion
-     (Item : Infusion_System.Portion)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Portion_Value_Raw (Pack_Portion'Result) <= 500
-       and then Portion_Of_Bits (Portion_Value_Raw (Pack_Portion'Result))
-         = Item;
+   package Type_Portion is
+      --  [Portion.value] bits 0 .. 8
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 9,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Unpack_Portion
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.Portion;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Portion_Value_Raw (Word) <= 500)
-       and then (if Valid
-             then Item = Portion_Of_Bits (Portion_Value_Raw (Word))
-          else Item = 0);
-   --  Valid when all bits stand for values.
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_16 is
+        (Interfaces.Unsigned_16 (Word and 16#1FF#));
 
-   procedure Lemma_Portion_Survives (Item : Infusion_System.Portion)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Pack
+        (Item : Infusion_System.Portion)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Ravenchart.Number (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFE00#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function Press_Key_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#7#));
-   --  [Press.key] bits 0 .. 2
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.Portion;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+             in 0 .. 500)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Ravenchart.Number (Item)
+             else Item = 0);
+      --  Valid when all bits stand for values.
 
-   function Press_Amount_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 3) and 16#FFFFF#));
-   --  [Press.amount] bits 3 .. 22
+      procedure Lemma_Survives (Item : Infusion_System.Portion)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Portion;
 
-   function Pack_Press
-     (Item : Infusion_System.Press)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Press_Key_Raw (Pack_Press'Result) <= 5
-       and then Key_Of_Bits (Press_Key_Raw (Pack_Press'Result)) = Item.Key
-       and then Press_Amount_Raw (Pack_Press'Result) <= 1_000_000
-       and then Volume_Of_Bits (Press_Amount_Raw (Pack_Press'Result))
-         = Item.Amount;
+   package Type_Press is
+      --  [Press.key] bits 0 .. 2
+      Signal_Key : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 3,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Unpack_Press
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.Press;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Press_Key_Raw (Word) <= 5
-          and then Press_Amount_Raw (Word) <= 1_000_000)
-       and then (if Valid
-             then Item.Key = Key_Of_Bits (Press_Key_Raw (Word))
-                and then Item.Amount
-                  = Volume_Of_Bits (Press_Amount_Raw (Word))
-          else Item = Infusion_System.Default_Press);
-   --  Valid when all bits stand for values.
+      --  [Press.amount] bits 3 .. 22
+      Signal_Amount : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 3,
+         Width => 20,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Lemma_Press_Survives (Item : Infusion_System.Press)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Raw_Of_Key
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#7#));
 
-   function View_Given_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32 (Word and 16#FFFFF#));
-   --  [View.given] bits 0 .. 19
+      function Raw_Of_Amount
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 3) and 16#FFFFF#));
 
-   function View_Lamp_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 20) and 16#3#));
-   --  [View.lamp] bits 20 .. 21
+      function Pack
+        (Item : Infusion_System.Press)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Key)
+          = Infusion_System.Key'Pos (Item.Key)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Amount)
+            = Ravenchart.Number (Item.Amount)
+          and then (Pack'Result and 16#FFFFFFFFFF800000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function View_Buzzer_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 22) and 16#1#));
-   --  [View.buzzer] bits 22 .. 22
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.Press;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Key) in 0 .. 5
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Amount)
+               in 0 .. 1_000_000)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Key)
+                   = Infusion_System.Key'Pos (Item.Key)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Amount)
+                     = Ravenchart.Number (Item.Amount)
+             else Item = Infusion_System.Default_Press);
+      --  Valid when all bits stand for values.
 
-   function Pack_View
-     (Item : Infusion_System.View)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       View_Given_Raw (Pack_View'Result) <= 1_000_000
-       and then Volume_Of_Bits (View_Given_Raw (Pack_View'Result))
-         = Item.Given
-       and then View_Lamp_Raw (Pack_View'Result) <= 2
-       and then Lamp_Of_Bits (View_Lamp_Raw (Pack_View'Result)) = Item.Lamp
-       and then View_Buzzer_Raw (Pack_View'Result) <= 1
-       and then Boolean_Of_Bits (View_Buzzer_Raw (Pack_View'Result))
-         = Item.Buzzer;
+      procedure Lemma_Survives (Item : Infusion_System.Press)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Press;
 
-   procedure Unpack_View
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Infusion_System.View;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (View_Given_Raw (Word) <= 1_000_000
-          and then View_Lamp_Raw (Word) <= 2
-          and then View_Buzzer_Raw (Word) <= 1)
-       and then (if Valid
-             then Item.Given = Volume_Of_Bits (View_Given_Raw (Word))
-                and then Item.Lamp = Lamp_Of_Bits (View_Lamp_Raw (Word))
-                and then Item.Buzzer
-                  = Boolean_Of_Bits (View_Buzzer_Raw (Word))
-          else Item = Infusion_System.Default_View);
-   --  Valid when all bits stand for values.
+   package Type_View is
+      --  [View.given] bits 0 .. 19
+      Signal_Given : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 20,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Lemma_View_Survives (Item : Infusion_System.View)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      --  [View.lamp] bits 20 .. 21
+      Signal_Lamp : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 20,
+         Width => 2,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
+
+      --  [View.buzzer] bits 22 .. 22
+      Signal_Buzzer : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 22,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
+
+      function Raw_Of_Given
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32 (Word and 16#FFFFF#));
+
+      function Raw_Of_Lamp
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 20) and 16#3#));
+
+      function Raw_Of_Buzzer
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Interfaces.Shift_Right (Word, 22) and 16#1#));
+
+      function Pack
+        (Item : Infusion_System.View)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Given)
+          = Ravenchart.Number (Item.Given)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Lamp)
+            = Infusion_System.Lamp'Pos (Item.Lamp)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Buzzer)
+            = Boolean'Pos (Item.Buzzer)
+          and then (Pack'Result and 16#FFFFFFFFFF800000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Infusion_System.View;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Given)
+             in 0 .. 1_000_000
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Lamp)
+               in 0 .. 2
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Buzzer)
+               in 0 .. 1)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Given)
+                   = Ravenchart.Number (Item.Given)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Lamp)
+                     = Infusion_System.Lamp'Pos (Item.Lamp)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Buzzer)
+                     = Boolean'Pos (Item.Buzzer)
+             else Item = Infusion_System.Default_View);
+      --  Valid when all bits stand for values.
+
+      procedure Lemma_Survives (Item : Infusion_System.View)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_View;
 end Infusion_System.Codecs;

@@ -9,6 +9,7 @@ with Infusion_System.Reception;
 with Infusion_System.Trace;
 with Infusion_System.Ward;
 with Ravenchart.Can;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
@@ -78,10 +79,16 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Ward_Counters : Ravenchart.Can.Counters;
+      Ward_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Control;
       Health_Counts.Counters.Read (Faults);
+      Ward.Controller.Read_Faults (Ward_Faults);
+      Faults (Ravenchart.Health.Can_Error_Passive) :=
+        Ward_Faults.Passive_Entries;
+      Faults (Ravenchart.Health.Can_Bus_Off) := Ward_Faults.Off_Entries;
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;

@@ -37,7 +37,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Line
+         Codecs.Type_Line.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Line_Item,
             Valid);
@@ -57,7 +57,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Press
+         Codecs.Type_Press.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Panel_Item,
             Valid);

@@ -28,7 +28,7 @@ is
               (Id => 257,
                Format => Ravenchart.Can.Standard,
                Length => 2,
-               Payload => Codecs.Pack_Portion (Item))),
+               Payload => Codecs.Type_Portion.Pack (Item))),
          Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
       if Status /= Ravenchart.Can.Queued then
@@ -52,7 +52,7 @@ is
               (Id => 273,
                Format => Ravenchart.Can.Standard,
                Length => 3,
-               Payload => Codecs.Pack_View (Item))),
+               Payload => Codecs.Type_View.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

@@ -31,7 +31,11 @@ is
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
-      Setting => (Bit_Rate => 125_000, Data_Rate => 0, Takes_Fd => False));
+      Setting =>
+        (Bit_Rate => 125_000,
+         Data_Rate => 0,
+         Takes_Fd => False,
+         Recovery => Ravenchart.Can.Automatic));
 
    procedure Send_Motor (Item : Infusion_System.Portion);
    --  [motor] hand one frame to the controller; never blocks.

@@ -10,46 +10,95 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function Bits_Of_Key (Item : Qhsm_Test.Key) return Interfaces.Unsigned_8 is
+   function Bits_Of_Type_Key
+     (Item : Qhsm_Test.Key)
+     return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Qhsm_Test.Key'Pos (Item)))
    with
      Post =>
-       Bits_Of_Key'Result <= 8
-       and then Key_Of_Bits (Bits_Of_Key'Result) = Item;
+       Bits_Of_Type_Key'Result <= 8
+       and then Value_Of_Type_Key (Bits_Of_Type_Key'Result) = Item;
 
-   function Word_Of_Key
-     (Value_Raw : Interfaces.Unsigned_8)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Value_Raw))
-   with
-     Pre => Value_Raw <= 16#F#,
-     Post => Key_Value_Raw (Word_Of_Key'Result) = Value_Raw;
+   package body Type_Key is
+      procedure Lemma_Bits_Value (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Value (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Value)
+      is
+      begin
+         null;
+      end Lemma_Bits_Value;
 
-   function Pack_Key (Item : Qhsm_Test.Key) return Interfaces.Unsigned_64 is
-      Value_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Key (Item);
-   begin
-      return Word_Of_Key (Value_Raw);
-   end Pack_Key;
+      procedure Lemma_Value_Value (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#F#,
+        Post =>
+          (Raw <= 8)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Value)
+             in 0 .. 8)
+          and then (if Raw <= 8
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Value)
+                   = Qhsm_Test.Key'Pos (Value_Of_Type_Key (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Value)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Value;
 
-   procedure Unpack_Key
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Qhsm_Test.Key;
-      Valid : out Boolean) is
-      Value_Raw : constant Interfaces.Unsigned_8 := Key_Value_Raw (Word);
-   begin
-      Valid := Value_Raw <= 8;
-      if Valid then
-         Item := Key_Of_Bits (Value_Raw);
-      else
-         Item := Qhsm_Test.Key_A;
-      end if;
-   end Unpack_Key;
+      function Word_Of
+        (Local_Value : Interfaces.Unsigned_8)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Value))
+      with
+        Pre => Local_Value <= 16#F#,
+        Post => Raw_Of_Value (Word_Of'Result) = Local_Value;
 
-   procedure Lemma_Key_Survives (Item : Qhsm_Test.Key) is
-      Copy : Qhsm_Test.Key;
-      Valid : Boolean;
-   begin
-      Unpack_Key (Pack_Key (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Key_Survives;
+      function Pack (Item : Qhsm_Test.Key) return Interfaces.Unsigned_64 is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Key (Item);
+         Frame : constant Interfaces.Unsigned_64 := Word_Of (Local_Value);
+      begin
+         Lemma_Bits_Value (Frame);
+         Lemma_Value_Value (Local_Value);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Qhsm_Test.Key;
+         Valid : out Boolean) is
+         Local_Value : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Value (Word);
+      begin
+         Lemma_Bits_Value (Word);
+         Lemma_Value_Value (Local_Value);
+         Valid := Local_Value <= 8;
+         if Valid then
+            Item := Value_Of_Type_Key (Local_Value);
+         else
+            Item := Qhsm_Test.Key_A;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Qhsm_Test.Key) is
+         Copy : Qhsm_Test.Key;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Key;
 end Qhsm_Test.Codecs;

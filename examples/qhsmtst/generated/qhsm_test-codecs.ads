@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Layouts;
 
 package Qhsm_Test.Codecs
 with SPARK_Mode, Pure
@@ -14,36 +15,52 @@ is
 
    use type Interfaces.Unsigned_64;
    use type Interfaces.Unsigned_8;
+   use type Ravenchart.Number;
 
-   function Key_Of_Bits (Raw : Interfaces.Unsigned_8) return Qhsm_Test.Key is
+   function Value_Of_Type_Key
+     (Raw : Interfaces.Unsigned_8)
+     return Qhsm_Test.Key is
      (Qhsm_Test.Key'Val (Raw))
    with Pre => Raw <= 8;
 
-   function Key_Value_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#F#));
-   --  [Key.value] bits 0 .. 3
+   package Type_Key is
+      --  [Key.value] bits 0 .. 3
+      Signal_Value : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 4,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Pack_Key (Item : Qhsm_Test.Key) return Interfaces.Unsigned_64
-   with
-     Post =>
-       Key_Value_Raw (Pack_Key'Result) <= 8
-       and then Key_Of_Bits (Key_Value_Raw (Pack_Key'Result)) = Item;
+      function Raw_Of_Value
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#F#));
 
-   procedure Unpack_Key
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Qhsm_Test.Key;
-      Valid : out Boolean)
-   with
-     Post =>
-       Valid = (Key_Value_Raw (Word) <= 8)
-       and then (if Valid
-             then Item = Key_Of_Bits (Key_Value_Raw (Word))
-          else Item = Qhsm_Test.Key_A);
-   --  Valid when all bits stand for values.
+      function Pack (Item : Qhsm_Test.Key) return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Value)
+          = Qhsm_Test.Key'Pos (Item)
+          and then (Pack'Result and 16#FFFFFFFFFFFFFFF0#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   procedure Lemma_Key_Survives (Item : Qhsm_Test.Key)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Qhsm_Test.Key;
+         Valid : out Boolean)
+      with
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Value) in 0 .. 8)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Value)
+                   = Qhsm_Test.Key'Pos (Item)
+             else Item = Qhsm_Test.Key_A);
+      --  Valid when all bits stand for values.
+
+      procedure Lemma_Survives (Item : Qhsm_Test.Key)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Key;
 end Qhsm_Test.Codecs;

@@ -36,7 +36,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Key
+         Codecs.Type_Key.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Key_Item,
             Valid);

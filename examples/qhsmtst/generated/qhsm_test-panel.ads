@@ -31,5 +31,9 @@ is
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
-      Setting => (Bit_Rate => 125_000, Data_Rate => 0, Takes_Fd => False));
+      Setting =>
+        (Bit_Rate => 125_000,
+         Data_Rate => 0,
+         Takes_Fd => False,
+         Recovery => Ravenchart.Can.Automatic));
 end Qhsm_Test.Panel;

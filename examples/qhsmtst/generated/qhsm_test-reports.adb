@@ -9,6 +9,7 @@ with Qhsm_Test.Panel;
 with Qhsm_Test.Reception;
 with Qhsm_Test.Trace;
 with Ravenchart.Can;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
@@ -78,10 +79,16 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Panel_Counters : Ravenchart.Can.Counters;
+      Panel_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Reception;
       Report_Charts;
       Health_Counts.Counters.Read (Faults);
+      Panel.Controller.Read_Faults (Panel_Faults);
+      Faults (Ravenchart.Health.Can_Error_Passive) :=
+        Panel_Faults.Passive_Entries;
+      Faults (Ravenchart.Health.Can_Bus_Off) := Panel_Faults.Off_Entries;
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;

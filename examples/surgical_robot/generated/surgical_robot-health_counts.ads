@@ -9,5 +9,5 @@ package Surgical_Robot.Health_Counts
 with SPARK_Mode
 is
    package Counters is new Ravenchart.Health_Counters
-     (Ceiling => System.Default_Priority + 2);
+     (Ceiling => System.Default_Priority + 3);
 end Surgical_Robot.Health_Counts;

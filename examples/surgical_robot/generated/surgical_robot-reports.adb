@@ -8,6 +8,7 @@ with Ravenchart.Queueing;
 with Ravenchart.Traces;
 with Surgical_Robot.Elements;
 with Surgical_Robot.Health_Counts;
+with Surgical_Robot.Liveness_Supervision;
 with Surgical_Robot.Servo_Loop;
 with Surgical_Robot.Supervision;
 with Surgical_Robot.Trace;
@@ -70,7 +71,9 @@ is
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
+      Fed : Ravenchart.Event_Count;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Servo_Loop;
       Report_Supervision;
       Health_Counts.Counters.Read (Faults);
@@ -79,5 +82,7 @@ is
       end loop;
       Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
+      Liveness_Supervision.Supervisor.Read (Fed);
+      Ravenchart.Hosts.Put_Feeds (Fed);
    end Put_All;
 end Surgical_Robot.Reports;

@@ -21,7 +21,8 @@ is
 
    --  [servo_loop]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "servo_loop",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
         (Servo_1_Take_Orders => (Divisor => 1, Phase => 0),
@@ -32,6 +33,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Servo_Loop_D,
       Task_Priority => System.Default_Priority + 2,
+      Ceiling => System.Default_Priority + 3,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

@@ -21,7 +21,8 @@ is
 
    --  [supervision]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "supervision",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table => (Supervisor_1_Task_Of_Arm => (Divisor => 1, Phase => 0)),
       Cycle => 1,
@@ -29,6 +30,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Supervision_D,
       Task_Priority => System.Default_Priority + 1,
+      Ceiling => System.Default_Priority + 3,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

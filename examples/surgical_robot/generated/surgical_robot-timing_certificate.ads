@@ -14,8 +14,9 @@ is
    --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Servo_Loop_R : constant := 275_000;
-   Supervision_R : constant := 595_000;
+   Servo_Loop_R : constant := 345_000;
+   Supervision_R : constant := 665_000;
+   Board_Supervisor_R : constant := 75_000;
 
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
@@ -48,9 +49,25 @@ is
      Supervisor_1_Task_Of_Arm_Budget + 2 * Board_Context_Switch;
    Supervision_B : constant := Board_Critical_Section;
 
+   --  [board.supervisor] priority 3, released every T. B: servo_loop may be
+   --  inside servo_loop.monitor.
+   Board_Supervisor_Budget : constant := 50_000;
+   Board_Supervisor_T : constant := 5_000_000;
+   Board_Supervisor_D : constant := 5_000_000;
+   Board_Supervisor_J : constant := 0;
+   Board_Supervisor_A : constant :=
+     Board_Supervisor_J + (Board_Supervisor_T - 1);
+   Board_Supervisor_C : constant :=
+     Board_Supervisor_Budget + 2 * Board_Context_Switch;
+   Board_Supervisor_B : constant := Board_Critical_Section;
+
    --  [servo_loop] what can delay it: jobs of the same or higher priority
    Servo_Loop_W : constant := Servo_Loop_R - Servo_Loop_J;
-   Servo_Loop_Needs : constant := Servo_Loop_C + Servo_Loop_B;
+   Servo_Loop_Needs : constant :=
+     Servo_Loop_C
+     + Servo_Loop_B
+     + (((Servo_Loop_W + Board_Supervisor_A) / Board_Supervisor_T)
+        * Board_Supervisor_C);
 
    pragma Compile_Time_Error
      (0 > Servo_Loop_W,
@@ -72,7 +89,9 @@ is
    Supervision_Needs : constant :=
      Supervision_C
      + Supervision_B
-     + (((Supervision_W + Servo_Loop_A) / Servo_Loop_T) * Servo_Loop_C);
+     + (((Supervision_W + Servo_Loop_A) / Servo_Loop_T) * Servo_Loop_C)
+     + (((Supervision_W + Board_Supervisor_A) / Board_Supervisor_T)
+        * Board_Supervisor_C);
 
    pragma Compile_Time_Error
      (0 > Supervision_W,
@@ -88,4 +107,36 @@ is
       "supervision " & "can miss its deadline");
    pragma Assert (Supervision_Needs <= Supervision_W);
    pragma Assert (Supervision_R <= Supervision_D);
+
+   --  [board.supervisor] what can delay it: jobs of the same or higher
+   --  priority
+   Board_Supervisor_W : constant := Board_Supervisor_R - Board_Supervisor_J;
+   Board_Supervisor_Needs : constant :=
+     Board_Supervisor_C + Board_Supervisor_B;
+
+   pragma Compile_Time_Error
+     (0 > Board_Supervisor_W,
+      "board.supervisor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Board_Supervisor_Needs > Board_Supervisor_W,
+      "board.supervisor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Board_Supervisor_J + Board_Supervisor_W) > Board_Supervisor_T,
+      "board.supervisor " & "can be released again before it completes");
+   pragma Compile_Time_Error
+     (Board_Supervisor_R > Board_Supervisor_D,
+      "board.supervisor " & "can miss its deadline");
+   pragma Assert (Board_Supervisor_Needs <= Board_Supervisor_W);
+   pragma Assert (Board_Supervisor_R <= Board_Supervisor_D);
+
+   --  [board] a release that has not completed L after it was due makes its
+   --  processor silent; the supervisor has reported that S after the
+   --  release was due
+   Board_Margin : constant := 250_000_000;
+   Servo_Loop_L : constant := Servo_Loop_D + Board_Margin;
+   Servo_Loop_S : constant :=
+     Servo_Loop_L + Board_Supervisor_T + Board_Supervisor_R;
+   Supervision_L : constant := Supervision_D + Board_Margin;
+   Supervision_S : constant :=
+     Supervision_L + Board_Supervisor_T + Board_Supervisor_R;
 end Surgical_Robot.Timing_Certificate;

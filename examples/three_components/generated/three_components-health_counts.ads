@@ -9,5 +9,5 @@ package Three_Components.Health_Counts
 with SPARK_Mode
 is
    package Counters is new Ravenchart.Health_Counters
-     (Ceiling => System.Default_Priority + 3);
+     (Ceiling => System.Default_Priority + 4);
 end Three_Components.Health_Counts;

@@ -45,7 +45,7 @@ is
      (Element_Type => Starter.Event,
       Null_Element => Starter.Token_Came,
       Capacity => 2,
-      Ceiling => System.Default_Priority + 3,
+      Ceiling => System.Default_Priority + 4,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
    --  [one.Watching]
@@ -60,7 +60,7 @@ is
      (Element_Type => Starter.Event,
       Null_Element => Starter.Token_Came,
       Capacity => 2,
-      Ceiling => System.Default_Priority + 3,
+      Ceiling => System.Default_Priority + 4,
       Policy => Ravenchart.Queueing.Reject_Newest);
 
    procedure Put_Token_In (Item : Three_Components.Token) is
@@ -112,6 +112,21 @@ is
             Trace.Buffer.Note
               (Ravenchart.Traces.Raised,
                Elements.One_Token_Came,
+               0);
+         when Starter.Station_Silent =>
+            Watching_Queue.Put (Item, Status);
+            if Status /= Ravenchart.Queueing.Queued then
+               Health_Counts.Counters.Record_Fault
+                 (Ravenchart.Health.Queue_Overflow);
+               Trace.Buffer.Note
+                 (Ravenchart.Traces.Fault,
+                  Elements.One_Watching,
+                  Ravenchart.Health.Fault_Kind'Pos
+                    (Ravenchart.Health.Queue_Overflow));
+            end if;
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.One_Station_Silent,
                0);
       end case;
    end Offer;

@@ -21,7 +21,8 @@ is
 
    --  [processor_2]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "processor_2",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
         (Two_Ports => (Divisor => 1, Phase => 0),
@@ -32,6 +33,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Processor_2_D,
       Task_Priority => System.Default_Priority + 2,
+      Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

@@ -26,7 +26,8 @@ is
 
    --  [processor_3]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "processor_3",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
         (Three_Ports => (Divisor => 1, Phase => 0),
@@ -39,6 +40,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Processor_3_D,
       Task_Priority => System.Default_Priority + 1,
+      Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

@@ -8,6 +8,7 @@ with Ravenchart.Queueing;
 with Ravenchart.Traces;
 with Three_Components.Elements;
 with Three_Components.Health_Counts;
+with Three_Components.Liveness_Supervision;
 with Three_Components.Processor_1;
 with Three_Components.Processor_2;
 with Three_Components.Processor_3;
@@ -90,7 +91,9 @@ is
    procedure Put_All is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
+      Fed : Ravenchart.Event_Count;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Processor_1;
       Report_Processor_2;
       Report_Processor_3;
@@ -100,5 +103,7 @@ is
       end loop;
       Lost := Trace.Buffer.Lost;
       Ravenchart.Hosts.Put_Lost ("trace", Lost);
+      Liveness_Supervision.Supervisor.Read (Fed);
+      Ravenchart.Hosts.Put_Feeds (Fed);
    end Put_All;
 end Three_Components.Reports;

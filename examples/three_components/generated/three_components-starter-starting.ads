@@ -125,7 +125,8 @@ is
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
-        when Token_Came => On_Token_Came);
+        when Token_Came => On_Token_Came,
+        when others => Conditions);
 
    procedure Poll (Self : in out Region; Now : out Occurrence)
    with

@@ -11,15 +11,24 @@ is
      return Selection is
      (case Leaf is
         when Watching_States.Quiet =>
-           (if Now = On_Token_Came then Seen else None),
+           (if Now = On_Token_Came
+               then Seen
+            elsif Now = On_Station_Silent
+               then Left
+            else None),
         when Watching_States.Busy =>
-           (if Now = Expiry_Of_Calm then Calm else None))
+           (if Now = Expiry_Of_Calm
+               then Calm
+            elsif Now = On_Station_Silent
+               then Left
+            else None),
+        when Watching_States.Alone => None)
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now);
 
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Quiet, Busy, Disorder);
+      type Node is (Nowhere, Quiet, Busy, Alone, At_Work, Disorder);
 
       function Innermost (Leaf : Watching_States.Leaf) return Node is
         (Node'Val (Watching_States.Leaf'Pos (Leaf) + 1));
@@ -81,27 +90,49 @@ is
         Post =>
           Self.Leaf = Self.Leaf'Old
           and then Active
-            = Chart.Moved (Active'Old, Chart.Busy, Chart.Nowhere)
+            = Chart.Moved (Active'Old, Chart.Busy, Chart.At_Work)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
-         Active := Chart.Moved (Active, Chart.Busy, Chart.Nowhere);
+         Active := Chart.Moved (Active, Chart.Busy, Chart.At_Work);
       end Exit_Busy;
+      procedure Leave_At_Work
+      with
+        Pre =>
+          Self.Leaf in Watching_States.At_Work
+          and then Active = Chart.Innermost (Self.Leaf),
+        Post =>
+          Self.Leaf = Self.Leaf'Old
+          and then Active = Chart.At_Work
+          and then Self.Timers (1)
+            = (if Self.Leaf = Watching_States.Busy
+                  then Ravenchart.Timers.Stopped
+               else Self.Timers'Old (1))
+          and then Self.Started = Self.Started'Old
+      is
+      begin
+         case Watching_States.At_Work'(Self.Leaf) is
+            when Watching_States.Quiet =>
+               Active := Chart.Moved (Active, Chart.Quiet, Chart.At_Work);
+            when Watching_States.Busy =>
+               Exit_Busy;
+         end case;
+      end Leave_At_Work;
       procedure Enter_Busy
       with
         Post =>
           Self.Leaf = Watching_States.Busy
           and then Active
-            = Chart.Moved (Active'Old, Chart.Nowhere, Chart.Busy)
+            = Chart.Moved (Active'Old, Chart.At_Work, Chart.Busy)
           and then Self.Timers (1) = Ravenchart.Timers.Started (2)
           and then Self.Started = Self.Started'Old
       is
       begin
          Self.Leaf := Watching_States.Busy;
          Ravenchart.Timers.Arm (Self.Timers (1), 2);
-         Active := Chart.Moved (Active, Chart.Nowhere, Chart.Busy);
+         Active := Chart.Moved (Active, Chart.At_Work, Chart.Busy);
       end Enter_Busy;
    begin
       case Chosen is
@@ -110,12 +141,16 @@ is
             Active := Chart.Moved (Active, Chart.Nowhere, Chart.Quiet);
             Self.Leaf := Watching_States.Quiet;
          when Seen =>
-            Active := Chart.Moved (Active, Chart.Quiet, Chart.Nowhere);
+            Active := Chart.Moved (Active, Chart.Quiet, Chart.At_Work);
             Enter_Busy;
          when Calm =>
             Exit_Busy;
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Quiet);
+            Active := Chart.Moved (Active, Chart.At_Work, Chart.Quiet);
             Self.Leaf := Watching_States.Quiet;
+         when Left =>
+            Leave_At_Work;
+            Active := Chart.Moved (Active, Chart.At_Work, Chart.Alone);
+            Self.Leaf := Watching_States.Alone;
       end case;
       pragma Assert (Active = Chart.Innermost (Self.Leaf));
    end Fire;

@@ -15,15 +15,16 @@ is
    type Occurrence is
      (Start_Of_Region,
       On_Token_Came,
+      On_Station_Silent,
       Expiry_Of_Calm,
       Conditions);
 
    --  [Starter.Watching.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, Seen, Calm, None);
+   type Selection is (Initial_Entry, Seen, Calm, Left, None);
 
-   subtype Firing is Selection range Initial_Entry .. Calm;
-   subtype Transition is Selection range Seen .. Calm;
+   subtype Firing is Selection range Initial_Entry .. Left;
+   subtype Transition is Selection range Seen .. Left;
 
    --  The region's own state.
    type Region is record
@@ -41,7 +42,9 @@ is
         when Seen =>
            Leaf = Watching_States.Quiet and then Now = On_Token_Came,
         when Calm =>
-           Leaf = Watching_States.Busy and then Now = Expiry_Of_Calm);
+           Leaf = Watching_States.Busy and then Now = Expiry_Of_Calm,
+        when Left =>
+           Leaf in Watching_States.At_Work and then Now = On_Station_Silent);
    --  The declared chart: source, trigger and guard of each transition.
 
    function In_Source
@@ -50,25 +53,28 @@ is
      return Boolean is
      (case T is
         when Seen => Leaf = Watching_States.Quiet,
-        when Calm => Leaf = Watching_States.Busy);
+        when Calm => Leaf = Watching_States.Busy,
+        when Left => Leaf in Watching_States.At_Work);
    --  Is its source the leaf, or around it?
 
    function Target (T : Firing) return Watching_States.Leaf is
      (case T is
         when Initial_Entry => Watching_States.Quiet,
         when Seen => Watching_States.Busy,
-        when Calm => Watching_States.Quiet);
+        when Calm => Watching_States.Quiet,
+        when Left => Watching_States.Alone);
    --  The leaf it leads to; that of a composite is its default.
 
    --  The innermost region that holds all that a transition leaves and
    --  enters.
-   type Domain is (Nothing, Everything, Beginning);
+   type Domain is (Nothing, Inside_At_Work, Everything, Beginning);
 
    function Domain_Of (T : Firing) return Domain is
      (case T is
         when Initial_Entry => Beginning,
-        when Seen => Everything,
-        when Calm => Everything);
+        when Seen => Inside_At_Work,
+        when Calm => Inside_At_Work,
+        when Left => Everything);
    --  Everything active inside it is left, and what is active then is
    --  entered.
 
@@ -83,7 +89,9 @@ is
         when 1 =>
            Ravenchart.Timers.Moved
              (Timer,
-              D = Everything or else D = Beginning,
+              D = Inside_At_Work
+              or else D = Everything
+              or else D = Beginning,
               D /= Beginning and then Before = Watching_States.Busy,
               After = Watching_States.Busy,
               Ravenchart.Timers.Started (2)),
@@ -114,7 +122,8 @@ is
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
-        when Token_Came => On_Token_Came);
+        when Token_Came => On_Token_Came,
+        when Station_Silent => On_Station_Silent);
 
    procedure Poll (Self : in out Region; Now : out Occurrence)
    with

@@ -9,7 +9,7 @@ package Three_Components.Starter
 with SPARK_Mode
 is
    --  [Starter.events]
-   type Event is (Token_Came);
+   type Event is (Token_Came, Station_Silent);
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Starter.Event,
@@ -23,7 +23,9 @@ is
 
    --  [Starter.Watching.states]
    package Watching_States is
-      type Leaf is (Quiet, Busy);
+      type Leaf is (Quiet, Busy, Alone);
+
+      subtype At_Work is Leaf range Quiet .. Busy;
    end Watching_States;
 
    --  [Starter.token_in] what its readers see

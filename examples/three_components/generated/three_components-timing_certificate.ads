@@ -14,9 +14,10 @@ is
    --  short.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Processor_1_R : constant := 625_000;
-   Processor_2_R : constant := 1_245_000;
-   Processor_3_R : constant := 2_265_000;
+   Processor_1_R : constant := 695_000;
+   Processor_2_R : constant := 1_315_000;
+   Processor_3_R : constant := 2_335_000;
+   Board_Supervisor_R : constant := 75_000;
 
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
@@ -69,10 +70,26 @@ is
      Two_Watching_Budget + Two_Work_Budget + Three_Work_Budget;
    Processor_3_B : constant := Board_Critical_Section;
 
+   --  [board.supervisor] priority 4, released every T. B: processor_1 may
+   --  be inside one.Starting.queue.
+   Board_Supervisor_Budget : constant := 50_000;
+   Board_Supervisor_T : constant := 10_000_000;
+   Board_Supervisor_D : constant := 10_000_000;
+   Board_Supervisor_J : constant := 0;
+   Board_Supervisor_A : constant :=
+     Board_Supervisor_J + (Board_Supervisor_T - 1);
+   Board_Supervisor_C : constant :=
+     Board_Supervisor_Budget + 2 * Board_Context_Switch;
+   Board_Supervisor_B : constant := Board_Critical_Section;
+
    --  [processor_1] what can delay it: jobs of the same or higher priority
    Processor_1_W : constant := Processor_1_R - Processor_1_J;
    Processor_1_Needs : constant :=
-     Processor_1_C + Processor_1_C_2 + Processor_1_B;
+     Processor_1_C
+     + Processor_1_C_2
+     + Processor_1_B
+     + (((Processor_1_W + Board_Supervisor_A) / Board_Supervisor_T)
+        * Board_Supervisor_C);
 
    pragma Compile_Time_Error
      (0 > Processor_1_W,
@@ -97,7 +114,9 @@ is
      + Processor_2_B
      + (((Processor_2_W + Processor_1_A) / Processor_1_T) * Processor_1_C)
      + (((((Processor_2_W + Processor_1_A) / Processor_1_T) + (2 - 1)) / 2)
-        * Processor_1_C_2);
+        * Processor_1_C_2)
+     + (((Processor_2_W + Board_Supervisor_A) / Board_Supervisor_T)
+        * Board_Supervisor_C);
 
    pragma Compile_Time_Error
      (0 > Processor_2_W,
@@ -125,7 +144,9 @@ is
         * Processor_1_C_2)
      + (((Processor_3_W + Processor_2_A) / Processor_2_T) * Processor_2_C)
      + (((((Processor_3_W + Processor_2_A) / Processor_2_T) + (2 - 1)) / 2)
-        * Processor_2_C_2);
+        * Processor_2_C_2)
+     + (((Processor_3_W + Board_Supervisor_A) / Board_Supervisor_T)
+        * Board_Supervisor_C);
 
    pragma Compile_Time_Error
      (0 > Processor_3_W,
@@ -141,4 +162,39 @@ is
       "processor_3 " & "can miss its deadline");
    pragma Assert (Processor_3_Needs <= Processor_3_W);
    pragma Assert (Processor_3_R <= Processor_3_D);
+
+   --  [board.supervisor] what can delay it: jobs of the same or higher
+   --  priority
+   Board_Supervisor_W : constant := Board_Supervisor_R - Board_Supervisor_J;
+   Board_Supervisor_Needs : constant :=
+     Board_Supervisor_C + Board_Supervisor_B;
+
+   pragma Compile_Time_Error
+     (0 > Board_Supervisor_W,
+      "board.supervisor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Board_Supervisor_Needs > Board_Supervisor_W,
+      "board.supervisor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     ((Board_Supervisor_J + Board_Supervisor_W) > Board_Supervisor_T,
+      "board.supervisor " & "can be released again before it completes");
+   pragma Compile_Time_Error
+     (Board_Supervisor_R > Board_Supervisor_D,
+      "board.supervisor " & "can miss its deadline");
+   pragma Assert (Board_Supervisor_Needs <= Board_Supervisor_W);
+   pragma Assert (Board_Supervisor_R <= Board_Supervisor_D);
+
+   --  [board] a release that has not completed L after it was due makes its
+   --  processor silent; the supervisor has reported that S after the
+   --  release was due
+   Board_Margin : constant := 250_000_000;
+   Processor_1_L : constant := Processor_1_D + Board_Margin;
+   Processor_1_S : constant :=
+     Processor_1_L + Board_Supervisor_T + Board_Supervisor_R;
+   Processor_2_L : constant := Processor_2_D + Board_Margin;
+   Processor_2_S : constant :=
+     Processor_2_L + Board_Supervisor_T + Board_Supervisor_R;
+   Processor_3_L : constant := Processor_3_D + Board_Margin;
+   Processor_3_S : constant :=
+     Processor_3_L + Board_Supervisor_T + Board_Supervisor_R;
 end Three_Components.Timing_Certificate;

@@ -10,5 +10,5 @@ with SPARK_Mode
 is
    package Buffer is new Ravenchart.Trace_Buffers
      (Capacity => 1_024,
-      Ceiling => System.Default_Priority + 3);
+      Ceiling => System.Default_Priority + 4);
 end Three_Components.Trace;

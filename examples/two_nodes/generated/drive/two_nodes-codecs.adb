@@ -10,22 +10,22 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   function Bits_Of_Wish
+   function Bits_Of_Type_Wish
      (Item : Two_Nodes.Wish)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Two_Nodes.Wish'Pos (Item)))
    with
      Post =>
-       Bits_Of_Wish'Result <= 1
-       and then Wish_Of_Bits (Bits_Of_Wish'Result) = Item;
+       Bits_Of_Type_Wish'Result <= 1
+       and then Value_Of_Type_Wish (Bits_Of_Type_Wish'Result) = Item;
 
-   function Bits_Of_Position
+   function Bits_Of_Type_Position
      (Item : Two_Nodes.Position)
      return Interfaces.Unsigned_32
    with
      Post =>
-       Bits_Of_Position'Result <= 100_000
-       and then Position_Of_Bits (Bits_Of_Position'Result) = Item
+       Bits_Of_Type_Position'Result <= 100_000
+       and then Value_Of_Type_Position (Bits_Of_Type_Position'Result) = Item
    is
       Whole : constant Ravenchart.Number range 0 .. 131_071 :=
         Ravenchart.Number (Item);
@@ -34,116 +34,292 @@ is
    begin
       pragma Assert (Ravenchart.Number (Raw) = Whole);
       return Raw;
-   end Bits_Of_Position;
+   end Bits_Of_Type_Position;
 
-   function Bits_Of_Condition
+   function Bits_Of_Type_Condition
      (Item : Two_Nodes.Condition)
      return Interfaces.Unsigned_8 is
      (Interfaces.Unsigned_8 (Two_Nodes.Condition'Pos (Item)))
    with
      Post =>
-       Bits_Of_Condition'Result <= 2
-       and then Condition_Of_Bits (Bits_Of_Condition'Result) = Item;
+       Bits_Of_Type_Condition'Result <= 2
+       and then Value_Of_Type_Condition (Bits_Of_Type_Condition'Result)
+         = Item;
 
-   function Word_Of_Servo_Order
-     (Wish_Raw   : Interfaces.Unsigned_8;
-      Target_Raw : Interfaces.Unsigned_32)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Wish_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Target_Raw), 1))
-   with
-     Pre => Wish_Raw <= 16#1# and then Target_Raw <= 16#1FFFF#,
-     Post =>
-       Servo_Order_Wish_Raw (Word_Of_Servo_Order'Result) = Wish_Raw
-       and then Servo_Order_Target_Raw (Word_Of_Servo_Order'Result)
-         = Target_Raw;
+   package body Type_Servo_Order is
+      procedure Lemma_Bits_Wish (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Wish (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Wish)
+      is
+      begin
+         null;
+      end Lemma_Bits_Wish;
 
-   function Pack_Servo_Order
-     (Item : Two_Nodes.Servo_Order)
-     return Interfaces.Unsigned_64 is
-      Wish_Raw : constant Interfaces.Unsigned_8 := Bits_Of_Wish (Item.Wish);
-      Target_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Position (Item.Target);
-   begin
-      return Word_Of_Servo_Order (Wish_Raw, Target_Raw);
-   end Pack_Servo_Order;
+      procedure Lemma_Value_Wish (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#1#,
+        Post =>
+          (Raw <= 1)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Wish)
+             in 0 .. 1)
+          and then (if Raw <= 1
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Wish)
+                   = Two_Nodes.Wish'Pos (Value_Of_Type_Wish (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Wish)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Wish;
 
-   procedure Unpack_Servo_Order
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Two_Nodes.Servo_Order;
-      Valid : out Boolean) is
-      Wish_Raw : constant Interfaces.Unsigned_8 :=
-        Servo_Order_Wish_Raw (Word);
-      Target_Raw : constant Interfaces.Unsigned_32 :=
-        Servo_Order_Target_Raw (Word);
-   begin
-      Valid := Wish_Raw <= 1 and then Target_Raw <= 100_000;
-      if Valid then
-         Item :=
-           (Wish => Wish_Of_Bits (Wish_Raw),
-            Target => Position_Of_Bits (Target_Raw));
-      else
-         Item := Two_Nodes.Default_Servo_Order;
-      end if;
-   end Unpack_Servo_Order;
+      procedure Lemma_Bits_Target (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Target (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Target)
+      is
+      begin
+         null;
+      end Lemma_Bits_Target;
 
-   procedure Lemma_Servo_Order_Survives (Item : Two_Nodes.Servo_Order) is
-      Copy : Two_Nodes.Servo_Order;
-      Valid : Boolean;
-   begin
-      Unpack_Servo_Order (Pack_Servo_Order (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Servo_Order_Survives;
+      procedure Lemma_Value_Target (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#1FFFF#,
+        Post =>
+          (Raw <= 100_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Target)
+             in 0 .. 100_000)
+          and then (if Raw <= 100_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Target)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Target)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Target;
 
-   function Word_Of_Servo_Report
-     (Condition_Raw : Interfaces.Unsigned_8;
-      Position_Raw  : Interfaces.Unsigned_32)
-     return Interfaces.Unsigned_64 is
-     (Interfaces.Unsigned_64 (Condition_Raw)
-      or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Position_Raw), 2))
-   with
-     Pre => Condition_Raw <= 16#3# and then Position_Raw <= 16#1FFFF#,
-     Post =>
-       Servo_Report_Condition_Raw (Word_Of_Servo_Report'Result)
-       = Condition_Raw
-       and then Servo_Report_Position_Raw (Word_Of_Servo_Report'Result)
-         = Position_Raw;
+      function Word_Of
+        (Local_Wish   : Interfaces.Unsigned_8;
+         Local_Target : Interfaces.Unsigned_32)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Wish)
+         or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Local_Target), 1))
+      with
+        Pre => Local_Wish <= 16#1# and then Local_Target <= 16#1FFFF#,
+        Post =>
+          Raw_Of_Wish (Word_Of'Result) = Local_Wish
+          and then Raw_Of_Target (Word_Of'Result) = Local_Target;
 
-   function Pack_Servo_Report
-     (Item : Two_Nodes.Servo_Report)
-     return Interfaces.Unsigned_64 is
-      Condition_Raw : constant Interfaces.Unsigned_8 :=
-        Bits_Of_Condition (Item.Condition);
-      Position_Raw : constant Interfaces.Unsigned_32 :=
-        Bits_Of_Position (Item.Position);
-   begin
-      return Word_Of_Servo_Report (Condition_Raw, Position_Raw);
-   end Pack_Servo_Report;
+      function Pack
+        (Item : Two_Nodes.Servo_Order)
+        return Interfaces.Unsigned_64 is
+         Local_Wish : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Wish (Item.Wish);
+         Local_Target : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.Target);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Wish, Local_Target);
+      begin
+         Lemma_Bits_Wish (Frame);
+         Lemma_Value_Wish (Local_Wish);
+         Lemma_Bits_Target (Frame);
+         Lemma_Value_Target (Local_Target);
+         return Frame;
+      end Pack;
 
-   procedure Unpack_Servo_Report
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Two_Nodes.Servo_Report;
-      Valid : out Boolean) is
-      Condition_Raw : constant Interfaces.Unsigned_8 :=
-        Servo_Report_Condition_Raw (Word);
-      Position_Raw : constant Interfaces.Unsigned_32 :=
-        Servo_Report_Position_Raw (Word);
-   begin
-      Valid := Condition_Raw <= 2 and then Position_Raw <= 100_000;
-      if Valid then
-         Item :=
-           (Condition => Condition_Of_Bits (Condition_Raw),
-            Position => Position_Of_Bits (Position_Raw));
-      else
-         Item := Two_Nodes.Default_Servo_Report;
-      end if;
-   end Unpack_Servo_Report;
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Two_Nodes.Servo_Order;
+         Valid : out Boolean) is
+         Local_Wish : constant Interfaces.Unsigned_8 := Raw_Of_Wish (Word);
+         Local_Target : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Target (Word);
+      begin
+         Lemma_Bits_Wish (Word);
+         Lemma_Value_Wish (Local_Wish);
+         Lemma_Bits_Target (Word);
+         Lemma_Value_Target (Local_Target);
+         Valid := Local_Wish <= 1 and then Local_Target <= 100_000;
+         if Valid then
+            Item :=
+              (Wish => Value_Of_Type_Wish (Local_Wish),
+               Target => Value_Of_Type_Position (Local_Target));
+         else
+            Item := Two_Nodes.Default_Servo_Order;
+         end if;
+      end Unpack;
 
-   procedure Lemma_Servo_Report_Survives (Item : Two_Nodes.Servo_Report) is
-      Copy : Two_Nodes.Servo_Report;
-      Valid : Boolean;
-   begin
-      Unpack_Servo_Report (Pack_Servo_Report (Item), Copy, Valid);
-      pragma Assert (Valid and then Copy = Item);
-   end Lemma_Servo_Report_Survives;
+      procedure Lemma_Survives (Item : Two_Nodes.Servo_Order) is
+         Copy : Two_Nodes.Servo_Order;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Servo_Order;
+
+   package body Type_Servo_Report is
+      procedure Lemma_Bits_Condition (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Condition (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Condition)
+      is
+      begin
+         null;
+      end Lemma_Bits_Condition;
+
+      procedure Lemma_Value_Condition (Raw : Interfaces.Unsigned_8)
+      with
+        Ghost,
+        Pre => Raw <= 16#3#,
+        Post =>
+          (Raw <= 2)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Condition)
+             in 0 .. 2)
+          and then (if Raw <= 2
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Condition)
+                   = Two_Nodes.Condition'Pos (Value_Of_Type_Condition (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Condition)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Condition;
+
+      procedure Lemma_Bits_Position (Word : Interfaces.Unsigned_64)
+      with
+        Ghost,
+        Post =>
+          Interfaces.Unsigned_64 (Raw_Of_Position (Word))
+          = Ravenchart.Can.Layouts.Raw (Word, Signal_Position)
+      is
+      begin
+         null;
+      end Lemma_Bits_Position;
+
+      procedure Lemma_Value_Position (Raw : Interfaces.Unsigned_32)
+      with
+        Ghost,
+        Pre => Raw <= 16#1FFFF#,
+        Post =>
+          (Raw <= 100_000)
+          = (Ravenchart.Can.Layouts.Counted
+               (Interfaces.Unsigned_64 (Raw),
+                Signal_Position)
+             in 0 .. 100_000)
+          and then (if Raw <= 100_000
+                then Ravenchart.Can.Layouts.Counted
+                     (Interfaces.Unsigned_64 (Raw),
+                      Signal_Position)
+                   = Ravenchart.Number (Value_Of_Type_Position (Raw)))
+      is
+      begin
+         pragma Assert
+           (Ravenchart.Number (Interfaces.Unsigned_64 (Raw))
+            = Ravenchart.Number (Raw));
+         pragma Assert
+           (Ravenchart.Can.Layouts.Counted
+              (Interfaces.Unsigned_64 (Raw),
+               Signal_Position)
+            = Ravenchart.Number (Raw));
+      end Lemma_Value_Position;
+
+      function Word_Of
+        (Local_Condition : Interfaces.Unsigned_8;
+         Local_Position  : Interfaces.Unsigned_32)
+        return Interfaces.Unsigned_64 is
+        (Interfaces.Unsigned_64 (Local_Condition)
+         or Interfaces.Shift_Left
+             (Interfaces.Unsigned_64 (Local_Position),
+              2))
+      with
+        Pre => Local_Condition <= 16#3# and then Local_Position <= 16#1FFFF#,
+        Post =>
+          Raw_Of_Condition (Word_Of'Result) = Local_Condition
+          and then Raw_Of_Position (Word_Of'Result) = Local_Position;
+
+      function Pack
+        (Item : Two_Nodes.Servo_Report)
+        return Interfaces.Unsigned_64 is
+         Local_Condition : constant Interfaces.Unsigned_8 :=
+           Bits_Of_Type_Condition (Item.Condition);
+         Local_Position : constant Interfaces.Unsigned_32 :=
+           Bits_Of_Type_Position (Item.Position);
+         Frame : constant Interfaces.Unsigned_64 :=
+           Word_Of (Local_Condition, Local_Position);
+      begin
+         Lemma_Bits_Condition (Frame);
+         Lemma_Value_Condition (Local_Condition);
+         Lemma_Bits_Position (Frame);
+         Lemma_Value_Position (Local_Position);
+         return Frame;
+      end Pack;
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Two_Nodes.Servo_Report;
+         Valid : out Boolean) is
+         Local_Condition : constant Interfaces.Unsigned_8 :=
+           Raw_Of_Condition (Word);
+         Local_Position : constant Interfaces.Unsigned_32 :=
+           Raw_Of_Position (Word);
+      begin
+         Lemma_Bits_Condition (Word);
+         Lemma_Value_Condition (Local_Condition);
+         Lemma_Bits_Position (Word);
+         Lemma_Value_Position (Local_Position);
+         Valid := Local_Condition <= 2 and then Local_Position <= 100_000;
+         if Valid then
+            Item :=
+              (Condition => Value_Of_Type_Condition (Local_Condition),
+               Position => Value_Of_Type_Position (Local_Position));
+         else
+            Item := Two_Nodes.Default_Servo_Report;
+         end if;
+      end Unpack;
+
+      procedure Lemma_Survives (Item : Two_Nodes.Servo_Report) is
+         Copy : Two_Nodes.Servo_Report;
+         Valid : Boolean;
+      begin
+         Unpack (Pack (Item), Copy, Valid);
+         pragma Assert (Valid and then Copy = Item);
+      end Lemma_Survives;
+   end Type_Servo_Report;
 end Two_Nodes.Codecs;

@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Layouts;
 
 package Two_Nodes.Codecs
 with SPARK_Mode, Pure
@@ -17,117 +18,162 @@ is
    use type Interfaces.Unsigned_8;
    use type Ravenchart.Number;
 
-   function Wish_Of_Bits (Raw : Interfaces.Unsigned_8) return Two_Nodes.Wish is
+   function Value_Of_Type_Wish
+     (Raw : Interfaces.Unsigned_8)
+     return Two_Nodes.Wish is
      (Two_Nodes.Wish'Val (Raw))
    with Pre => Raw <= 1;
 
-   function Position_Of_Bits
+   function Value_Of_Type_Position
      (Raw : Interfaces.Unsigned_32)
      return Two_Nodes.Position is
      (Two_Nodes.Position (Ravenchart.Number (Raw)))
    with Pre => Raw <= 100_000;
 
-   function Condition_Of_Bits
+   function Value_Of_Type_Condition
      (Raw : Interfaces.Unsigned_8)
      return Two_Nodes.Condition is
      (Two_Nodes.Condition'Val (Raw))
    with Pre => Raw <= 2;
 
-   function Servo_Order_Wish_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#1#));
-   --  [Servo_Order.wish] bits 0 .. 0
+   package Type_Servo_Order is
+      --  [Servo_Order.wish] bits 0 .. 0
+      Signal_Wish : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 1,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Servo_Order_Target_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 1) and 16#1FFFF#));
-   --  [Servo_Order.target] bits 1 .. 17
+      --  [Servo_Order.target] bits 1 .. 17
+      Signal_Target : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 1,
+         Width => 17,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   function Pack_Servo_Order
-     (Item : Two_Nodes.Servo_Order)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Servo_Order_Wish_Raw (Pack_Servo_Order'Result) <= 1
-       and then Wish_Of_Bits
-           (Servo_Order_Wish_Raw (Pack_Servo_Order'Result))
-         = Item.Wish
-       and then Servo_Order_Target_Raw (Pack_Servo_Order'Result) <= 100_000
-       and then Position_Of_Bits
-           (Servo_Order_Target_Raw (Pack_Servo_Order'Result))
-         = Item.Target;
+      function Raw_Of_Wish
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#1#));
 
-   procedure Unpack_Servo_Order
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Two_Nodes.Servo_Order;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Servo_Order_Wish_Raw (Word) <= 1
-          and then Servo_Order_Target_Raw (Word) <= 100_000)
-       and then (if Valid
-             then Item.Wish = Wish_Of_Bits (Servo_Order_Wish_Raw (Word))
-                and then Item.Target
-                  = Position_Of_Bits (Servo_Order_Target_Raw (Word))
-          else Item = Two_Nodes.Default_Servo_Order);
-   --  Valid when all bits stand for values.
+      function Raw_Of_Target
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 1) and 16#1FFFF#));
 
-   procedure Lemma_Servo_Order_Survives (Item : Two_Nodes.Servo_Order)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Pack
+        (Item : Two_Nodes.Servo_Order)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Wish)
+          = Two_Nodes.Wish'Pos (Item.Wish)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Target)
+            = Ravenchart.Number (Item.Target)
+          and then (Pack'Result and 16#FFFFFFFFFFFC0000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
 
-   function Servo_Report_Condition_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_8 is
-     (Interfaces.Unsigned_8 (Word and 16#3#));
-   --  [Servo_Report.condition] bits 0 .. 1
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Two_Nodes.Servo_Order;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Wish) in 0 .. 1
+             and then Ravenchart.Can.Layouts.Number_In (Word, Signal_Target)
+               in 0 .. 100_000)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In (Word, Signal_Wish)
+                   = Two_Nodes.Wish'Pos (Item.Wish)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Target)
+                     = Ravenchart.Number (Item.Target)
+             else Item = Two_Nodes.Default_Servo_Order);
+      --  Valid when all bits stand for values.
 
-   function Servo_Report_Position_Raw
-     (Word : Interfaces.Unsigned_64)
-     return Interfaces.Unsigned_32 is
-     (Interfaces.Unsigned_32
-        (Interfaces.Shift_Right (Word, 2) and 16#1FFFF#));
-   --  [Servo_Report.position] bits 2 .. 18
+      procedure Lemma_Survives (Item : Two_Nodes.Servo_Order)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Servo_Order;
 
-   function Pack_Servo_Report
-     (Item : Two_Nodes.Servo_Report)
-     return Interfaces.Unsigned_64
-   with
-     Post =>
-       Servo_Report_Condition_Raw (Pack_Servo_Report'Result) <= 2
-       and then Condition_Of_Bits
-           (Servo_Report_Condition_Raw (Pack_Servo_Report'Result))
-         = Item.Condition
-       and then Servo_Report_Position_Raw (Pack_Servo_Report'Result)
-         <= 100_000
-       and then Position_Of_Bits
-           (Servo_Report_Position_Raw (Pack_Servo_Report'Result))
-         = Item.Position;
+   package Type_Servo_Report is
+      --  [Servo_Report.condition] bits 0 .. 1
+      Signal_Condition : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 0,
+         Width => 2,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Unpack_Servo_Report
-     (Word  : Interfaces.Unsigned_64;
-      Item  : out Two_Nodes.Servo_Report;
-      Valid : out Boolean)
-   with
-     Convention => C,
-     Post =>
-       Valid
-       = (Servo_Report_Condition_Raw (Word) <= 2
-          and then Servo_Report_Position_Raw (Word) <= 100_000)
-       and then (if Valid
-             then Item.Condition
-                = Condition_Of_Bits (Servo_Report_Condition_Raw (Word))
-                and then Item.Position
-                  = Position_Of_Bits (Servo_Report_Position_Raw (Word))
-          else Item = Two_Nodes.Default_Servo_Report);
-   --  Valid when all bits stand for values.
+      --  [Servo_Report.position] bits 2 .. 18
+      Signal_Position : constant Ravenchart.Can.Layouts.Signal :=
+        (Start => 2,
+         Width => 17,
+         Order => Ravenchart.Can.Layouts.Intel,
+         Signed => False,
+         Offset => 0);
 
-   procedure Lemma_Servo_Report_Survives (Item : Two_Nodes.Servo_Report)
-   with Ghost;
-   --  What is packed is what is unpacked.
+      function Raw_Of_Condition
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_8 is
+        (Interfaces.Unsigned_8 (Word and 16#3#));
+
+      function Raw_Of_Position
+        (Word : Interfaces.Unsigned_64)
+        return Interfaces.Unsigned_32 is
+        (Interfaces.Unsigned_32
+           (Interfaces.Shift_Right (Word, 2) and 16#1FFFF#));
+
+      function Pack
+        (Item : Two_Nodes.Servo_Report)
+        return Interfaces.Unsigned_64
+      with
+        Post =>
+          Ravenchart.Can.Layouts.Number_In (Pack'Result, Signal_Condition)
+          = Two_Nodes.Condition'Pos (Item.Condition)
+          and then Ravenchart.Can.Layouts.Number_In
+              (Pack'Result,
+               Signal_Position)
+            = Ravenchart.Number (Item.Position)
+          and then (Pack'Result and 16#FFFFFFFFFFF80000#) = 0;
+      --  The frame's raw values are the table's, and bits of no signal are 0.
+
+      procedure Unpack
+        (Word  : Interfaces.Unsigned_64;
+         Item  : out Two_Nodes.Servo_Report;
+         Valid : out Boolean)
+      with
+        Convention => C,
+        Post =>
+          Valid
+          = (Ravenchart.Can.Layouts.Number_In (Word, Signal_Condition)
+             in 0 .. 2
+             and then Ravenchart.Can.Layouts.Number_In
+                 (Word,
+                  Signal_Position)
+               in 0 .. 100_000)
+          and then (if Valid
+                then Ravenchart.Can.Layouts.Number_In
+                     (Word,
+                      Signal_Condition)
+                   = Two_Nodes.Condition'Pos (Item.Condition)
+                   and then Ravenchart.Can.Layouts.Number_In
+                       (Word,
+                        Signal_Position)
+                     = Ravenchart.Number (Item.Position)
+             else Item = Two_Nodes.Default_Servo_Report);
+      --  Valid when all bits stand for values.
+
+      procedure Lemma_Survives (Item : Two_Nodes.Servo_Report)
+      with Ghost;
+      --  What is packed is what is unpacked.
+   end Type_Servo_Report;
 end Two_Nodes.Codecs;

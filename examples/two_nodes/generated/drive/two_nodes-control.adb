@@ -6,6 +6,7 @@ with Ravenchart.Health;
 with Ravenchart.Traces;
 with Two_Nodes.Elements;
 with Two_Nodes.Health_Counts;
+with Two_Nodes.Link.Watch;
 with Two_Nodes.Servo;
 with Two_Nodes.Trace;
 
@@ -28,6 +29,8 @@ is
          + Ravenchart.Element_Id (Row'Pos (Item)),
          0);
       case Item is
+         when Link_Watch_Drive =>
+            Link.Watch.Run_Watch;
          when Servo_Ports =>
             Servo.Run_Ports;
          when Servo_Drive =>

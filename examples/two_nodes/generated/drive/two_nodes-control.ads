@@ -16,7 +16,12 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    --  [control.table] the activities, in the order in which they run
-   type Row is (Servo_Ports, Servo_Drive, Servo_Control, Servo_Tell);
+   type Row is
+     (Link_Watch_Drive,
+      Servo_Ports,
+      Servo_Drive,
+      Servo_Control,
+      Servo_Tell);
 
    procedure Execute (Item : Row);
 
@@ -26,10 +31,12 @@ is
 
    --  [control]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "control",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Servo_Ports => (Divisor => 1, Phase => 0),
+        (Link_Watch_Drive => (Divisor => 2, Phase => 0),
+         Servo_Ports => (Divisor => 1, Phase => 0),
          Servo_Drive => (Divisor => 1, Phase => 0),
          Servo_Control => (Divisor => 1, Phase => 0),
          Servo_Tell => (Divisor => 2, Phase => 0)),
@@ -38,6 +45,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
       Task_Priority => System.Default_Priority + 2,
+      Ceiling => System.Default_Priority + 2,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

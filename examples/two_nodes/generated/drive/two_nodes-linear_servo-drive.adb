@@ -22,20 +22,43 @@ is
                then Go
             elsif Now = On_Nobody_Tells
                then Lost_At_Rest
+            elsif Now = On_Bus_Failed
+               then Cut_Off_At_Rest
             else None),
         when Drive_States.Following =>
            (if Now = On_Told and then Ins.Order.Value.Wish = Two_Nodes.Rest
                then Rest
             elsif Now = On_Nobody_Tells
                then Lost
+            elsif Now = On_Bus_Failed
+               then Cut_Off
             else None),
-        when Drive_States.Safe => (if Now = On_Told then Back else None))
+        when Drive_States.Safe =>
+           (if Now = On_Bus_Failed
+               then Cut_Off_Besides
+            elsif Now = On_Told
+               then Back
+            else None),
+        when Drive_States.Safe_Off_Bus =>
+           (if Now = On_Bus_Failed
+               then Still_Cut_Off
+            elsif Now = On_Told
+               then Told_Off_Bus
+            elsif Now = On_Bus_Back
+               then Connected
+            else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
    package Chart
    with Ghost
    is
-      type Node is (Nowhere, Standing, Following, Safe, Disorder);
+      type Node is
+        (Nowhere,
+         Standing,
+         Following,
+         Safe,
+         Safe_Off_Bus,
+         Disorder);
 
       function Innermost (Leaf : Drive_States.Leaf) return Node is
         (Node'Val (Drive_States.Leaf'Pos (Leaf) + 1));
@@ -63,7 +86,8 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
@@ -88,6 +112,24 @@ is
             Self.Leaf := Drive_States.Safe;
          when Lost =>
             Active := Chart.Moved (Active, Chart.Following, Chart.Safe);
+            Self.Leaf := Drive_States.Safe;
+         when Cut_Off_At_Rest =>
+            Active :=
+              Chart.Moved (Active, Chart.Standing, Chart.Safe_Off_Bus);
+            Self.Leaf := Drive_States.Safe_Off_Bus;
+         when Cut_Off =>
+            Active :=
+              Chart.Moved (Active, Chart.Following, Chart.Safe_Off_Bus);
+            Self.Leaf := Drive_States.Safe_Off_Bus;
+         when Cut_Off_Besides =>
+            Active := Chart.Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
+            Self.Leaf := Drive_States.Safe_Off_Bus;
+         when Still_Cut_Off =>
+            null;
+         when Told_Off_Bus =>
+            null;
+         when Connected =>
+            Active := Chart.Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
             Self.Leaf := Drive_States.Safe;
          when Back =>
             Active := Chart.Moved (Active, Chart.Safe, Chart.Standing);

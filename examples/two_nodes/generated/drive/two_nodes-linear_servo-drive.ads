@@ -17,6 +17,8 @@ is
      (Start_Of_Region,
       On_Told,
       On_Nobody_Tells,
+      On_Bus_Failed,
+      On_Bus_Back,
       Conditions);
 
    --  [Linear_Servo.Drive.transitions] in order of precedence, innermost
@@ -27,6 +29,12 @@ is
       Rest,
       Lost_At_Rest,
       Lost,
+      Cut_Off_At_Rest,
+      Cut_Off,
+      Cut_Off_Besides,
+      Still_Cut_Off,
+      Told_Off_Bus,
+      Connected,
       Back,
       None);
 
@@ -63,6 +71,18 @@ is
            Leaf = Drive_States.Standing and then Now = On_Nobody_Tells,
         when Lost =>
            Leaf = Drive_States.Following and then Now = On_Nobody_Tells,
+        when Cut_Off_At_Rest =>
+           Leaf = Drive_States.Standing and then Now = On_Bus_Failed,
+        when Cut_Off =>
+           Leaf = Drive_States.Following and then Now = On_Bus_Failed,
+        when Cut_Off_Besides =>
+           Leaf = Drive_States.Safe and then Now = On_Bus_Failed,
+        when Still_Cut_Off =>
+           Leaf = Drive_States.Safe_Off_Bus and then Now = On_Bus_Failed,
+        when Told_Off_Bus =>
+           Leaf = Drive_States.Safe_Off_Bus and then Now = On_Told,
+        when Connected =>
+           Leaf = Drive_States.Safe_Off_Bus and then Now = On_Bus_Back,
         when Back => Leaf = Drive_States.Safe and then Now = On_Told);
    --  The declared chart: source, trigger and guard of each transition.
 
@@ -75,16 +95,31 @@ is
         when Rest => Leaf = Drive_States.Following,
         when Lost_At_Rest => Leaf = Drive_States.Standing,
         when Lost => Leaf = Drive_States.Following,
+        when Cut_Off_At_Rest => Leaf = Drive_States.Standing,
+        when Cut_Off => Leaf = Drive_States.Following,
+        when Cut_Off_Besides => Leaf = Drive_States.Safe,
+        when Still_Cut_Off => Leaf = Drive_States.Safe_Off_Bus,
+        when Told_Off_Bus => Leaf = Drive_States.Safe_Off_Bus,
+        when Connected => Leaf = Drive_States.Safe_Off_Bus,
         when Back => Leaf = Drive_States.Safe);
    --  Is its source the leaf, or around it?
 
-   function Target (T : Firing) return Drive_States.Leaf is
+   function Target
+     (T : Firing;
+      Leaf : Drive_States.Leaf)
+     return Drive_States.Leaf is
      (case T is
         when Initial_Entry => Drive_States.Standing,
         when Go => Drive_States.Following,
         when Rest => Drive_States.Standing,
         when Lost_At_Rest => Drive_States.Safe,
         when Lost => Drive_States.Safe,
+        when Cut_Off_At_Rest => Drive_States.Safe_Off_Bus,
+        when Cut_Off => Drive_States.Safe_Off_Bus,
+        when Cut_Off_Besides => Drive_States.Safe_Off_Bus,
+        when Still_Cut_Off => Leaf,
+        when Told_Off_Bus => Leaf,
+        when Connected => Drive_States.Safe,
         when Back => Drive_States.Standing);
    --  The leaf it leads to; that of a composite is its default.
 
@@ -105,7 +140,9 @@ is
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
         when Told => On_Told,
-        when Nobody_Tells => On_Nobody_Tells);
+        when Nobody_Tells => On_Nobody_Tells,
+        when Bus_Failed => On_Bus_Failed,
+        when Bus_Back => On_Bus_Back);
 
    procedure Poll (Self : Region; Now : out Occurrence)
    with
@@ -129,6 +166,6 @@ is
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
-          else Self.Leaf = Target (Fired));
+          else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
 end Two_Nodes.Linear_Servo.Drive;

@@ -38,7 +38,8 @@ is
       Report      : out Two_Nodes.Servo_Report;
       Send_Report : out Boolean) is
    begin
-      if Drive = Drive_States.Safe then
+      if Drive = Drive_States.Safe or else Drive = Drive_States.Safe_Off_Bus
+      then
          Report :=
            Two_Nodes.Servo_Report'(Condition => Two_Nodes.Safe,
             Position => Position);

@@ -14,7 +14,7 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    --  [Linear_Servo.events]
-   type Event is (Told, Nobody_Tells);
+   type Event is (Told, Nobody_Tells, Bus_Failed, Bus_Back);
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Linear_Servo.Event,
@@ -23,7 +23,7 @@ is
 
    --  [Linear_Servo.Drive.states]
    package Drive_States is
-      type Leaf is (Standing, Following, Safe);
+      type Leaf is (Standing, Following, Safe, Safe_Off_Bus);
    end Drive_States;
 
    --  [Linear_Servo.order] what its readers see

@@ -36,7 +36,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Servo_Order
+         Codecs.Type_Servo_Order.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Supervisor_Order_Item,
             Valid);

@@ -28,7 +28,7 @@ is
               (Id => 2,
                Format => Ravenchart.Can.Standard,
                Length => 3,
-               Payload => Codecs.Pack_Servo_Report (Item))),
+               Payload => Codecs.Type_Servo_Report.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

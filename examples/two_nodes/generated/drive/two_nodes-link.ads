@@ -31,7 +31,11 @@ is
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
-      Setting => (Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => False));
+      Setting =>
+        (Bit_Rate => 500_000,
+         Data_Rate => 0,
+         Takes_Fd => False,
+         Recovery => Ravenchart.Can.On_Request));
 
    procedure Send_Servo_Report (Item : Two_Nodes.Servo_Report);
    --  [servo_report] hand one frame to the controller; never blocks.

@@ -25,11 +25,13 @@ is
    --  [reception_drive]
 
    package Processor is new Ravenchart.Sporadic_Processors
-     (Activity_Id => Row,
+     (Name => "reception_drive",
+      Activity_Id => Row,
       Minimum_Separation => Timing_Certificate.Reception_Drive_T,
       Wait => Link.Receiver.Wait,
       Deadline => Timing_Certificate.Reception_Drive_D,
       Task_Priority => System.Default_Priority + 3,
+      Ceiling => System.Default_Priority + 3,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

@@ -106,6 +106,36 @@ is
               (Ravenchart.Traces.Raised,
                Elements.Servo_Nobody_Tells,
                0);
+         when Linear_Servo.Bus_Failed =>
+            Drive_Queue.Put (Item, Status);
+            if Status /= Ravenchart.Queueing.Queued then
+               Health_Counts.Counters.Record_Fault
+                 (Ravenchart.Health.Queue_Overflow);
+               Trace.Buffer.Note
+                 (Ravenchart.Traces.Fault,
+                  Elements.Servo_Drive,
+                  Ravenchart.Health.Fault_Kind'Pos
+                    (Ravenchart.Health.Queue_Overflow));
+            end if;
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Servo_Bus_Failed,
+               0);
+         when Linear_Servo.Bus_Back =>
+            Drive_Queue.Put (Item, Status);
+            if Status /= Ravenchart.Queueing.Queued then
+               Health_Counts.Counters.Record_Fault
+                 (Ravenchart.Health.Queue_Overflow);
+               Trace.Buffer.Note
+                 (Ravenchart.Traces.Fault,
+                  Elements.Servo_Drive,
+                  Ravenchart.Health.Fault_Kind'Pos
+                    (Ravenchart.Health.Queue_Overflow));
+            end if;
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Servo_Bus_Back,
+               0);
       end case;
    end Offer;
 

@@ -14,7 +14,8 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    package Probe is new Ravenchart.Host_Probes
-     (Period => 1_000_000,
+     (Name => "panel.probe",
+      Period => 1_000_000,
       Probe_Priority => System.Default_Priority + 6,
       Stack_Bytes => 16_384);
 end Two_Nodes.Host_Probe;

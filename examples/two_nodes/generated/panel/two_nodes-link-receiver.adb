@@ -36,7 +36,7 @@ is
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
-         Codecs.Unpack_Servo_Report
+         Codecs.Type_Servo_Report.Unpack
            (Ravenchart.Can.Any_Frames.Payload (Frame),
             Servo_Report_Item,
             Valid);

@@ -28,7 +28,7 @@ is
               (Id => 1,
                Format => Ravenchart.Can.Standard,
                Length => 3,
-               Payload => Codecs.Pack_Servo_Order (Item))),
+               Payload => Codecs.Type_Servo_Order.Pack (Item))),
          Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,

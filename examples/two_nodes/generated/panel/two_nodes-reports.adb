@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Ravenchart.Can;
+with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
@@ -79,11 +80,17 @@ is
       Faults : Ravenchart.Health.Fault_Counts;
       Lost : Ravenchart.Event_Count;
       Link_Counters : Ravenchart.Can.Counters;
+      Link_Faults : Ravenchart.Can.Fault_Notices.Fault_Log;
       Late : Ravenchart.Nanoseconds;
    begin
+      Ravenchart.Hosts.Put_Now;
       Report_Reception_Panel;
       Report_Supervision;
       Health_Counts.Counters.Read (Faults);
+      Link.Controller.Read_Faults (Link_Faults);
+      Faults (Ravenchart.Health.Can_Error_Passive) :=
+        Link_Faults.Passive_Entries;
+      Faults (Ravenchart.Health.Can_Bus_Off) := Link_Faults.Off_Entries;
       for Kind in Ravenchart.Health.Fault_Kind loop
          Ravenchart.Hosts.Put_Fault_Count (Kind, Faults (Kind));
       end loop;

@@ -16,7 +16,11 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    --  [supervision.table] the activities, in the order in which they run
-   type Row is (Supervisor_Ports, Supervisor_Mission, Supervisor_Plan);
+   type Row is
+     (Link_Watch_Panel,
+      Supervisor_Ports,
+      Supervisor_Mission,
+      Supervisor_Plan);
 
    procedure Execute (Item : Row);
 
@@ -26,10 +30,12 @@ is
 
    --  [supervision]
    package Processor is new Ravenchart.Periodic_Processors
-     (Activity_Id => Row,
+     (Name => "supervision",
+      Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Supervisor_Ports => (Divisor => 1, Phase => 0),
+        (Link_Watch_Panel => (Divisor => 1, Phase => 0),
+         Supervisor_Ports => (Divisor => 1, Phase => 0),
          Supervisor_Mission => (Divisor => 1, Phase => 0),
          Supervisor_Plan => (Divisor => 1, Phase => 0)),
       Cycle => 1,
@@ -37,6 +43,7 @@ is
       Offset => 0,
       Deadline => Timing_Certificate.Supervision_D,
       Task_Priority => System.Default_Priority + 1,
+      Ceiling => System.Default_Priority + 1,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);

@@ -88,6 +88,36 @@ is
               (Ravenchart.Traces.Raised,
                Elements.Supervisor_Servo_Lost,
                0);
+         when Traveller.Bus_Failed =>
+            Mission_Queue.Put (Item, Status);
+            if Status /= Ravenchart.Queueing.Queued then
+               Health_Counts.Counters.Record_Fault
+                 (Ravenchart.Health.Queue_Overflow);
+               Trace.Buffer.Note
+                 (Ravenchart.Traces.Fault,
+                  Elements.Supervisor_Mission,
+                  Ravenchart.Health.Fault_Kind'Pos
+                    (Ravenchart.Health.Queue_Overflow));
+            end if;
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Supervisor_Bus_Failed,
+               0);
+         when Traveller.Bus_Back =>
+            Mission_Queue.Put (Item, Status);
+            if Status /= Ravenchart.Queueing.Queued then
+               Health_Counts.Counters.Record_Fault
+                 (Ravenchart.Health.Queue_Overflow);
+               Trace.Buffer.Note
+                 (Ravenchart.Traces.Fault,
+                  Elements.Supervisor_Mission,
+                  Ravenchart.Health.Fault_Kind'Pos
+                    (Ravenchart.Health.Queue_Overflow));
+            end if;
+            Trace.Buffer.Note
+              (Ravenchart.Traces.Raised,
+               Elements.Supervisor_Bus_Back,
+               0);
       end case;
    end Offer;
 

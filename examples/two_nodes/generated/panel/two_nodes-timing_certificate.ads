@@ -21,16 +21,16 @@ is
    --  bound.
    Reception_Panel_R : constant := 245_000;
    Reception_Drive_R : constant := 245_000;
-   Supervision_R : constant := 715_000;
-   Control_R : constant := 815_000;
-   Link_Driver_Tx_Supervisor_Order_R : constant := 880_000;
-   Link_Driver_Rx_Supervisor_Order_R : constant := 1_385_000;
-   Link_Driver_Tx_Servo_Report_R : constant := 980_000;
-   Link_Driver_Rx_Servo_Report_R : constant := 1_485_000;
+   Supervision_R : constant := 765_000;
+   Control_R : constant := 865_000;
+   Link_Driver_Tx_Supervisor_Order_R : constant := 930_000;
+   Link_Driver_Rx_Supervisor_Order_R : constant := 1_435_000;
+   Link_Driver_Tx_Servo_Report_R : constant := 1_030_000;
+   Link_Driver_Rx_Servo_Report_R : constant := 1_535_000;
    Panel_Probe_R : constant := 45_000;
    Drive_Probe_R : constant := 45_000;
-   Link_Supervisor_Order_R : constant := 1_220_000;
-   Link_Servo_Report_R : constant := 1_320_000;
+   Link_Supervisor_Order_R : constant := 1_270_000;
+   Link_Servo_Report_R : constant := 1_370_000;
 
    --  [panel] what the platform takes, each at its longest
    Panel_Context_Switch : constant := 10_000;
@@ -68,6 +68,7 @@ is
 
    --  [supervision] priority 1, released every T. B: main may be inside
    --  panel.health.
+   Link_Watch_Panel_Budget : constant := 50_000;
    Supervisor_Ports_Budget : constant := 100_000;
    Supervisor_Mission_Budget : constant := 200_000;
    Supervisor_Plan_Budget : constant := 150_000;
@@ -76,7 +77,8 @@ is
    Supervision_J : constant := 0;
    Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
-     Supervisor_Ports_Budget
+     Link_Watch_Panel_Budget
+     + Supervisor_Ports_Budget
      + Supervisor_Mission_Budget
      + Supervisor_Plan_Budget
      + 2 * Panel_Context_Switch;
@@ -85,6 +87,7 @@ is
    --  [control] priority 2, released every T. B: main may be inside
    --  drive.health. C: what every release executes; C_2: rows of every 2th
    --  release.
+   Link_Watch_Drive_Budget : constant := 50_000;
    Servo_Ports_Budget : constant := 100_000;
    Servo_Drive_Budget : constant := 200_000;
    Servo_Control_Budget : constant := 150_000;
@@ -98,7 +101,7 @@ is
      + Servo_Drive_Budget
      + Servo_Control_Budget
      + 2 * Drive_Context_Switch;
-   Control_C_2 : constant := Servo_Tell_Budget;
+   Control_C_2 : constant := Link_Watch_Drive_Budget + Servo_Tell_Budget;
    Control_B : constant := Drive_Critical_Section;
 
    --  [link.driver_tx.supervisor_order] priority 5, the driver's work,
@@ -305,10 +308,11 @@ is
    pragma Assert (Supervision_R <= Supervision_D);
 
    --  [supervisor.ports] done, from the event that releases its processor
-   Supervisor_Ports_Done : constant := 365_000;
+   Supervisor_Ports_Done : constant := 415_000;
    Supervisor_Ports_W : constant := Supervisor_Ports_Done - Supervision_J;
    Supervisor_Ports_Needs : constant :=
      2 * Panel_Context_Switch
+     + Link_Watch_Panel_Budget
      + Supervisor_Ports_Budget
      + Supervision_B
      + (((Supervisor_Ports_W + Reception_Panel_A) / Reception_Panel_T)
@@ -330,10 +334,11 @@ is
       "supervisor.ports " & "can take longer than its claimed response time");
 
    --  [supervisor.plan] done, from the event that releases its processor
-   Supervisor_Plan_Done : constant := 715_000;
+   Supervisor_Plan_Done : constant := 765_000;
    Supervisor_Plan_W : constant := Supervisor_Plan_Done - Supervision_J;
    Supervisor_Plan_Needs : constant :=
      2 * Panel_Context_Switch
+     + Link_Watch_Panel_Budget
      + Supervisor_Ports_Budget
      + Supervisor_Mission_Budget
      + Supervisor_Plan_Budget
@@ -388,10 +393,11 @@ is
    pragma Assert (Control_R <= Control_D);
 
    --  [servo.ports] done, from the event that releases its processor
-   Servo_Ports_Done : constant := 365_000;
+   Servo_Ports_Done : constant := 415_000;
    Servo_Ports_W : constant := Servo_Ports_Done - Control_J;
    Servo_Ports_Needs : constant :=
      2 * Drive_Context_Switch
+     + Link_Watch_Drive_Budget
      + Servo_Ports_Budget
      + Control_B
      + (((Servo_Ports_W + Reception_Drive_A) / Reception_Drive_T)
@@ -412,10 +418,11 @@ is
       "servo.ports " & "can take longer than its claimed response time");
 
    --  [servo.control] done, from the event that releases its processor
-   Servo_Control_Done : constant := 715_000;
+   Servo_Control_Done : constant := 765_000;
    Servo_Control_W : constant := Servo_Control_Done - Control_J;
    Servo_Control_Needs : constant :=
      2 * Drive_Context_Switch
+     + Link_Watch_Drive_Budget
      + Servo_Ports_Budget
      + Servo_Drive_Budget
      + Servo_Control_Budget
@@ -438,10 +445,11 @@ is
       "servo.control " & "can take longer than its claimed response time");
 
    --  [servo.tell] done, from the event that releases its processor
-   Servo_Tell_Done : constant := 815_000;
+   Servo_Tell_Done : constant := 865_000;
    Servo_Tell_W : constant := Servo_Tell_Done - Control_J;
    Servo_Tell_Needs : constant :=
      2 * Drive_Context_Switch
+     + Link_Watch_Drive_Budget
      + Servo_Ports_Budget
      + Servo_Drive_Budget
      + Servo_Control_Budget
@@ -789,7 +797,7 @@ is
       "link.supervisor_order "
       & "can take longer than its claimed response time");
 
-   Link_Supervisor_Order_Turn : constant := 1_385_000;
+   Link_Supervisor_Order_Turn : constant := 1_435_000;
 
    pragma Compile_Time_Error
      ((Link_Supervisor_Order_Turn_J + Link_Supervisor_Order_Turn_W)
@@ -836,7 +844,7 @@ is
       "link.servo_report "
       & "can take longer than its claimed response time");
 
-   Link_Servo_Report_Turn : constant := 1_485_000;
+   Link_Servo_Report_Turn : constant := 1_535_000;
 
    pragma Compile_Time_Error
      ((Link_Servo_Report_Turn_J + Link_Servo_Report_Turn_W)
@@ -849,7 +857,7 @@ is
 
    --  [planned] from end to end. supervisor.plan samples. servo.ports
    --  samples.
-   Chain_Planned_Reaction : constant := 32_590_000;
+   Chain_Planned_Reaction : constant := 32_690_000;
    Chain_Planned_Reaction_Limit : constant := 60_000_000;
    Chain_Planned_Reaction_Needs : constant :=
      Supervision_T
@@ -866,7 +874,7 @@ is
    pragma Assert
      (Chain_Planned_Reaction_Needs <= Chain_Planned_Reaction_Limit);
 
-   Chain_Planned_Age : constant := 22_590_000;
+   Chain_Planned_Age : constant := 22_690_000;
    Chain_Planned_Age_Limit : constant := 50_000_000;
    Chain_Planned_Age_Needs : constant :=
      Link_Supervisor_Order_Handed
@@ -883,7 +891,7 @@ is
 
    --  [followed] from end to end. servo.control samples. servo.tell
    --  samples. supervisor.ports samples.
-   Chain_Followed_Reaction : constant := 53_405_000;
+   Chain_Followed_Reaction : constant := 53_555_000;
    Chain_Followed_Reaction_Limit : constant := 70_000_000;
    Chain_Followed_Reaction_Needs : constant :=
      Control_T
@@ -902,7 +910,7 @@ is
    pragma Assert
      (Chain_Followed_Reaction_Needs <= Chain_Followed_Reaction_Limit);
 
-   Chain_Followed_Age : constant := 33_405_000;
+   Chain_Followed_Age : constant := 33_555_000;
    Chain_Followed_Age_Limit : constant := 60_000_000;
    Chain_Followed_Age_Needs : constant :=
      Servo_Control_Done

@@ -19,22 +19,37 @@ is
         when Mission_States.Waiting =>
            (if Now = Conditions and then Ins.Report.State = Ravenchart.Fresh
                then Go
+            elsif Now = On_Bus_Failed
+               then Cut_Off_Early
             else None),
         when Mission_States.Outward =>
            (if Now = Conditions and then Ins.Report.Value.Position = 20_000
                then There
             elsif Now = On_Servo_Lost
                then Lost
+            elsif Now = On_Bus_Failed
+               then Cut_Off
             else None),
         when Mission_States.Homeward =>
            (if Now = Conditions and then Ins.Report.Value.Position = 0
                then Home
             elsif Now = On_Servo_Lost
                then Lost
+            elsif Now = On_Bus_Failed
+               then Cut_Off
             else None),
         when Mission_States.Safe =>
-           (if Now = Conditions and then Ins.Report.State = Ravenchart.Fresh
+           (if Now = On_Bus_Failed
+               then Cut_Off_Besides
+            elsif Now = Conditions
+               and then Ins.Report.State = Ravenchart.Fresh
                then Again
+            else None),
+        when Mission_States.Safe_Off_Bus =>
+           (if Now = On_Bus_Failed
+               then Still_Cut_Off
+            elsif Now = On_Bus_Back
+               then Connected
             else None))
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
@@ -47,6 +62,7 @@ is
          Outward,
          Homeward,
          Safe,
+         Safe_Off_Bus,
          Travelling,
          Disorder);
 
@@ -76,7 +92,8 @@ is
        (if Chosen = Initial_Entry
            then not Self.Started
         else Self.Started and then In_Source (Chosen, Self.Leaf)),
-     Post => Self.Started and then Self.Leaf = Target (Chosen)
+     Post =>
+       Self.Started and then Self.Leaf = Target (Chosen, Self.Leaf'Old)
    is
       use type Chart.Node;
       Active : Chart.Node :=
@@ -135,6 +152,29 @@ is
                         Chart.Travelling)
                else Chart.Disorder);
             Active := Chart.Moved (Active, Chart.Travelling, Chart.Safe);
+            Self.Leaf := Mission_States.Safe;
+         when Cut_Off_Early =>
+            Active :=
+              Chart.Moved (Active, Chart.Waiting, Chart.Safe_Off_Bus);
+            Self.Leaf := Mission_States.Safe_Off_Bus;
+         when Cut_Off =>
+            Active :=
+              (if Self.Leaf in Mission_States.Travelling
+                  then Chart.Moved
+                       (Active,
+                        Chart.Innermost (Self.Leaf),
+                        Chart.Travelling)
+               else Chart.Disorder);
+            Active :=
+              Chart.Moved (Active, Chart.Travelling, Chart.Safe_Off_Bus);
+            Self.Leaf := Mission_States.Safe_Off_Bus;
+         when Cut_Off_Besides =>
+            Active := Chart.Moved (Active, Chart.Safe, Chart.Safe_Off_Bus);
+            Self.Leaf := Mission_States.Safe_Off_Bus;
+         when Still_Cut_Off =>
+            null;
+         when Connected =>
+            Active := Chart.Moved (Active, Chart.Safe_Off_Bus, Chart.Safe);
             Self.Leaf := Mission_States.Safe;
          when Again =>
             Active := Chart.Moved (Active, Chart.Safe, Chart.Waiting);

@@ -14,11 +14,28 @@ is
    use type Ravenchart.Freshness;
 
    --  [Traveller.Mission] what a step can be made for
-   type Occurrence is (Start_Of_Region, On_Servo_Lost, Conditions);
+   type Occurrence is
+     (Start_Of_Region,
+      On_Servo_Lost,
+      On_Bus_Failed,
+      On_Bus_Back,
+      Conditions);
 
    --  [Traveller.Mission.transitions] in order of precedence, innermost
    --  source first
-   type Selection is (Initial_Entry, There, Home, Go, Lost, Again, None);
+   type Selection is
+     (Initial_Entry,
+      There,
+      Home,
+      Go,
+      Lost,
+      Cut_Off_Early,
+      Cut_Off,
+      Cut_Off_Besides,
+      Still_Cut_Off,
+      Connected,
+      Again,
+      None);
 
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range There .. Again;
@@ -61,6 +78,16 @@ is
            and then Ins.Report.State = Ravenchart.Fresh,
         when Lost =>
            Leaf in Mission_States.Travelling and then Now = On_Servo_Lost,
+        when Cut_Off_Early =>
+           Leaf = Mission_States.Waiting and then Now = On_Bus_Failed,
+        when Cut_Off =>
+           Leaf in Mission_States.Travelling and then Now = On_Bus_Failed,
+        when Cut_Off_Besides =>
+           Leaf = Mission_States.Safe and then Now = On_Bus_Failed,
+        when Still_Cut_Off =>
+           Leaf = Mission_States.Safe_Off_Bus and then Now = On_Bus_Failed,
+        when Connected =>
+           Leaf = Mission_States.Safe_Off_Bus and then Now = On_Bus_Back,
         when Again =>
            Leaf = Mission_States.Safe
            and then Now = Conditions
@@ -76,16 +103,29 @@ is
         when Home => Leaf = Mission_States.Homeward,
         when Go => Leaf = Mission_States.Waiting,
         when Lost => Leaf in Mission_States.Travelling,
+        when Cut_Off_Early => Leaf = Mission_States.Waiting,
+        when Cut_Off => Leaf in Mission_States.Travelling,
+        when Cut_Off_Besides => Leaf = Mission_States.Safe,
+        when Still_Cut_Off => Leaf = Mission_States.Safe_Off_Bus,
+        when Connected => Leaf = Mission_States.Safe_Off_Bus,
         when Again => Leaf = Mission_States.Safe);
    --  Is its source the leaf, or around it?
 
-   function Target (T : Firing) return Mission_States.Leaf is
+   function Target
+     (T : Firing;
+      Leaf : Mission_States.Leaf)
+     return Mission_States.Leaf is
      (case T is
         when Initial_Entry => Mission_States.Waiting,
         when There => Mission_States.Homeward,
         when Home => Mission_States.Outward,
         when Go => Mission_States.Outward,
         when Lost => Mission_States.Safe,
+        when Cut_Off_Early => Mission_States.Safe_Off_Bus,
+        when Cut_Off => Mission_States.Safe_Off_Bus,
+        when Cut_Off_Besides => Mission_States.Safe_Off_Bus,
+        when Still_Cut_Off => Leaf,
+        when Connected => Mission_States.Safe,
         when Again => Mission_States.Waiting);
    --  The leaf it leads to; that of a composite is its default.
 
@@ -105,7 +145,9 @@ is
 
    function To_Occurrence (Item : Event) return Occurrence is
      (case Item is
-        when Servo_Lost => On_Servo_Lost);
+        when Servo_Lost => On_Servo_Lost,
+        when Bus_Failed => On_Bus_Failed,
+        when Bus_Back => On_Bus_Back);
 
    procedure Poll (Self : Region; Now : out Occurrence)
    with
@@ -129,6 +171,6 @@ is
           else Is_Selection (Fired, Self.Leaf'Old, Now, Ins))
        and then (if Fired = None
              then Self.Leaf = Self.Leaf'Old
-          else Self.Leaf = Target (Fired));
+          else Self.Leaf = Target (Fired, Self.Leaf'Old));
    --  One run-to-completion step.
 end Two_Nodes.Traveller.Mission;

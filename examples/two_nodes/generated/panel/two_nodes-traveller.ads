@@ -14,7 +14,7 @@ is
    pragma Warnings (Off, "*'Valid attribute *");
 
    --  [Traveller.events]
-   type Event is (Servo_Lost);
+   type Event is (Servo_Lost, Bus_Failed, Bus_Back);
 
    package Event_Lists is new Ravenchart.Event_Lists
      (Event => Traveller.Event,
@@ -23,7 +23,7 @@ is
 
    --  [Traveller.Mission.states]
    package Mission_States is
-      type Leaf is (Waiting, Outward, Homeward, Safe);
+      type Leaf is (Waiting, Outward, Homeward, Safe, Safe_Off_Bus);
 
       subtype Travelling is Leaf range Outward .. Homeward;
    end Mission_States;
