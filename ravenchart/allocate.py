@@ -229,15 +229,19 @@ def yaml(proposal: Proposal) -> str:
 
 
 def _written(system: System) -> Iterator[Processor]:
-    """The processors as a model has them: one reception for all nodes that receive from a bus."""
+    """The processors as a model has them: one copy of what only serves a bus, for all its nodes."""
     seen: set[str] = set()
-    for one in system.processors:
-        suffix = f"_{one.node}"
-        if one.released_by is not None and all(s.name.endswith(suffix) for s in one.slots):
+    for processor in system.processors:
+        suffix = f"_{processor.node}"
+        slots = tuple(
+            replace(slot, name=slot.name.removesuffix(suffix)) if slot.of_bus else slot
+            for slot in processor.slots
+        )
+        one = replace(processor, slots=slots)
+        if one.name.endswith(suffix) and all(slot.of_bus for slot in slots):
             name = one.name.removesuffix(suffix)
-            slots = tuple(replace(s, name=s.name.removesuffix(suffix)) for s in one.slots)
             if name not in seen:
-                yield replace(one, name=name, node="", slots=slots)
+                yield replace(one, name=name, node="")
             seen.add(name)
         else:
             yield one

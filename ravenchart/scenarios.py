@@ -17,6 +17,7 @@ from gen.diagnostics import Diagnostic, error
 from gen.emit.dbc import emit_dbc
 from gen.model import Instance, System
 from gen.statechart import Region
+from gen.trace import CONTROLLER_STATES, elements
 from hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
 from hw_can.bench.peer import BenchError, Codec
 from hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
@@ -179,11 +180,19 @@ class _Check:
     # --- regions, states, ports, nodes
 
     def trace(self, check: TraceCheck, path: Place) -> None:
-        """A region with its states, and the ports that times count from."""
-        region = self.region(check.region, (*path, "region"))
-        for key, state in (("reaches", check.reaches), ("then", check.then)):
-            if region is not None and state is not None:
-                self.state(region, check.region, state, (*path, key))
+        """A region or a controller with its states, and the ports that times count from."""
+        controllers = {one.element for one in elements(self.system) if one.kind == "bus"}
+        if check.region in controllers:
+            for key, state in (("reaches", check.reaches), ("then", check.then)):
+                if state is not None and state not in CONTROLLER_STATES:
+                    told = f"the controller of {check.region} has no state `{state}`"
+                    hint = f"name one of {', '.join(CONTROLLER_STATES)}"
+                    self.source.wrong(UNKNOWN, (*path, key), told, hint)
+        else:
+            region = self.region(check.region, (*path, "region"))
+            for key, state in (("reaches", check.reaches), ("then", check.then)):
+                if region is not None and state is not None:
+                    self.state(region, check.region, state, (*path, key))
         for key, port in (
             ("after_last", check.after_last),
             ("after_silence", check.after_silence),

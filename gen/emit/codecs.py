@@ -293,8 +293,13 @@ class _Codec:
                 Aspect("Ghost"),
                 Aspect("Post", equal(widened, self.table.bits_in(signal, self.frame))),
             ),
-            body=(NULL,),
+            body=self._bit_steps(signal),
         )
+
+    def _bit_steps(self, signal: Signal) -> tuple[Stmt, ...]:
+        if self.words == 1:
+            return (NULL,)
+        return tuple(Pragma("Assert", (s,)) for s in self.table.steps_to_bits(signal, self.frame))
 
     def _value_lemma(self, signal: Signal) -> Subprogram:
         """The codec counts bits as the row does: a fact about numbers alone."""

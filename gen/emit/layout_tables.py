@@ -24,6 +24,7 @@ from .ada import (
     Ref,
     Subprogram,
     call,
+    equal,
     number,
 )
 from .naming import ada_case, type_name
@@ -66,6 +67,41 @@ class LayoutTable:
         """The bits of a signal, by its row."""
         return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
 
+    def steps_to_bits(self, signal: Signal, frame: str) -> tuple[Expr, ...]:
+        """What `bits_in` of a longer frame is, step by step: provers reckon a row with frames late.
+
+        Each step is proved, so a wrong one is an assertion that fails.
+        """
+        row, width = Ref(_row(signal)), signal.width
+        upwards = signal.order is ByteOrder.INTEL
+        byte, bit = divmod(signal.start, 8)
+        first = signal.start if upwards else 8 * byte + 7 - bit
+        index, below = first // 64, first % 64
+        mask = Ref(f"16#{(1 << width) - 1:X}#")
+        words: list[Expr] = [Ref(f"{frame} ({at})") for at in (index, index + 1)]
+        if not upwards:
+            words = [call(f"{LAYOUTS}.Reversed", word) for word in words]
+        if below + width <= 64:
+            kept = _shifted("Right", words[0], below if upwards else 64 - below - width)
+        else:
+            over = below + width - 64
+            parts = (
+                (("Right", below), ("Left", 64 - below))
+                if upwards
+                else (("Left", over), ("Right", 64 - over))
+            )
+            kept = Chain(
+                "or",
+                tuple(
+                    _shifted(way, word, by) for (way, by), word in zip(parts, words, strict=True)
+                ),
+            )
+        return (
+            equal(call(f"{LAYOUTS}.First_In_Order", row), number(first)),
+            equal(call(f"{LAYOUTS}.Mask", number(width)), mask),
+            equal(self.bits_in(signal, frame), Chain("and", (kept, mask))),
+        )
+
     def number_in(self, signal: Signal, frame: str) -> Expr:
         """The raw value of a signal of a frame, by its row."""
         return call(f"{LAYOUTS}.Number_In", Ref(frame), Ref(_row(signal)))
@@ -98,6 +134,10 @@ _ORDERS = {ByteOrder.INTEL: "Intel", ByteOrder.MOTOROLA: "Motorola"}
 
 def _row(signal: Signal) -> str:
     return f"Signal_{ada_case(signal.name)}"
+
+
+def _shifted(way: str, word: Expr, by: int) -> Expr:
+    return call(f"Interfaces.Shift_{way}", word, number(by)) if by else word
 
 
 def _code(signal: Signal) -> str:
