@@ -328,7 +328,7 @@ class _Sharing:
 
     def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
         """The tasks that may put an event into a region's queue."""
-        yield from self.offering(instance, set(region.events()), region.name)
+        return self.offering(instance, set(region.events()), region.name)
 
     def requesting(self, bus: Bus) -> Iterable[str]:
         """The tasks that may request recovery on a bus: all that raise any event of an instance."""
