@@ -3,7 +3,7 @@
 A key is the SHA-256 over gnatprove's version, the run's settings, and the name and bytes of every
 file that it may read: another byte, tool or switch is another key. The folder is
 ``$XDG_CACHE_HOME/ravenchart/proofs`` (``~/.cache`` where that is not set). An entry that cannot be
-read is proved again. Whoever can write there can lie: see ASM-014 in proofs/assumptions.md.
+read is proved again. Whoever can write there can lie: see ASM-016 in proofs/assumptions.md.
 """
 
 from __future__ import annotations
