@@ -44,7 +44,7 @@ from .spark_results import Outside
 from .steps import Refused
 from .toolchain import ToolFailed, ToolMissing
 
-OK, WRONG, UNUSABLE = 0, 1, 2
+OK, WRONG, UNUSABLE, NOT_JUDGED = 0, 1, 2, 3
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -140,6 +140,10 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--seconds", type=float, default=10.0, help="how long without a scenario (default 10)"
     )
+    run.add_argument(
+        "--strict", action="store_true",
+        help="exit status 3 where the run passed, but its timing could not be judged",
+    )  # fmt: skip
     run.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
     _add_draw(commands)
     _add_loopback(commands)
@@ -321,7 +325,10 @@ def _run(options: argparse.Namespace) -> int:
         options.seconds,
         folder,
     )
-    return OK if run_model(request) else WRONG
+    outcome = run_model(request)
+    if outcome is None or not outcome.passed:
+        return WRONG
+    return NOT_JUDGED if options.strict and outcome.not_judged else OK
 
 
 def _simulate(options: argparse.Namespace) -> int:

@@ -28,7 +28,7 @@ from hw_can.bench.runner import ScenarioResult, run_scenario
 from hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
 
 from . import bus
-from .demo import judge, plots, result, summary
+from .demo import expected, judge, plots, result, summary
 from .demo.process import ControllerProcess, Ended, StartError, separate_cores
 from .demo.result import RunResult
 from .steps import Program
@@ -69,8 +69,8 @@ class RunRequest:
     folder: Path
 
 
-def run_model(request: RunRequest, console: Console | None = None) -> bool:
-    """Run, print the summary and write the report; whether the verdict is PASS."""
+def run_model(request: RunRequest, console: Console | None = None) -> RunResult | None:
+    """Run, print the summary and write the report; None where nothing could be run."""
     out = console or summary.terminal()
     first = request.controllers[0]
     try:
@@ -107,14 +107,14 @@ def run_model(request: RunRequest, console: Console | None = None) -> bool:
                 )
     except (ScenarioError, BenchError, TraceError) as fault:
         out.print(str(fault), markup=False, soft_wrap=True)
-        return False
+        return None
     written = write_report(outcome, request.analysis, request.folder)
     out.print(outcome.title, markup=False)
     print_summary(outcome, out)
     for path in written:
         out.print(f"report: {path}", markup=False, soft_wrap=True)
-    summary.print_verdict(out, outcome.failures)
-    return outcome.passed
+    summary.print_verdict(out, outcome.verdict, outcome.failures)
+    return outcome
 
 
 def run_controller(
@@ -187,7 +187,7 @@ def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple
     run = RunReport(
         title=outcome.title,
         passed=outcome.passed,
-        verdict="; ".join(outcome.failures) or "nothing failed",
+        verdict="; ".join(outcome.failures) or _passed(outcome),
         notes=outcome.notes,
         steps=outcome.steps,
         frames=tuple(result.frames(outcome)),
@@ -199,6 +199,12 @@ def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple
     page = out_dir / "report.html"
     page.write_text(render(analysis, run), encoding="utf-8")
     return (page, *written)
+
+
+def _passed(outcome: RunResult) -> str:
+    """What stands beside PASS."""
+    why = outcome.not_judged
+    return f"nothing failed; timing was not judged: {why}" if why else "nothing failed"
 
 
 def print_summary(outcome: RunResult, console: Console | None = None) -> None:
@@ -273,10 +279,12 @@ def concluded(
     compared = compare(analysis, seen) if analysis and seen else ()
     executed = executions(analysis, seen) if analysis and seen else ()
     checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
-    counted: tuple[str, ...] = ()
-    if analysis and seen:
-        system, real_time = analysis.system, ended.real_time
-        counted = tuple(judge.unaccounted(system, seen, compared, real_time=real_time))
+    system = analysis.system if analysis else None
+    counted = expected.counted(seen, compared, executed, ended) if seen else {}
+    unaccounted: tuple[str, ...] = ()
+    if system and seen:
+        real_time = ended.real_time
+        unaccounted = tuple(judge.unaccounted(system, seen, compared, real_time=real_time))
     return RunResult(
         title=title,
         scenario=plan,
@@ -289,11 +297,16 @@ def concluded(
         failures=(
             *judge.stops(ended),
             *problems,
-            *counted,
+            *unaccounted,
             *judge.failures(ended, played, seen, checks, compared, took),
+            *expected.judged(plan, system, counted),
         ),
-        notes=tuple(result.notes(ended, played, seen, executed, compared)),
-        clock_offset=result.clock_offset(played, seen, analysis.system) if analysis else None,
+        notes=(
+            *result.notes(ended, played, seen, executed, compared),
+            *expected.told(plan, counted),
+        ),
+        clock_offset=result.clock_offset(played, seen, system) if system else None,
+        not_judged=expected.not_judged(compared, executed, ended),
     )
 
 

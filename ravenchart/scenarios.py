@@ -24,6 +24,10 @@ from hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from hw_can.bench.reading import Path as Place
 from hw_can.bench.scenario import (
     Cut,
+    Expected,
+    Lost,
+    Missed,
+    Overran,
     Scenario,
     ScenarioError,
     Send,
@@ -34,6 +38,8 @@ from hw_can.bench.scenario import (
 
 from .steps import Refused
 
+LOSSES = ("lost_out", "lost_in", "rejected_lines")
+"""What the controller of a bus counts as lost."""
 VALUE = "RV-1305"
 """A value that the field of a message does not have."""
 
@@ -71,6 +77,8 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
     for index, one in enumerate(scenario.trace_checks):
         check.trace(one, ("expect_trace", index))
     check.bus(scenario)
+    for index, fault in enumerate(scenario.expected):
+        check.expected(fault, ("expect", index))
     return source.found
 
 
@@ -256,6 +264,35 @@ class _Check:
                 told = f"`{event.cut}` cannot be cut off"
                 hint = f"name one of {', '.join(homes[1:])}: it and those behind it are cut off"
                 self.source.wrong(UNKNOWN, ("bus", index, "cut"), told, hint)
+
+    def expected(self, fault: Expected, path: Place) -> None:
+        """A fault of something that the model has, once."""
+        kinds: dict[type[Expected], tuple[str, str, list[str]]] = {
+            Lost: ("lost", "counts of losses", self.losses()),
+            Missed: ("missed", "processors", [one.name for one in self.system.processors]),
+            Overran: (
+                "overran",
+                "rows",
+                [slot.element for one in self.system.processors for slot in one.slots],
+            ),
+        }
+        if type(fault) not in kinds:
+            return
+        key, kind, names = kinds[type(fault)]
+        if fault.name.lower() not in map(str.lower, names):
+            told = f"there is no `{fault.name}` among the {kind}"
+            self.source.wrong(UNKNOWN, (*path, key), told, f"one of {', '.join(names)}")
+
+    def losses(self) -> list[str]:
+        """The names of what a run may lose."""
+        nodes = [node.name for node in self.system.nodes]
+        homes = [f"{node}." for node in nodes] if len(nodes) > 1 else [""]
+        return [
+            f"{home}{bus.name}.{count}"
+            for home in homes
+            for bus in self.system.buses
+            for count in LOSSES
+        ]
 
 
 def _names(signals: Iterable[DbcSignal]) -> str:

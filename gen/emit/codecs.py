@@ -62,7 +62,7 @@ from .coding import (
     within_width,
     word_bits,
 )
-from .layout_tables import LAYOUTS, LayoutTable, place
+from .layout_tables import LAYOUTS, LEMMAS, LayoutTable, place
 from .naming import ada_case, default_value, scalar, type_name
 
 WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
@@ -107,11 +107,12 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
         body.append(Package(codec.name, tuple(codec.body()), is_body=True))
     name = f"{ada_case(system.name)}.Codecs"
     withs: tuple[str, ...] = ("Interfaces", LAYOUTS)
+    lemmas: tuple[str, ...] = ()
     if any(codec.words > 1 for codec in codecs):
-        withs = (*withs, "Ravenchart.Can.Fd_Frames")
+        withs, lemmas = (*withs, "Ravenchart.Can.Fd_Frames"), (LEMMAS,)
     return (
         Unit(header, withs, Package(name, tuple(spec), (SPARK, Aspect("Pure")))),
-        Unit(header, (), Package(name, tuple(body), (SPARK,), is_body=True)),
+        Unit(header, lemmas, Package(name, tuple(body), (SPARK,), is_body=True)),
     )
 
 
@@ -299,7 +300,7 @@ class _Codec:
     def _bit_steps(self, signal: Signal) -> tuple[Stmt, ...]:
         if self.words == 1:
             return (NULL,)
-        return tuple(Pragma("Assert", (s,)) for s in self.table.steps_to_bits(signal, self.frame))
+        return self.table.lemma_of_bits(signal, self.frame)
 
     def _value_lemma(self, signal: Signal) -> Subprogram:
         """The codec counts bits as the row does: a fact about numbers alone."""

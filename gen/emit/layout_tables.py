@@ -18,11 +18,15 @@ from .ada import (
     CaseExpr,
     Chain,
     Decl,
+    Do,
     Expr,
     Object,
     Param,
+    Pragma,
     Ref,
+    Stmt,
     Subprogram,
+    arguments,
     call,
     equal,
     number,
@@ -31,6 +35,9 @@ from .naming import ada_case, type_name
 
 LAYOUTS = "Ravenchart.Can.Layouts"
 """What the rows of layout tables mean."""
+
+LEMMAS = "Ravenchart.Can.Layout_Lemmas"
+"""What the bits of a signal of a longer frame are, by words."""
 
 NUMBER = "Ravenchart.Number"
 
@@ -67,40 +74,25 @@ class LayoutTable:
         """The bits of a signal, by its row."""
         return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
 
-    def steps_to_bits(self, signal: Signal, frame: str) -> tuple[Expr, ...]:
-        """What `bits_in` of a longer frame is, step by step: provers reckon a row with frames late.
+    def lemma_of_bits(self, signal: Signal, frame: str) -> tuple[Stmt, ...]:
+        """The lemma that says by words what `bits_in` of a longer frame is, and its mask.
 
-        Each step is proved, so a wrong one is an assertion that fails.
+        Provers reckon a row and a frame at once very slowly. What is wrong here is a
+        precondition or an assertion that fails.
         """
-        row, width = Ref(_row(signal)), signal.width
         upwards = signal.order is ByteOrder.INTEL
         byte, bit = divmod(signal.start, 8)
         first = signal.start if upwards else 8 * byte + 7 - bit
-        index, below = first // 64, first % 64
-        mask = Ref(f"16#{(1 << width) - 1:X}#")
-        words: list[Expr] = [Ref(f"{frame} ({at})") for at in (index, index + 1)]
-        if not upwards:
-            words = [call(f"{LAYOUTS}.Reversed", word) for word in words]
-        if below + width <= 64:
-            kept = _shifted("Right", words[0], below if upwards else 64 - below - width)
+        word, last = first // 64, (first + signal.width - 1) // 64
+        if upwards:
+            shift = first % 64
         else:
-            over = below + width - 64
-            parts = (
-                (("Right", below), ("Left", 64 - below))
-                if upwards
-                else (("Left", over), ("Right", 64 - over))
-            )
-            kept = Chain(
-                "or",
-                tuple(
-                    _shifted(way, word, by) for (way, by), word in zip(parts, words, strict=True)
-                ),
-            )
-        return (
-            equal(call(f"{LAYOUTS}.First_In_Order", row), number(first)),
-            equal(call(f"{LAYOUTS}.Mask", number(width)), mask),
-            equal(self.bits_in(signal, frame), Chain("and", (kept, mask))),
-        )
+            shift = (first + signal.width if last > word else -first - signal.width) % 64
+        name = f"{_ORDERS[signal.order]}_{'Over' if last > word else 'Within'}"
+        given = arguments(Ref(frame), Ref(_row(signal)), number(word), number(shift))
+        mask = Ref(f"16#{(1 << signal.width) - 1:X}#")
+        known = equal(call(f"{LAYOUTS}.Mask", number(signal.width)), mask)
+        return Do(f"{LEMMAS}.Lemma_{name}", given), Pragma("Assert", (known,))
 
     def number_in(self, signal: Signal, frame: str) -> Expr:
         """The raw value of a signal of a frame, by its row."""
@@ -134,10 +126,6 @@ _ORDERS = {ByteOrder.INTEL: "Intel", ByteOrder.MOTOROLA: "Motorola"}
 
 def _row(signal: Signal) -> str:
     return f"Signal_{ada_case(signal.name)}"
-
-
-def _shifted(way: str, word: Expr, by: int) -> Expr:
-    return call(f"Interfaces.Shift_{way}", word, number(by)) if by else word
 
 
 def _code(signal: Signal) -> str:

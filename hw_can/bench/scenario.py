@@ -261,6 +261,66 @@ class TraceCheck(_Form):
         return f"trace: {self.region} in {self.reaches}{limit}{later}"
 
 
+class _Counted(_Form):
+    """Something that a run counts, and how often it may: exactly ``times``, or ``at_most``."""
+
+    times: Annotated[int, Field(ge=0)] | None = None
+    at_most: Annotated[int, Field(ge=1)] | None = None
+    because: Annotated[str, Field(min_length=1)]
+    """The cause, for who reads the report."""
+
+    @property
+    def name(self) -> str:
+        """What is counted."""
+        return str(getattr(self, type(self).__name__.lower()))
+
+    def allows(self, count: int) -> bool:
+        """Whether it may be counted so often."""
+        return count == self.times if self.times is not None else count <= (self.at_most or 0)
+
+    @property
+    def limit(self) -> str:
+        """How often it may be counted, in words."""
+        return f"{self.times}" if self.times is not None else f"at most {self.at_most}"
+
+
+class Lost(_Counted):
+    """Frames or lines that a bus lost: a count of the controller's report."""
+
+    lost: str
+
+
+class Fault(_Counted):
+    """A fault that the controller counted."""
+
+    fault: Literal[
+        "Overrun", "Queue_Overflow", "Stale_Input", "Can_Error_Passive", "Can_Bus_Off", "Silence"
+    ]
+
+
+class Missed(_Counted):
+    """Deadlines that a processor missed."""
+
+    missed: str
+
+
+class Overran(_Counted):
+    """The executions of a row, ``owner.name``, were longer than its ``wcet``: counted once."""
+
+    overran: Element
+
+
+Expected = Lost | Fault | Missed | Overran
+
+EXPECTED: Mapping[str, type[Expected]] = {
+    "lost": Lost,
+    "fault": Fault,
+    "missed": Missed,
+    "overran": Overran,
+}
+"""Each expected fault by the key that tells it from the others."""
+
+
 class _File(_Form):
     """The whole file; what is inside its lists and mappings is read item by item."""
 
@@ -269,6 +329,7 @@ class _File(_Form):
     bus: list[Any] = []
     steps: Annotated[list[Any], Field(min_length=1)]
     expect_trace: list[Any] = []
+    expect: list[Any] = []
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,6 +343,8 @@ class Scenario:
     trace_checks: tuple[TraceCheck, ...]
     bus_events: tuple[BusEvent, ...] = ()
     """What happens on the bus between several nodes; times in s since it was started."""
+    expected: tuple[Expected, ...] = ()
+    """Faults that the run shall or may show; any other one fails it."""
     source: Source | None = None
     """The file, to say where something stands."""
 
@@ -320,6 +383,7 @@ def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
     checks = [
         source.read(TraceCheck, raw, ("expect_trace", n)) for n, raw in enumerate(form.expect_trace)
     ]
+    expected = [_one_of(source, EXPECTED, raw, ("expect", n)) for n, raw in enumerate(form.expect)]
     scenario = Scenario(
         form.scenario,
         {name: one for name, one in drives.items() if one is not None},
@@ -327,6 +391,7 @@ def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
         tuple(source.at(("steps", index)).line for index in range(len(steps))),
         tuple(one for one in checks if one is not None),
         tuple(one for one in bus if one is not None),
+        tuple(one for one in expected if one is not None),
         source,
     )
     if not source.found:
@@ -377,6 +442,9 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
             source.wrong(MISFIT, place, message)
         if check.after_last is not None and check.after_silence is not None:
             source.wrong(MISFIT, place, "give `after_last` or `after_silence`, not both")
+    for index, known_fault in enumerate(scenario.expected):
+        if (known_fault.times is None) == (known_fault.at_most is None):
+            source.wrong(MISFIT, ("expect", index), "give `times` or `at_most`, one of them")
     for index, (one, other) in enumerate(pairwise(scenario.bus_events), 1):
         if other.at <= one.at:
             message = f"{other.at:g} s is not after {one.at:g} s of the event above"

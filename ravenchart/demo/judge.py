@@ -120,12 +120,6 @@ def failures(
             yield f"{seen.trace_lost} trace records were lost"
         if seen.complete and not seen.processors:
             yield "the trace holds no processor's counts"
-        excused = {row.task for row in compared if row.explained}
-        yield from (
-            f"{name} missed {p.misses} of {p.releases} deadlines"
-            for name, p in seen.processors.items()
-            if p.misses and name not in excused
-        )
     if ended.real_time:
         yield from (
             f"{row.task} was observed to take {microseconds(row.observed)} us, "

@@ -13,6 +13,7 @@ from gen.model import System
 from hw_can.bench.runner import ScenarioResult
 from hw_can.bench.scenario import Scenario
 
+from .expected import DEADLINE_MISS
 from .plots import Mark, Span
 from .process import ERROR, Ended
 
@@ -37,6 +38,8 @@ class RunResult:
     failures: tuple[str, ...]
     notes: tuple[str, ...]
     clock_offset: float | None
+    not_judged: str | None = None
+    """Why the timing was not judged, where it was not."""
 
     @property
     def passed(self) -> bool:
@@ -46,7 +49,10 @@ class RunResult:
     @property
     def verdict(self) -> str:
         """The last line of the summary."""
-        return "verdict: PASS" if self.passed else f"verdict: FAIL: {self.failures[0]}"
+        if not self.passed:
+            return f"verdict: FAIL: {self.failures[0]}"
+        but = f" (timing not judged: {self.not_judged})" if self.not_judged else ""
+        return f"verdict: PASS{but}"
 
 
 def notes(
@@ -75,8 +81,9 @@ def notes(
     if result is not None and result.unknown_frames:
         yield f"{result.unknown_frames} frames had an identifier that the DBC does not know"
     if seen is not None:
-        yield from (f"lost: {what}, {n} times" for what, n in seen.losses.items() if n)
-        yield from (f"fault: {what}, {n} times" for what, n in seen.faults.items() if n)
+        missed = sum(n for what, n in seen.faults.items() if what.upper() == DEADLINE_MISS)
+        if missed:
+            yield f"deadlines missed: {missed}"
 
 
 def clock_offset(

@@ -93,13 +93,11 @@ def print_positions(console: Console, lines: Sequence[str]) -> None:
             console.print(Text(line))
 
 
-def print_verdict(console: Console, failures: Sequence[str]) -> None:
+def print_verdict(console: Console, verdict: str, failures: Sequence[str]) -> None:
     """One line, and the further reasons below it."""
-    if not failures:
-        console.print(Text("\nverdict: PASS", style="bold green"))
-        return
     console.print()
-    console.print(Text(f"verdict: FAIL: {failures[0]}", style="bold red"), soft_wrap=True)
+    style = "bold red" if failures else "bold green"
+    console.print(Text(verdict, style=style), soft_wrap=True)
     for reason in failures[1:]:
         console.print(Text(f"         also: {reason}", style="red"), soft_wrap=True)
 

@@ -53,8 +53,8 @@ def played(checked: steps.Checked, scenario: str, to: Path) -> str:
         0.0,
         to,
     )
-    passed = run_model(request, Console(file=shown, width=80))
-    assert passed, shown.getvalue()
+    outcome = run_model(request, Console(file=shown, width=80))
+    assert outcome is not None and outcome.passed, shown.getvalue()
     assert (to / "report.html").is_file()
     return shown.getvalue()
 

@@ -13,8 +13,8 @@ import ravenchart.demo.process as process
 from analysis.observed import TraceError, read_map, read_trace
 from analysis.report import Comparison, StepRow
 from hw_can.bench.peer import BenchError
-from hw_can.bench.scenario import ScenarioError, TraceCheck
-from ravenchart.demo import judge, summary
+from hw_can.bench.scenario import ScenarioError, TraceCheck, parse_scenario
+from ravenchart.demo import expected, judge, summary
 from ravenchart.demo.process import Ended
 from ravenchart.demo.result import RunResult
 from ravenchart.run import (
@@ -66,6 +66,10 @@ expect_trace:
 )
 
 
+PASSED = "verdict: PASS (timing not judged: the controller had no real-time priorities)"
+BARE = "scenario: S\nsteps: [{wait: 1 s}]\n"
+
+
 def run(files: Files, duration: float | None = 20.0) -> RunResult:
     return run_controller(
         files.executable,
@@ -82,7 +86,7 @@ def printed(result: RunResult) -> str:
     out = io.StringIO()
     console = Console(file=out, width=80, highlight=False)
     print_summary(result, console)
-    summary.print_verdict(console, result.failures)
+    summary.print_verdict(console, result.verdict, result.failures)
     return out.getvalue()
 
 
@@ -90,7 +94,7 @@ def test_a_whole_scenario_passes_and_leaves_its_report(tmp_path: Path) -> None:
     files = write_files(tmp_path, FULL, "warn")
     result = run(files)
     assert result.failures == ()
-    assert result.verdict == "verdict: PASS"
+    assert result.verdict == PASSED
     written = write_report(result, files.analysis, files.out)
     assert {path.name for path in written} == {"report.html", "positions.png"}
     page = written[0].read_text(encoding="utf-8")
@@ -98,7 +102,7 @@ def test_a_whole_scenario_passes_and_leaves_its_report(tmp_path: Path) -> None:
     assert "Run: PASS" in page
     text = printed(result)
     assert max(map(len, text.splitlines())) <= 80
-    assert text.splitlines()[-1] == "verdict: PASS"
+    assert text.splitlines()[-1] == PASSED
     assert "note: the controller says: no real-time priorities" in text
     assert "Idle, Seeking, Backing_Off, Cruising, Limit" in text
 
@@ -132,7 +136,7 @@ def test_a_lost_bench_is_found_in_the_trace(tmp_path: Path) -> None:
         ("exit=3", "the controller ended with exit code 3"),
         ("cut", "the trace is cut off: its END line is missing"),
         ("lose", "7 trace records were lost"),
-        ("miss", "control missed 1 of"),
+        ("miss", "control missed 1 deadline; the scenario does not expect it"),
     ],
 )
 def test_each_fault_of_the_controller_fails_the_run(
@@ -210,7 +214,7 @@ def test_one_call_runs_prints_and_reports(tmp_path: Path) -> None:
     )
     assert run_model(request(files, files.scenario), console)
     lines = shown.getvalue().splitlines()
-    assert (lines[0], lines[-1]) == ("A test", "verdict: PASS")
+    assert (lines[0], lines[-1]) == ("A test", PASSED)
     assert f"report: {files.out / 'report.html'}" in lines
     assert (files.out / "positions.png").read_bytes().startswith(b"\x89PNG")
     files.scenario.write_text("{")
@@ -284,7 +288,7 @@ def test_an_observation_above_the_bound_fails_with_real_time_priorities_only() -
 
 
 @pytest.mark.parametrize(
-    ("withheld", "misses", "expected"),
+    ("withheld", "misses", "said"),
     [
         (99_999, 0, ["control was observed to take 600 us, above its bound of 500 us"]),
         (100_000, 0, []),
@@ -293,20 +297,25 @@ def test_an_observation_above_the_bound_fails_with_real_time_priorities_only() -
             99_999,
             1,
             [
-                "control missed 1 of 100 deadlines",
                 "control was observed to take 600 us, above its bound of 500 us",
+                "control missed 1 deadline; the scenario does not expect it",
             ],
         ),
     ],
 )
 def test_what_the_host_is_known_to_have_withheld_is_not_held_against_the_controller(
-    withheld: int, misses: int, expected: list[str]
+    withheld: int, misses: int, said: list[str]
 ) -> None:
     lines = [f"P 1 100 {misses} 600000", f"W {withheld}", "END"]
     seen = read_trace(lines, read_map(trace_map(["x"])))
     rows = (Comparison("control", 100, misses, 600_000, 500_000, withheld),)
-    assert list(judge.failures(Ended(0, False, True, ()), None, seen, (), rows)) == expected
-    assert (rows[0].word == "host") == (not expected)
+    ended = Ended(0, False, True, ())
+    found = [
+        *judge.failures(ended, None, seen, (), rows),
+        *expected.judged(parse_scenario(BARE), None, expected.counted(seen, rows, (), ended)),
+    ]
+    assert found == said
+    assert (rows[0].word == "host") == (not said)
 
 
 @pytest.mark.parametrize(
