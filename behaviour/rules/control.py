@@ -200,13 +200,14 @@ def events_are_expected(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
     tree = thread.tree
     for slot in dict.fromkeys(tree.slots[name] for name in tree.states):
         group = [s for s in tree.states.values() if tree.slots[s.name] == slot and not s.final]
+        if len(group) < 4:
+            continue
+        around = tree.chains[group[0].name][1:]
         for event in tree.region.events():
-            if event not in reach.events or any(
-                _handles(thread, name, event) for name in tree.chains[group[0].name][1:]
-            ):
+            if event not in reach.events or any(_handles(thread, s, event) for s in around):
                 continue
             silent = [s for s in group if not _expected(thread, s.name, event)]
-            if len(silent) != 1 or len(group) < 4 or not _waits(thread, silent[0].name):
+            if len(silent) != 1 or not _waits(thread, silent[0].name):
                 continue
             others = [s.name for s in group if s is not silent[0]]
             message = f"{silent[0].name} ignores {event}, which {_listed(others)} expect"

@@ -43,11 +43,16 @@ def has_decided_conditions(system: System) -> bool:
     if any(_has_one_value(t) for t in system.types):
         return True
     regions = [r for c in system.components for r in c.regions]
-    if any(len(r.leaves()) == 1 for r in regions):
+    if any(_has_lone_leaf(Places(r)) for r in regions):
         return True
     if any(_works_always(c, a.while_in) for c in system.components for a in c.activities):
         return True
     return any(_is_decided(e) for e in _expressions(system))
+
+
+def _has_lone_leaf(places: Places) -> bool:
+    """Has one of its lanes a single leaf?"""
+    return any(len(places.literals(lane)) == 1 for lane in places.lanes)
 
 
 def _works_always(component: Component, place: StateRef | None) -> bool:

@@ -177,7 +177,7 @@ class Chart:
                 f"min({one} + {rng.randint(1, 3)}, {MOST})",
                 f"max({one} - {rng.randint(1, 3)}, 0)",
                 f"clamp(2 * {one} - {other}, 0, {MOST})",
-                f"{one} / 2" if one == other else f"if {one} < {other} then {other} else 0",
+                f"{MOST} - {one}" if one == other else f"if {one} < {other} then {other} else 0",
             )
         )
 

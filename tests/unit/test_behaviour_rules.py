@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from gen.diagnostics import Severity
 from tests.support.behaviour_models import model, only, region, said
 
@@ -257,3 +259,22 @@ def test_safe_state_behind_a_guard_that_never_holds_is_an_error() -> None:
         "RV-1102 error: bc never fires: its guard never holds in B",
     ]
     assert not said(model(region("Main", states % 1, transitions, head=safe)))
+
+
+# --- Regions without a plain state -------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        "initial: F, states: {F: {kind: final}}",
+        "initial: C, states: {C: {initial: F, states: {F: {kind: final}}}}",
+        "initial: F, states: {F: {kind: final}, E: {kind: terminate}}",
+        "regions: {L: {initial: F, states: {F: {kind: final}}}, R: {initial: Q, states: {Q: {}}}}",
+    ],
+)
+def test_region_without_a_plain_state_is_looked_at(inside: str) -> None:
+    leads = "go: {from: A, to: B, on: Go}\nback: {from: B, to: A, on: Stop}"
+    if "terminate" in inside:
+        leads += "\nstop: {from: A, to: E, on: Stop}"
+    assert not said(model(region("Main", f"{{A: {{}}, B: {{{inside}}}}}", leads)))

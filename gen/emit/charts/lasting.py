@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...statechart import After, Every, PseudoKind
+from ...statechart import After, Every
 from ..ada import (
     Aggregate,
     Arg,
@@ -53,8 +53,7 @@ def _inside(place: Place) -> str:
 
 def terminates(shape: RegionShape, firing: Firing) -> bool:
     """Does it stop the region?"""
-    pseudo = shape.region.pseudostate(firing.goal) if firing.goal else None
-    return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
+    return firing.goal is not None and shape.is_end(firing.goal)
 
 
 def _domain(shape: RegionShape, firing: Firing) -> str:

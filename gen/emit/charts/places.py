@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...statechart import Lane, Region
+from ...statechart import Lane, PseudoKind, Region
 from ..ada import (
     Aggregate,
     Arg,
@@ -58,6 +58,19 @@ class Places:
         """The parameter and component that hold a configuration."""
         return "Leaf" if self.single else "Place"
 
+    def is_end(self, vertex: str) -> bool:
+        """Is it a terminate? Then it is where the whole region is, in whatever state it stands."""
+        pseudo = self.region.pseudostate(vertex)
+        return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
+
+    def lane(self, vertex: str) -> Lane:
+        """The lane among whose leaves a vertex is."""
+        return self.lanes[-1] if self.is_end(vertex) else self.region.lane(vertex)
+
+    def ancestors(self, leaf: str) -> tuple[str, ...]:
+        """A leaf and the states that are active around it, innermost first."""
+        return (leaf,) if self.is_end(leaf) else self.region.ancestors(leaf)
+
     def lane_type(self, lane: Lane) -> str:
         """The enumeration of a lane's leaves, as its package names it."""
         return "Leaf" if lane.owner is None else f"{ada_case(lane.name)}_Leaf"
@@ -97,7 +110,7 @@ class Places:
 
     def in_state(self, holder: str, vertex: str, prefix: str = "") -> Expr:
         """Is the configuration that ``holder`` names in a state, or inside it?"""
-        lane = self.region.lane(vertex)
+        lane = self.lane(vertex)
         leaf = Ref(self.at(holder, lane))
         name = prefix + self.literal(vertex)
         here = equal(leaf, Ref(name)) if self.is_literal(vertex) else member(leaf, name)

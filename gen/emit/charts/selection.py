@@ -140,7 +140,7 @@ def _is_right(shape: RegionShape, lane: Lane, function: str, place: str) -> Expr
 
 def _in_leaf(shape: RegionShape, lane: Lane, leaf: str) -> Expr:
     """What is selected when this leaf is active."""
-    inside = shape.region.ancestors(leaf)
+    inside = shape.ancestors(leaf)
     branches = [
         (_condition(shape, f, leaf), Ref(ada_case(f.name)))
         for f in shape.firings

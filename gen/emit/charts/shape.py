@@ -117,9 +117,8 @@ class RegionShape(Places):
 
     def leads_to(self, firing: Firing) -> dict[Lane, str]:
         """The leaves that a move leads to."""
-        pseudo = self.region.pseudostate(firing.goal) if firing.goal else None
-        if pseudo is not None and pseudo.kind is PseudoKind.TERMINATE:
-            return self.after(firing.entries[:-1]) | {self.lanes[-1]: pseudo.name}
+        if firing.goal is not None and self.is_end(firing.goal):
+            return self.after(firing.entries[:-1]) | {self.lanes[-1]: firing.goal}
         return self.after(firing.entries)
 
     # --- lanes

@@ -1,0 +1,26 @@
+"""Where a region has stopped nothing is selected, in whatever state its terminate stands."""
+
+from __future__ import annotations
+
+from gen.emit.ada_text import print_unit
+from gen.emit.charts.declared import emit_region
+from tests.support.interpreted import chart_system
+
+CHART = """
+initial: Idle
+states:
+  Idle: {}
+  Inside: {initial: Busy, states: {Busy: {}, Stop: {kind: terminate}}}
+transitions:
+  enter: {from: Idle, to: Inside, on: Go}
+  halt: {from: Busy, to: Stop, on: Go}
+  away: {from: Inside, to: Idle, on: Bye}
+"""
+
+
+def test_a_state_around_a_terminate_is_not_active_in_it() -> None:
+    system = chart_system(CHART)
+    component = system.components[0]
+    _, body = emit_region(system, component, component.regions[0], "")
+    text = print_unit(body)
+    assert "function In_Stop (Now : Occurrence) return Selection is (None)" in text
