@@ -5,7 +5,7 @@ An emitter builds a `Unit` from these nodes; `ada_text.print_unit` lays it out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ..frozen import frozen
@@ -370,6 +370,17 @@ def both(*operands: Expr) -> Expr:
 def equal(left: Expr, right: Expr) -> Expr:
     """``left = right``."""
     return Chain("=", (left, right))
+
+
+def names_in(construct: object) -> Iterator[str]:
+    """The text of each name and literal in it."""
+    if isinstance(construct, Ref):
+        yield construct.text
+        return
+    slots = getattr(construct, "__slots__", ())
+    parts = construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
+    for part in parts:
+        yield from names_in(part)
 
 
 def member(left: Expr, choices: str) -> Expr:

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from .. import terms as m
-from ..component import Component, StateRef
 from ..model import System
 from ..statechart import When
 from .ada import Package, Pragma, Ref, Unit
@@ -43,27 +42,17 @@ def has_decided_conditions(system: System) -> bool:
     if any(_has_one_value(t) for t in system.types):
         return True
     regions = [r for c in system.components for r in c.regions]
-    if any(_has_lone_leaf(Places(r)) for r in regions):
-        return True
-    if any(_works_always(c, a.while_in) for c in system.components for a in c.activities):
+    if any(_has_whole_lane(Places(r)) for r in regions):
         return True
     return any(_is_decided(e) for e in _expressions(system))
 
 
-def _has_lone_leaf(places: Places) -> bool:
-    """Has one of its lanes a single leaf?"""
-    return any(len(places.literals(lane)) == 1 for lane in places.lanes)
-
-
-def _works_always(component: Component, place: StateRef | None) -> bool:
-    """Is it a composite that holds all leaves of its lane?"""
-    if place is None:
-        return False
-    region = component.region(place.region)
-    places = Places(region)
-    nested = region.state(place.state).regions
-    inside = places.literals_in(Place(place.state, nested[0].name)) if len(nested) == 1 else ()
-    return tuple(inside) == places.literals(region.lane(place.state))
+def _has_whole_lane(places: Places) -> bool:
+    """Is a lane a single leaf, or has it a composite that holds all its leaves?"""
+    lanes = [places.literals(lane) for lane in places.lanes]
+    nested = (s for s in places.region.states if len(s.regions) == 1)
+    inside = (tuple(places.literals_in(Place(s.name, s.regions[0].name))) for s in nested)
+    return any(len(leaves) == 1 for leaves in lanes) or any(leaves in lanes for leaves in inside)
 
 
 def _has_one_value(of_type: m.Type) -> bool:

@@ -28,9 +28,9 @@ OUTSIDE = ("\n      Rest: {}", "\n      rest: {from: Whole, to: Rest, after: 1 s
 
 @pytest.mark.parametrize(
     ("more", "state", "decided"),
-    [(("", ""), "Whole", True), (("", ""), "A", False), (OUTSIDE, "Whole", False)],
+    [(("", ""), "Whole", True), (("", ""), "A", True), (OUTSIDE, "Whole", False)],
 )
-def test_do_activity_of_a_state_around_everything_always_works(
+def test_state_around_everything_is_always_active(
     more: tuple[str, str], state: str, decided: bool
 ) -> None:
     system = component_system(PART % (*more, state), "[unit.Main, unit.work]")

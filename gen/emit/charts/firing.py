@@ -42,14 +42,14 @@ from ..ada import (
     number,
 )
 from ..naming import ada_case
-from ..terms import certain_sends, emit_flow
+from ..terms import certain_sends, emit_flow, flow_names
 from .compound import Effect, Firing, Kind, Place, Step
 from .history import Restoring
 from .lasting import Lasting, terminates
 from .moving import Moving
 from .nodes import NODES, Nodes, joined
 from .places import flat
-from .shape import START, RegionShape, behaviour_names
+from .shape import START, RegionShape
 
 MANY = 24
 """More transitions than so many are fired by procedures of so many each: what the prover
@@ -91,10 +91,11 @@ class Moves:
         self.lasting = Lasting(shape)
         self.nodes = Nodes(shape)
         self.moving = Moving(shape, self.nodes, self.lasting)
+        self._effects_given: list[Flow] = []
 
-    def chart(self) -> Package:
-        """The ghost package of all states."""
-        return self.nodes.chart()
+    def chart(self, fire: Subprogram) -> Package:
+        """The ghost package of the states that ``fire`` moves between."""
+        return self.nodes.chart(fire)
 
     # --- Fire
 
@@ -144,9 +145,14 @@ class Moves:
             ),
         )
 
+    def flows(self) -> list[Flow]:
+        """The behaviours given so far: the exit of a state that is never left is not among them."""
+        return [*self._effects_given, *self.moving.flows()]
+
     def fire_params(self) -> tuple[Param, ...]:
         """Self, what behaviours read, the outbox, and the transition."""
-        reads = behaviour_names(self.region) & set(self.shape.inputs)
+        named = {name for flow in self.flows() for name in flow_names(flow)}
+        reads = named & set(self.shape.inputs)
         idle = set() if reads else {"Ins"}
         idle |= set() if self.shape.fires_with_item else {"Item"}
         params = [p for p in self.shape.step_params() if p.name not in idle]
@@ -211,6 +217,7 @@ class Moves:
         return (*stops, *self.nodes.stopped(goal))
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
+        self._effects_given += [e.flow for e in effects]
         return tuple(
             s
             for e in effects

@@ -8,6 +8,7 @@ preconditions of the procedures and by what is claimed before an effect.
 from __future__ import annotations
 
 from ...statechart import After, Every
+from ...terms import Flow
 from ..ada import (
     FALSE,
     TRUE,
@@ -97,6 +98,11 @@ class Moving:
             )
             and all(self._is_silent(Place(s.name, r.name)) for s in states for r in s.regions)
         )
+
+    def flows(self) -> list[Flow]:
+        """The actions of the exits and entries given so far."""
+        exits = [self.region.state(name).exit for name in self._exited]
+        return [*exits, *(self.region.state(name).entry for name in self._entered)]
 
     # --- the procedures, callees first
 

@@ -32,6 +32,7 @@ from ..ada import (
     both,
     call,
     equal,
+    names_in,
     number,
 )
 from ..naming import ada_case
@@ -84,14 +85,17 @@ class Nodes:
         self.region = shape.region
         self._moves = False
 
-    def chart(self) -> Package:
-        """The ghost package: all vertices, and the innermost active one of a configuration.
+    def chart(self, fire: Subprogram) -> Package:
+        """The ghost package: the innermost active vertex of a configuration.
 
-        With what the exits and entries given so far need.
+        It has all leaves, and the composites and functions that ``fire`` needs: joined
+        moves pass by the others.
         """
         shape = self.shape
         literals = [leaf for lane in shape.lanes for leaf in shape.literals(lane)]
         composites = [s.name for s in self.region.states if not shape.is_literal(s.name)]
+        named = set(names_in(fire)) if composites else set()
+        composites = [name for name in composites if node(name).text in named]
         names = tuple(ada_case(v) for v in (*literals, *composites))
         functions: list[Decl] = []
         before = 1

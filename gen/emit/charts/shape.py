@@ -29,8 +29,6 @@ from ..terms import (
     asks_event,
     compared_states,
     expressions_in,
-    flow_names,
-    flow_operators,
     names_in,
     operators_in,
     raise_in_list,
@@ -474,13 +472,3 @@ def plain_args(params: tuple[Param, ...], **replaced: str) -> tuple[Arg, ...]:
 def guard_operators(region: Region) -> set[str]:
     """The runtime's types whose operators its guards use."""
     return {name for guard in guards_of(region) for name in operators_in(guard)}
-
-
-def behaviour_operators(region: Region) -> set[str]:
-    """The runtime's types whose operators its behaviours use."""
-    return {name for flow in flows_of(region) for name in flow_operators(flow)}
-
-
-def behaviour_names(region: Region) -> set[str]:
-    """What its behaviours read."""
-    return {name for flow in flows_of(region) for name in flow_names(flow)}

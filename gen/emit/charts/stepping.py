@@ -33,15 +33,13 @@ from ..ada import (
 )
 from ..events import null_event
 from ..naming import ada_case
-from ..terms import expressions_in
+from ..terms import expressions_in, flow_operators
 from .firing import MANY, Moves
 from .lanes import fire, lane_step, passing_step
 from .selection import selectors
 from .shape import (
     START,
     RegionShape,
-    behaviour_operators,
-    flows_of,
     guard_operators,
     guards_of,
     plain_args,
@@ -52,16 +50,17 @@ from .working import notice_bodies
 def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     """All of the package's body."""
     region = shape.region
-    flows = [e for flow in flows_of(region) for e in expressions_in(flow)]
-    more = sorted(behaviour_operators(region) - guard_operators(region))
-    more += ["Ravenchart.Event_Count"] if shape.working else []
-    more += sorted(shape.compared_in(flows) - shape.compared_in(guards_of(region)))
     moves = Moves(shape)
     fire = moves.fire()
+    compared = shape.compared_in(e for flow in moves.flows() for e in expressions_in(flow))
+    operators = {name for flow in moves.flows() for name in flow_operators(flow)}
+    more = sorted(operators - guard_operators(region))
+    more += ["Ravenchart.Event_Count"] if shape.working else []
+    more += sorted(compared - shape.compared_in(guards_of(region)))
     return (
         *(UseType(name) for name in more),
         *selectors(shape),
-        moves.chart(),
+        moves.chart(fire),
         *notice_bodies(shape),
         *_polling(shape),
         fire,
