@@ -198,15 +198,17 @@ def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     sub.set_defaults(command=_import_dbc)
 
 
-def _checked(options: argparse.Namespace, *, deadlines: bool = True) -> steps.Checked:
-    checked = steps.check(options.model, deadlines=deadlines)
+def _checked(
+    options: argparse.Namespace, *, deadlines: bool = True, finish: bool = False
+) -> steps.Checked:
+    checked = steps.check(options.model, deadlines=deadlines, finish=finish)
     if checked.warnings:
         print(checked.warnings, file=sys.stderr)
     return checked
 
 
 def _check(options: argparse.Namespace) -> int:
-    system = _checked(options).system
+    system = _checked(options, finish=True).system
     print(
         f"{system.name}: {len(system.instances)} instances on {len(system.processors)} "
         f"processors, {len(system.messages)} messages; every deadline is met"

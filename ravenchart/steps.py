@@ -26,7 +26,7 @@ from gen.load import Loaded, load
 from gen.model import System
 from gen.unready import unready
 
-from . import toolchain
+from . import check_cache, toolchain
 from .proving import Task
 from .toolchain import ROOT
 
@@ -116,11 +116,16 @@ def _without_collector() -> Iterator[None]:
 
 @_without_collector()
 def check(
-    path: Path, *, deadlines: bool = True, patience: float = behaviour.rules.SECONDS
+    path: Path,
+    *,
+    deadlines: bool = True,
+    patience: float = behaviour.rules.SECONDS,
+    finish: bool = False,
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
-    ``patience`` is how many seconds the rules of behaviour may take.
+    ``patience`` is how many seconds the rules of behaviour may take. What they found in the
+    same content before is taken again; with ``finish``, unless it was not finished.
     """
     loaded = load(path)
     system = loaded.system
@@ -129,10 +134,22 @@ def check(
     system, unordered = identified(system)
     analysis = analyse(system)
     late = (unordered or findings(analysis)) if deadlines else ()
-    everything = (*loaded.diagnostics, *behaviour.rules.findings(system, patience), *late)
+    everything = (*loaded.diagnostics, *_behaviour(loaded, system, patience, finish), *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything))
     return Checked(path, system, analysis, _rendered(loaded, everything))
+
+
+def _behaviour(
+    loaded: Loaded, system: System, patience: float, finish: bool
+) -> tuple[Diagnostic, ...]:
+    """What the rules of behaviour find, or have found before in the same content."""
+    key = check_cache.key(loaded.sources)
+    found = check_cache.load(key, patience, finished=finish)
+    if found is None:
+        found = behaviour.rules.findings(system, patience)
+        check_cache.store(key, patience, found)
+    return found
 
 
 def identified(system: System) -> tuple[System, tuple[Diagnostic, ...]]:

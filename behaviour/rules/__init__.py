@@ -20,6 +20,8 @@ from .reach import Clock, OutOfTime, Reach
 
 SECONDS = 10.0
 """What the check of a model may take."""
+UNFINISHED = "RV-1110"
+"""The code of a check that was not finished."""
 
 
 def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]:
@@ -51,4 +53,4 @@ def _of_component(component: Component, system: System, clock: Clock) -> Iterato
 def _limit(component: Component, how_far: str) -> Diagnostic:
     message = f"the behaviour of {component.name} is not checked to the end: {how_far}"
     hint = "what is not reported may still be wrong; smaller regions are checked faster"
-    return warning("RV-1110", component.origin, message, hint=hint)
+    return warning(UNFINISHED, component.origin, message, hint=hint)

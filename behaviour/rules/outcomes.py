@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import z3
 
 from .logic import Read, Term, Variable
 from .stepping import Configuration, Rival, Step
-from .tree import Occurrence, Tree
+from .tree import Occurrence, Slot, Tree
+
+Past = Mapping[Slot, set[str]]
+"""Every leaf that each region has been seen to remember."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,6 +32,10 @@ class Outcome:
     deferred: bool
     rivals: tuple[Rival, ...]
     entered: frozenset[str]
+    recalled: frozenset[Slot] = frozenset()
+    """The regions whose remembered leaf was any that is known of (`Past`)."""
+    remembered: tuple[tuple[Slot, str], ...] = ()
+    """What it remembers, where the configuration does not say."""
 
 
 MOST_WAYS = 512
@@ -40,37 +47,70 @@ class TooManyWays(Exception):  # noqa: N818
 
 
 def outcomes(
-    tree: Tree, before: Configuration, occurrence: Occurrence, symbols: Read, solver: Term
+    tree: Tree,
+    before: Configuration,
+    occurrence: Occurrence,
+    symbols: Read,
+    solver: Term,
+    past: Past | None = None,
 ) -> tuple[Outcome, ...]:
-    """Every outcome of a step that some data allow, in order of the first answer `yes`."""
+    """Every outcome of a step that some data allow, in order of the first answer `yes`.
+
+    With a ``past``, a history may remember each of the leaves that this says.
+    """
     found: list[Outcome] = []
-    waiting: list[list[bool]] = [[]]
+    waiting: list[tuple[list[bool], list[str | None]]] = [([], [])]
     while waiting:
-        answers = waiting.pop()
+        answers, recalled = waiting.pop()
         asked: list[Term] = []
+        recalls = iter(range(len(recalled)))
+        slots: set[Slot] = set()
+
+        def recall(
+            slot: Slot,
+            answers: list[bool] = answers,
+            recalled: list[str | None] = recalled,
+            asked: list[Term] = asked,
+            recalls: Iterator[int] = recalls,
+            slots: set[Slot] = slots,
+        ) -> str | None:
+            if past is None:
+                return None
+            slots.add(slot)
+            index = next(recalls, None)
+            if index is not None:
+                return recalled[index]
+            known = answers[: len(asked)]
+            waiting.extend((known, [*recalled, leaf]) for leaf in sorted(past.get(slot, ())))
+            recalled.append(None)
+            return None
 
         def decide(
-            condition: Term, answers: list[bool] = answers, asked: list[Term] = asked
+            condition: Term,
+            answers: list[bool] = answers,
+            recalled: list[str | None] = recalled,
+            asked: list[Term] = asked,
         ) -> bool:
             if z3.is_true(condition) or z3.is_false(condition):
                 return bool(z3.is_true(condition))
             if len(asked) == len(answers):
                 can = [_possible(solver, asked, one) for one in (condition, z3.Not(condition))]
                 if all(can):
-                    waiting.append([*answers, False])
+                    waiting.append(([*answers, False], list(recalled)))
                 answers.append(can[0])
             answer = answers[len(asked)]
             asked.append(condition if answer else z3.Not(condition))
             return answer
 
-        step = Step(tree, before, occurrence, symbols, decide)
+        step = Step(tree, before, occurrence, symbols, decide, recall)
         stuck = step.run()
+        after = step.configuration() if stuck is None else before
         found.append(
             Outcome(
                 occurrence,
                 before,
                 z3.And(asked) if asked else z3.BoolVal(True),
-                step.configuration() if stuck is None else before,
+                after if past is None else replace(after, history=()),
                 tuple(sorted(step.store.items(), key=lambda item: str(item[0]))),
                 tuple(step.raised),
                 tuple(step.fired),
@@ -78,6 +118,8 @@ def outcomes(
                 step.deferred,
                 tuple(step.rivals),
                 frozenset(step.entered),
+                frozenset(slots),
+                () if past is None else after.history,
             )
         )
         if len(found) > MOST_WAYS:

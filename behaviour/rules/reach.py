@@ -6,7 +6,9 @@ nothing new comes up. A region sees at each step any combination of what the
 others have ever published, so what is not found cannot happen, however the
 tasks interrupt one another. Data are told apart by *cells*: the literals of an
 enumeration, and for integers the ranges between the numbers that the model
-compares them with.
+compares them with. A region of too many nodes is looked at more coarsely: a
+history may then remember any leaf that it was ever seen to remember, and if that
+is not enough, data are not told apart.
 """
 
 from __future__ import annotations
@@ -26,16 +28,20 @@ from gen.terms import BOOLEAN, Set
 from . import logic
 from .cells import actions, expressions, partition
 from .logic import Term, Variable
-from .outcomes import Outcome, outcomes
+from .outcomes import Outcome, Past, outcomes
 from .outside import as_region, done_of, external_events, parameters_of
 from .stepping import Configuration
-from .tree import CONDITIONS, START, Occurrence, Tree
+from .tree import CONDITIONS, START, Occurrence, Slot, Tree
 
+Steps = dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]]
+"""The outcomes of steps, data aside."""
 Cells = tuple[int, ...]
 """For each variable that a region writes and tells apart, the cell that it is in."""
 
+MOST_NODES = 1_000
+"""A region of more is looked at more coarsely."""
 MOST_QUESTIONS = 1_500
-"""A region that needs more answers of z3 to tell its data apart is looked at without them."""
+"""So is one that needs more answers of z3 to tell its data apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +61,10 @@ class Edge:
     after: Node
 
 
+LOOK_AT_CLOCK = 8
+"""Situations between two looks at the clock, which take time themselves."""
+
+
 class OutOfTime(Exception):  # noqa: N818
     """The time for the check is over."""
 
@@ -69,8 +79,9 @@ class Clock:
 
     def count(self) -> None:
         """One situation more; `OutOfTime` when there is no time for it."""
+        if self.situations % LOOK_AT_CLOCK == 0:
+            self.check()
         self.situations += 1
-        self.check()
 
     def check(self) -> None:
         """`OutOfTime` when there is no time left."""
@@ -88,13 +99,50 @@ class Thread:
     """Each with the edge that leads to it on a shortest way."""
     edges: list[Edge] = field(default_factory=list)
     questions: int = 0
-    steps: dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]] = field(default_factory=dict)
+    past: dict[Slot, set[str]] | None = None
+    """What each region inside was seen to remember, where no node says it."""
+    steps: Steps = field(default_factory=dict)
+    exact: Steps = field(default_factory=dict)
+    """The same with histories, where ``steps`` are without."""
     known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
         """The name of the region or activity."""
         return self.tree.region.name
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether nothing is left that could be looked at more coarsely."""
+        return not self.own and (self.past is not None or not self.tree.remembered)
+
+    def look_coarser(self) -> None:
+        """Forget what histories remember, or else the data."""
+        if self.past is None and self.tree.remembered:
+            self.past, self.exact, self.steps = {}, self.steps, {}
+        else:
+            self.own = ()
+        self.questions = 0
+        self.known.clear()
+
+    def remember(self, outcome: Outcome) -> None:
+        """Note what a step remembers; the steps that recall it have further outcomes then."""
+        if self.past is None:
+            return
+        grown = set()
+        for slot, leaf in outcome.remembered:
+            if leaf not in self.past.setdefault(slot, set()):
+                self.past[slot].add(leaf)
+                grown.add(slot)
+        if grown:
+            made = self.steps.items()
+            self.steps = {
+                key: found for key, found in made if not any(one.recalled & grown for one in found)
+            }
+
+    def recalls(self) -> int:
+        """How much is known of what histories remember."""
+        return sum(len(leaves) for leaves in (self.past or {}).values())
 
 
 class Reach:
@@ -235,13 +283,20 @@ class Reach:
         while True:
             before = self._shown()
             for thread in self.threads:
-                try:
-                    self._explore(thread)
-                except _TooMany:
-                    thread.own = ()
-                    thread.known.clear()
-                    self._explore(thread)
+                self._look_at(thread)
             if self._shown() == before:
+                return
+
+    def _look_at(self, thread: Thread) -> None:
+        """Explore a thread as finely as it can be, until its histories have nothing new."""
+        while True:
+            recalls = thread.recalls()
+            try:
+                self._explore(thread)
+            except _TooMany:
+                thread.look_coarser()
+                continue
+            if thread.recalls() == recalls:
                 return
 
     def _shown(self) -> object:
@@ -267,13 +322,16 @@ class Reach:
             node = waiting.popleft()
             self.clock.count()
             for occurrence in self.occurrences(thread, node.configuration):
-                for outcome in self.steps(thread, node.configuration, occurrence):
+                for outcome in self.steps(thread, node.configuration, occurrence, thread.past):
+                    thread.remember(outcome)
                     for cells in self._successors(thread, node.cells, outcome, solver, context):
                         after = Node(outcome.after, cells)
                         edge = Edge(node, outcome, after)
                         thread.edges.append(edge)
                         self._show(thread, edge)
                         if after not in thread.nodes:
+                            if len(thread.nodes) == MOST_NODES and not thread.is_coarse:
+                                raise _TooMany
                             thread.nodes[after] = edge
                             waiting.append(after)
 
@@ -316,15 +374,14 @@ class Reach:
             yield CONDITIONS
 
     def steps(
-        self, thread: Thread, at: Configuration, occurrence: Occurrence
+        self, thread: Thread, at: Configuration, occurrence: Occurrence, past: Past | None = None
     ) -> tuple[Outcome, ...]:
-        """The outcomes of a step, data aside."""
+        """The outcomes of a step, data aside; with a ``past``, those for all that it has."""
+        made = thread.steps if past is thread.past else thread.exact
         key = (at, occurrence)
-        if key not in thread.steps:
-            self.clock.check()
-            made = outcomes(thread.tree, at, occurrence, self.symbol, self.plain)
-            thread.steps[key] = made
-        return thread.steps[key]
+        if key not in made:
+            made[key] = outcomes(thread.tree, at, occurrence, self.symbol, self.plain, past)
+        return made[key]
 
     def _successors(
         self, thread: Thread, cells: Cells, outcome: Outcome, solver: Term, context: object
@@ -353,7 +410,7 @@ class Reach:
         solver.add(*self.of_node(thread, cells), outcome.condition)
         while (answer := solver.check()) != z3.unsat:
             thread.questions += 1
-            if thread.own and thread.questions > MOST_QUESTIONS:
+            if thread.questions > MOST_QUESTIONS and not thread.is_coarse:
                 raise _TooMany
             if answer == z3.unknown:
                 yield from self._all(fixed, open_)

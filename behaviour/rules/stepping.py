@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import z3
 
-from gen.statechart import PseudoKind, Transition, TransitionKind, When
+from gen.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 from gen.terms import Expression, Flow, If, Raise, Reading, Set
 
 from .logic import Read, Term, Variable, term, variable
@@ -68,8 +68,10 @@ class Step:
     occurrence: Occurrence
     symbols: Read
     decide: Callable[[Term], bool]
+    recall: Callable[[Slot], str | None] = lambda slot: None
+    """What a region remembers of which this step and the configuration before say nothing."""
     active: set[str] = field(init=False)
-    history: dict[Slot, str] = field(init=False)
+    history: dict[Slot, str | None] = field(init=False)
     store: dict[Variable, Term] = field(default_factory=dict)
     raised: list[tuple[str, tuple[tuple[str | None, Term], ...]]] = field(default_factory=list)
     fired: list[str] = field(default_factory=list)
@@ -139,9 +141,11 @@ class Step:
         """What each lane selects, in lane order; nothing when the event is deferred."""
         chosen: list[Path] = []
         busy: set[str] = set()
+        chains: dict[Lane, list[str]] = {}
+        for name in reversed(self.tree.ordered(self.active)):
+            chains.setdefault(self.tree.lane_of[name], []).append(name)
         for lane in self.tree.lanes:
-            chain = [n for n in self.tree.states if n in self.active]
-            chain = [n for n in reversed(chain) if self.tree.lane_of[n] == lane]
+            chain = chains.get(lane, [])
             if any(name in busy for name in chain):
                 continue
             found = self.select_in(chain)
@@ -285,8 +289,8 @@ class Step:
     def passing(self, slot: Slot) -> Iterator[str]:
         """The pseudostates that have been reached inside a region, in model order."""
         yield from (name for name in self.arrivals if self.tree.slots[name] == slot)
-        for name in self.tree.states:
-            if name in self.active and self.tree.slots[name] == slot:
+        for name in self.tree.ordered(self.active):
+            if self.tree.slots[name] == slot:
                 for nested in self.tree.states[name].regions:
                     yield from self.passing((name, nested.name))
 
@@ -295,7 +299,7 @@ class Step:
     def leave(self, slot: Slot) -> None:
         """Leave the active child of a region, inner before outer."""
         self.arrivals = [name for name in self.arrivals if self.tree.slots[name] != slot]
-        for name in [n for n in self.tree.states if n in self.active]:
+        for name in self.tree.ordered(self.active):
             if self.tree.slots[name] == slot:
                 for nested in self.tree.states[name].regions:
                     self.leave((name, nested.name))
@@ -314,7 +318,7 @@ class Step:
             if slot in self.tree.remembered:
                 self.history[slot] = state.parent if state.final and state.parent else name
         if state.final:
-            self.history.pop(own, None)
+            self.history[own] = None
 
     def enter(self, path: Sequence[str], fork: str | None = None) -> None:
         """Enter the states of a path, the last vertex with what it (or a fork) leads to."""
@@ -351,7 +355,7 @@ class Step:
     def restore(self, vertex: str, *, deep: bool) -> None:
         """Enter what a history remembers, or by its default."""
         slot = self.tree.slots[vertex]
-        last = self.history.get(slot)
+        last = self.last(slot)
         if last is None:
             path = self.way_out(vertex)
             if path is not None:
@@ -363,13 +367,19 @@ class Step:
         else:
             self.enter(self.tree.path(last, slot)[:1])
 
+    def last(self, slot: Slot) -> str | None:
+        """The leaf that a region remembers."""
+        if slot not in self.history:
+            self.history[slot] = self.recall(slot)
+        return self.history[slot]
+
     def enter_deep(self, path: Sequence[str]) -> None:
         """Enter a path, and the regions beside and below it as they were last."""
         first, *rest = path
         self.step_into(first)
         for nested in self.tree.states[first].regions:
             slot = (first, nested.name)
-            last = self.history.get(slot) if self.tree.states[first].is_orthogonal else None
+            last = self.last(slot) if self.tree.states[first].is_orthogonal else None
             if rest and self.tree.slots[rest[0]] == slot:
                 self.enter_deep(rest)
             elif last is not None:
@@ -383,7 +393,7 @@ class Step:
         """Where the step has led, with the completions that it has made."""
         tree = self.tree
         if self.stopped:
-            return Configuration(tuple(n for n in tree.states if n in self.active), stopped=True)
+            return Configuration(tree.ordered(self.active), stopped=True)
         fresh = self.left | self.entered
         done = {name for name in self.before.done if name not in fresh}
         completed = {name for name in self.before.completed if name not in fresh}
@@ -392,19 +402,19 @@ class Step:
             done.add(self.occurrence.subject)
         if self.occurrence.kind == "completion" and self.occurrence.subject in pending:
             pending.remove(self.occurrence.subject)
-        for name in tree.states:
-            if name in self.active and name in tree.completing and name not in completed:
+        for name in tree.ordered(self.active):
+            if name in tree.completing and name not in completed:
                 if name in tree.working and name not in done:
                     continue
                 if self.is_finished(name):
                     completed.add(name)
                     pending.append(name)
         return Configuration(
-            tuple(n for n in tree.states if n in self.active),
-            tuple(n for n in tree.states if n in completed),
-            tuple(n for n in tree.states if n in pending),
-            tuple(n for n in tree.states if n in done and n in tree.completing),
-            tuple(sorted(self.history.items(), key=str)),
+            tree.ordered(self.active),
+            tree.ordered(completed),
+            tree.ordered(pending),
+            tree.ordered(done & tree.completing),
+            tuple(sorted(((s, n) for s, n in self.history.items() if n is not None), key=str)),
         )
 
     def is_finished(self, name: str) -> bool:

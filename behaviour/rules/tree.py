@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -81,6 +81,10 @@ class Tree:
     def order(self) -> dict[str, int]:
         """The position of each state in tree order."""
         return {name: index for index, name in enumerate(self.states)}
+
+    def ordered(self, names: Iterable[str]) -> tuple[str, ...]:
+        """Some states, in tree order."""
+        return tuple(sorted(names, key=self.order.__getitem__))
 
     @cached_property
     def nested(self) -> dict[Slot, NestedRegion]:

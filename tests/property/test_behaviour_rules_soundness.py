@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from behaviour.machine import Machine
+from behaviour.rules import reach as reach_rules
 from behaviour.rules.reach import Clock, Reach
 from gen.model import Shutdown, System
 from gen.terms import Ns
@@ -22,8 +23,12 @@ def _raised_outside(system: System) -> System:
     return replace(system, shutdown=Shutdown(tuple(pairs), Ns(0)))
 
 
+@pytest.mark.parametrize("most", [reach_rules.MOST_NODES, 3], ids=["finely", "coarsely"])
 @pytest.mark.parametrize("seed", CHARTS)
-def test_every_configuration_and_transition_of_a_run_is_found(seed: int) -> None:
+def test_every_configuration_and_transition_of_a_run_is_found(
+    seed: int, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reach_rules, "MOST_NODES", most)
     system = _raised_outside(system_of(model_of([seed])))
     reach = Reach(system.components[0], system, Clock(600))
     threads = {t.name: t for t in reach.threads}

@@ -1,0 +1,111 @@
+"""One chart of many leaf states: what the growth of check, code and proof is measured on.
+
+It is a chain of blocks, one like the other. A block has ten leaf states: a composite state, an
+orthogonal state of two regions, a deep history, a choice, guards over data, and time-outs.
+"""
+
+from __future__ import annotations
+
+import yaml
+
+Json = dict[str, object]
+
+BLOCK = 10
+"""Leaf states of a block."""
+
+
+def large_chart(blocks: int) -> str:
+    """A system with one instance, of one region of so many blocks."""
+    states: Json = {}
+    transitions: Json = {}
+    for number in range(1, blocks + 1):
+        states |= _states(number)
+        transitions |= _transitions(number, number % blocks + 1)
+    region = {
+        "period": "10 ms",
+        "wcet": "100 us",
+        "queue": 4,
+        "initial": "Block_1",
+        "states": states,
+        "transitions": transitions,
+    }
+    model = {
+        "system": f"Chart_{BLOCK * blocks}",
+        "types": {"Count": {"range": [0, 100]}},
+        "components": {
+            "Unit": {
+                "events": ["Go", "Stop", "Turn", "Next", "Again"],
+                "data": {name: {"type": "Count", "initial": 0} for name in ("count", "level")},
+                "regions": {"Motion": region},
+            }
+        },
+        "nodes": {"board": {"context_switch": "1 us", "critical_section": "1 us"}},
+        "instances": {"one": {"component": "Unit", "node": "board"}},
+        "processors": {
+            "runner": {"node": "board", "stack": "32 KiB", "activities": ["one.Motion"]}
+        },
+        "shutdown": {"raises": [], "grace": "0 ms"},
+    }
+    return yaml.safe_dump(model, sort_keys=False)
+
+
+def _states(n: int) -> Json:
+    return {
+        f"Block_{n}": {
+            "initial": f"Rest_{n}",
+            "states": {
+                f"Rest_{n}": {"exit": _counting()},
+                f"Pair_{n}": {
+                    "regions": {
+                        f"{side}_{n}": {
+                            "initial": f"{side}_A_{n}",
+                            "states": {
+                                f"{side}_A_{n}": {},
+                                f"{side}_B_{n}": {"entry": _counting()},
+                                f"{side}_C_{n}": {},
+                            },
+                        }
+                        for side in ("Left", "Right")
+                    }
+                },
+                f"Work_{n}": {
+                    "initial": f"Slow_{n}",
+                    "states": {f"Slow_{n}": {}, f"Fast_{n}": {"exit": _counting()}},
+                },
+                f"Done_{n}": {},
+                f"Which_{n}": {"kind": "choice"},
+                f"Last_{n}": {"kind": "deep_history"},
+            },
+        }
+    }
+
+
+def _counting() -> list[Json]:
+    return [{"set": "count", "to": "min(count + 1, 100)"}]
+
+
+def _transitions(n: int, following: int) -> Json:
+    found: list[Json] = [
+        {"from": f"Rest_{n}", "to": f"Pair_{n}", "on": "Go"},
+        {"from": f"Rest_{n}", "to": f"Work_{n}", "on": "Turn", "guard": "count < 50"},
+        {"from": f"Pair_{n}", "to": f"Which_{n}", "on": "Stop"},
+        {"from": f"Which_{n}", "to": f"Work_{n}", "guard": "level > 20"},
+        {"from": f"Which_{n}", "to": f"Done_{n}", "guard": "else"},
+        {"from": f"Slow_{n}", "to": f"Fast_{n}", "after": "1 s", "effect": _level(n)},
+        {"from": f"Fast_{n}", "to": f"Slow_{n}", "on": "Turn"},
+        {"from": f"Work_{n}", "to": f"Done_{n}", "on": "Stop"},
+        {"from": f"Done_{n}", "to": f"Rest_{n}", "after": "2 s"},
+        {"from": f"Block_{n}", "to": f"Block_{following}", "on": "Next"},
+        {"from": f"Block_{n}", "to": f"Last_{following}", "on": "Again"},
+    ]
+    for side, event in (("Left", "Turn"), ("Right", "Go")):
+        found += [
+            {"from": f"{side}_A_{n}", "to": f"{side}_B_{n}", "on": event},
+            {"from": f"{side}_B_{n}", "to": f"{side}_C_{n}", "after": "500 ms"},
+            {"from": f"{side}_C_{n}", "to": f"{side}_A_{n}", "on": event, "guard": "level < 90"},
+        ]
+    return {f"t{index}_of_{n}": form for index, form in enumerate(found, 1)}
+
+
+def _level(n: int) -> list[Json]:
+    return [{"set": "level", "to": f"max(count - {n % 10}, 0)"}]
