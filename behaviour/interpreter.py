@@ -103,6 +103,14 @@ class Deferral:
 
 
 @dataclass(slots=True)
+class Kept:
+    """A deferred event; free once a state that defers it has been left."""
+
+    happened: Happened
+    is_free: bool = False
+
+
+@dataclass(slots=True)
 class Step:
     """The behaviours that one step executed, in order, and what it sends and raises."""
 
@@ -132,7 +140,7 @@ class RegionRun:
         """States whose completion waits for its step."""
         self.done: set[str] = set()
         """Active states whose do activity is done."""
-        self.deferred: deque[Happened] = deque()
+        self.deferred: list[Kept] = []
         self.queue: deque[Happened] = deque()
         self.executions = 0
         self.stopped = False
@@ -216,10 +224,9 @@ class RegionRun:
                 del self.timers[expired.name]
             return TimeOut(expired)
         kept = {event for state in self.configuration() for event in self._defers(state)}
-        for waiting in self.deferred:
-            if waiting.event not in kept:
-                self.deferred.remove(waiting)
-                return waiting
+        for index, waiting in enumerate(self.deferred):
+            if waiting.is_free or waiting.happened.event not in kept:
+                return self.deferred.pop(index).happened
         return self.queue.popleft() if self.queue else Nothing()
 
     def _defers(self, state: str) -> tuple[str, ...]:
@@ -227,7 +234,7 @@ class RegionRun:
 
     def _defer(self, event: Happened) -> None:
         if len(self.deferred) < self.region.deferral_depth:
-            self.deferred.append(event)
+            self.deferred.append(Kept(event))
         else:
             self._step.lost += 1
 
@@ -411,6 +418,8 @@ class RegionRun:
             self._behave(f"{name}.exit", state.exit)
         for transition in self.tree.leaving[name]:
             self.timers.pop(transition.name, None)
+        for kept in self.deferred:
+            kept.is_free = kept.is_free or kept.happened.event in state.defers
         self._left.add(name)
         self.completed.discard(name)
         self.done.discard(name)

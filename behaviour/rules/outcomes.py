@@ -32,6 +32,7 @@ class Outcome:
     deferred: bool
     rivals: tuple[Rival, ...]
     entered: frozenset[str]
+    left: frozenset[str]
     recalled: frozenset[Slot] = frozenset()
     """The regions whose remembered leaf was any that is known of (`Past`)."""
     remembered: tuple[tuple[Slot, str], ...] = ()
@@ -118,6 +119,7 @@ def outcomes(
                 step.deferred,
                 tuple(step.rivals),
                 frozenset(step.entered),
+                frozenset(step.left),
                 frozenset(slots),
                 () if past is None else after.history,
             )

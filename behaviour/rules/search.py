@@ -41,7 +41,9 @@ NOTHING: Mapping[Variable, Term] = MappingProxyType({})
 
 Queued = tuple[str, tuple[tuple[str | None, Term], ...]]
 """An event that waits, with the value that it carries."""
-Status = tuple[Configuration, tuple[Queued, ...], tuple[Queued, ...], frozenset[str]]
+Kept = tuple[Queued, bool]
+"""A deferred event, and whether a state that defers it has been left since."""
+Status = tuple[Configuration, tuple[Queued, ...], tuple[Kept, ...], frozenset[str]]
 """Of one thread: its control, its queue, what it has deferred, and time-outs that were lost."""
 
 
@@ -277,7 +279,11 @@ class Search:
             elif queue and queue[0][0] == subject and carried is not OUTSIDE:
                 queue = queue[1:]
             if outcome.deferred and len(kept) < thread.tree.region.deferral_depth:
-                kept = (*kept, (subject, tuple((name[2], v) for name, v in carried.items())))
+                values = tuple((name[2], v) for name, v in carried.items())
+                kept = (*kept, ((subject, values), False))
+        states = thread.tree.states
+        freed = {event for name in outcome.left for event in states[name].defers}
+        kept = tuple((queued, free or queued[0] in freed) for queued, free in kept)
         lost = frozenset(n for n in lost if thread.tree.source_of(n) not in outcome.entered)
         if kind == "time" and not outcome.fired:
             trigger = self.timed(thread.name).get(subject)
@@ -324,10 +330,10 @@ class Search:
                     queue = (*queue[1:], (event, values))
                 status[other.name] = (at, queue, kept, lost)
 
-    def released(self, thread: Thread, at: Configuration, kept: tuple[Queued, ...]) -> int | None:
-        """The oldest deferred event that no active state defers any more."""
-        for index, (event, _) in enumerate(kept):
-            if not any(event in thread.tree.states[name].defers for name in at.active):
+    def released(self, thread: Thread, at: Configuration, kept: tuple[Kept, ...]) -> int | None:
+        """The oldest deferred event that is due."""
+        for index, ((event, _), free) in enumerate(kept):
+            if free or not any(event in thread.tree.states[name].defers for name in at.active):
                 return index
         return None
 
@@ -350,7 +356,7 @@ class Search:
             if isinstance(transition.trigger, After | Every) and transition.name not in lost:
                 yield Occurrence("time", transition.name), NOTHING
         ready = self.released(thread, at, kept)
-        waits = kept[ready] if ready is not None else queue[0] if queue else None
+        waits: Queued | None = kept[ready][0] if ready is not None else queue[0] if queue else None
         if waits is not None:
             event, values = waits
             carried = {logic.variable(Reading.EVENT, event, f): term for f, term in values}
@@ -389,7 +395,8 @@ class Search:
 def _key(point: Point) -> str:
     """The same for situations that differ only in the numbers of what they read."""
     values = [term for _, term in sorted(point.store.items(), key=lambda item: str(item[0]))]
-    queued = [t for s in point.status.values() for q in (*s[1], *s[2]) for _, t in q[1]]
+    waiting = [q for s in point.status.values() for q in (*s[1], *(kept for kept, _ in s[2]))]
+    queued = [t for q in waiting for _, t in q[1]]
     held = {*logic.unknowns((*values, *queued))}
     relevant: list[Term] = []
     rest = list(point.conditions)
@@ -404,7 +411,7 @@ def _key(point: Point) -> str:
                 rest.remove(condition)
                 grown = True
     control = [
-        (name, s[0], [q[0] for q in s[1]], [q[0] for q in s[2]], sorted(s[3]))
+        (name, s[0], [q[0] for q in s[1]], [(q[0], free) for q, free in s[2]], sorted(s[3]))
         for name, s in point.status.items()
     ]
     terms = [term.sexpr() for term in (*values, *queued)] + sorted(c.sexpr() for c in relevant)

@@ -49,6 +49,23 @@ def test_time_out_comes_before_a_longer_one() -> None:
     assert found.code == "RV-1109"
 
 
+def test_deferred_event_is_taken_once_the_state_that_defers_it_was_left() -> None:
+    main = region(
+        "Main",
+        "{A: {}, P: {defer: [Hit]}, Q: {}}",
+        "begin_it: {from: A, to: P, on: Go, effect: [{raise: Hit}]}\n"
+        "hit: {from: P, to: Q, on: Hit, guard: armed}\n"
+        "again: {from: P, %son: Stop, effect: [{set: armed, to: true}]}",
+        head="deferred: 1\n",
+    )
+    options = {"events": "[Go, Stop, Hit]", "never": '{hit: "in(Main.Q)"}'}
+    found = said(model(main.replace("%s", "to: P, "), **options))
+    assert found[-1].startswith("RV-1108") and found[-1].endswith("P -Stop-> P -Hit-> Q")
+    assert not any(
+        one.startswith("RV-1108") for one in said(model(main.replace("%s", ""), **options))
+    )
+
+
 def test_event_raised_by_another_region_leads_on() -> None:
     sender = region(
         "Sender", "{A: {}, B: {}}", "go: {from: A, to: B, on: Go, effect: [{raise: Hit}]}"

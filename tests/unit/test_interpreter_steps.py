@@ -312,6 +312,51 @@ def test_deferred_event_waits_until_no_active_state_defers_it() -> None:
     ]
 
 
+AGAIN = """
+initial: P
+deferred: 2
+states: {P: {defer: [Order]}, Q: {}}
+transitions:
+  order: {from: P, to: Q, on: Order, guard: x = 1}
+  again: {from: P, to: P, on: Again, effect: [{set: x, to: 1}]}
+  back: {from: Q, to: P, on: Order}
+data: {x: 0}
+"""
+
+
+def test_exit_of_the_state_that_defers_gives_the_event_back_though_it_is_entered_again() -> None:
+    assert steps(AGAIN, "5 Order", "15 Again", "15 Order")[1:] == [
+        "20 P.exit, again.effect, P.entry",
+        "30 P.exit, order.effect, Q.entry",  # the first, and then the second
+        "40 Q.exit, back.effect, P.entry",
+    ]
+
+
+def test_event_that_came_back_is_deferred_again_where_nothing_takes_it() -> None:
+    chart = AGAIN.replace("to: 1}]", "to: x}]").replace("set: x, to: x", "set: x, to: 0")
+    assert steps(chart, "5 Order", "15 Again", "25 Order")[1:] == [
+        "20 P.exit, again.effect, P.entry"
+    ]
+
+
+def test_exit_of_one_state_leaves_alone_what_another_defers() -> None:
+    chart = """
+    initial: O
+    deferred: 2
+    states:
+      O:
+        regions:
+          Left: {initial: L, states: {L: {defer: [Go]}, M: {}}}
+          Right: {initial: R, states: {R: {defer: [Stop]}}}
+    transitions:
+      ready: {from: L, on: Stop, guard: x = 1}
+      go: {from: L, to: M, on: Go, guard: x = 1}
+      again: {from: R, to: R, on: Again, effect: [{set: x, to: 1}]}
+    data: {x: 0}
+    """
+    assert steps(chart, "5 Go", "15 Again")[1:] == ["20 R.exit, again.effect, R.entry"]
+
+
 def test_full_deferral_list_loses_the_event() -> None:
     assert steps(DEFERRING, "5 Go", "5 Go", "25 Leave")[1:] == [
         "30 A1.exit, A.exit, leave.effect, B.entry",

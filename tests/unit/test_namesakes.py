@@ -26,7 +26,7 @@ def test_each_unit_has_a_type_of_its_own_in_ascii() -> None:
     assert (names["mm"], names["MM"], names["m/s"]) == ("Unit_Mm", "Unit_MM_3", "Unit_M_Per_S")
 
 
-@pytest.mark.parametrize(("first", "second"), product(("mV", "MV"), repeat=2))
+@pytest.mark.parametrize(("first", "second"), list(product(("mV", "MV"), repeat=2)))
 def test_the_first_unit_keeps_its_plain_name(first: str, second: str) -> None:
     names = _unit_names(tuple(dict.fromkeys((first, second))))
     assert names[first] == "Unit_MV"

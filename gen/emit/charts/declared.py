@@ -10,7 +10,6 @@ from ...component import Component
 from ...model import System
 from ...statechart import Region, When
 from ..ada import (
-    FALSE,
     SPARK,
     Arg,
     Aspect,
@@ -36,10 +35,10 @@ from ..ada import (
     member,
     number,
 )
-from ..events import name_of
 from ..naming import ada_case
 from ..terms import emit_expression
 from .compound import PASSED, Firing, Kind
+from .deferring import declared_deferrals
 from .history import restored_functions, restored_place
 from .lanes import declared_lanes
 from .lasting import declared_domains
@@ -101,7 +100,7 @@ def _declared(shape: RegionShape) -> list[Decl]:
     items += _selections(shape, params)
     items += _passing(shape)
     if shape.deferring:
-        items += _deferred(shape)
+        items += declared_deferrals(shape)
     if shape.listed:
         items += declared_lanes(shape)
     return items
@@ -226,52 +225,3 @@ def _passing(shape: RegionShape) -> list[Decl]:
         Subprogram("Segments_Left", (place,), "Natural", expression=IfExpr(branches, number(0))),
         Comment("How many segments follow at most; none but in a choice or history."),
     ]
-
-
-def _deferred(shape: RegionShape) -> list[Decl]:
-    rows: list[tuple[str, Expr]] = []
-    for event in shape.region.events():
-        states = [s.name for s in shape.region.states if event in s.defers]
-        if states:
-            inside = [shape.in_state(shape.place, s) for s in states]
-            rows.append((shape.event(event), chain("or else", inside)))
-    if len(rows) < len(shape.component.events):
-        rows.append(("others", FALSE))
-    place = Param(shape.place, "in", shape.place_type)
-    return [
-        Subprogram(
-            "Is_Deferred",
-            (Param("Item", "in", "Event"), place),
-            "Boolean",
-            expression=CaseExpr(Ref(name_of(shape.component, "Item")), tuple(rows)),
-        ),
-        Comment("Does an active state defer it?"),
-        _is_released(place),
-        Comment("Is it the oldest that no active state defers any more?"),
-        Subprogram(
-            "Is_Deferral",
-            (Param("T", "in", "Selection"),),
-            "Boolean",
-            expression=_one_of(
-                "T", [ada_case(f.name) for f in shape.firings if f.kind is Kind.DEFERRAL]
-            ),
-        ),
-    ]
-
-
-def _is_released(place: Param) -> Subprogram:
-    def deferred(index: str) -> Expr:
-        item = call("Deferrals.Element", Ref("Kept"), Ref(index))
-        return call("Is_Deferred", item, Ref(place.name))
-
-    return Subprogram(
-        "Is_Released",
-        (Param("Kept", "in", "Deferrals.List"), place, Param("I", "in", "Positive")),
-        "Boolean",
-        aspects=(Aspect("Ghost"),),
-        expression=both(
-            Chain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept")))),
-            Prefix("not", deferred("I")),
-            ForAll("J", "1 .. I - 1", deferred("J")),
-        ),
-    )

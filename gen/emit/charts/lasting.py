@@ -36,6 +36,7 @@ from ..ada import (
 )
 from ..naming import ada_case
 from .compound import TOP, Firing, Kind, Place
+from .deferring import COUNT, freed_after, freed_after_exit, kept_events
 from .places import flat
 from .shape import START, Memory, RegionShape
 
@@ -44,7 +45,7 @@ _STOPPED = "Ravenchart.Timers.Stopped"
 
 def has_domains(shape: RegionShape) -> bool:
     """Does anything outlast a firing that depends on what was left and entered?"""
-    return bool(shape.timers or shape.memories)
+    return bool(shape.timers or shape.memories or shape.deferring)
 
 
 def _inside(place: Place) -> str:
@@ -89,7 +90,38 @@ def declared_domains(shape: RegionShape) -> list[Decl]:
         items += _timer_after(shape, bool(ends))
     if shape.memories:
         items += _remembered(shape)
+    if shape.deferring:
+        items += _freed(shape)
     return items
+
+
+def _freed(shape: RegionShape) -> list[Decl]:
+    rows: list[Arg] = []
+    for event in kept_events(shape):
+        exits = [
+            both(
+                *flat([_spans(shape.compounds.places(s.name)), shape.in_state(shape.place, s.name)])
+            )
+            for s in shape.region.states
+            if event in s.defers
+        ]
+        before = Ref(f"Freed.{ada_case(event)}")
+        freed = IfExpr(((chain("or else", exits), Ref("Count")),), before)
+        rows.append(Arg(ada_case(event), freed))
+    return [
+        Subprogram(
+            "Freed_After",
+            (
+                Param("D", "in", "Domain"),
+                Param(shape.place, "in", shape.place_type),
+                Param("Count", "in", "Natural"),
+                Param("Freed", "in", "Freed_Events"),
+            ),
+            "Freed_Events",
+            expression=Aggregate(tuple(rows)),
+        ),
+        Comment("Each exit of a state frees the events that it defers, of those kept till then."),
+    ]
 
 
 def _spans(places: list[Place], *more: str) -> Expr:
@@ -228,13 +260,14 @@ class Lasting:
         return [
             *self._times([(i, Ref(_STOPPED)) for i in self.timed(state)]),
             *self._memory(self.remembered(state), state),
+            *self._freed(state),
             *self._kept(),
         ]
 
     def entered(self, vertex: str) -> list[Expr]:
         """After the entry of a state its time-outs run."""
         started = [(i, _fresh(self.shape, i)) for i in self.timed(vertex)]
-        return [*self._times(started), *self._memory([], vertex), *self._kept()]
+        return [*self._times(started), *self._memory([], vertex), *self._freed(), *self._kept()]
 
     def left(self, place: Place) -> list[Expr]:
         """After all in a region was left, the time-outs of what was active are stopped."""
@@ -247,6 +280,8 @@ class Lasting:
         facts = self._times(values)
         if self.shape.memories:
             facts.append(self._recalled(_inside(place)))
+        if self.shape.deferring:
+            facts.append(freed_after(self.shape, Ref(_inside(place)), COUNT))
         return facts + self._kept()
 
     def fired(self, chosen: str) -> list[Expr]:
@@ -271,6 +306,12 @@ class Lasting:
                 facts.append(IfExpr(((starts, kept), (goes_on, known)), None))
             else:
                 facts.append(IfExpr(((Ref("Self.Started'Old"), known),), kept))
+        if self.shape.deferring:
+            count = call("Deferrals.Count", Ref("Self.Deferred'Old"))
+            freed = freed_after(self.shape, domain, count)
+            ends = any(terminates(self.shape, f) for f in self.shape.firings)
+            goes_on = Chain("/=", (domain, Ref("Ending")))
+            facts.append(IfExpr(((goes_on, freed),), None) if ends else freed)
         return [*facts, *self._deferred(chosen)]
 
     # --- parts
@@ -296,6 +337,10 @@ class Lasting:
         )
         same = both(equal(kept, before), equal(Ref("Self.Lost"), Ref("Self.Lost'Old")))
         return [IfExpr(added, same)]
+
+    def _freed(self, left: str | None = None) -> list[Expr]:
+        """What the exit of a state frees; None: nothing."""
+        return [freed_after_exit(self.shape, left)] if self.shape.deferring else []
 
     def _times(self, values: Sequence[tuple[int, Expr]]) -> list[Expr]:
         """These time-outs are so; all others are as they were."""

@@ -32,6 +32,7 @@ from ..ada import (
 from ..naming import ada_case
 from ..terms import emit_flow
 from .compound import Enter, Place
+from .deferring import freed_by
 from .lasting import Lasting
 from .nodes import Nodes, joined
 from .places import flat
@@ -134,7 +135,7 @@ class Moving:
         return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
 
     def _work_of_exit(self, state: str) -> tuple[Stmt, ...]:
-        """What the exit of a state does: its action, its time-outs, what is remembered."""
+        """What the exit of a state does: actions, time-outs, what it frees, what is remembered."""
         stops = tuple(
             Do("Ravenchart.Timers.Disarm", arguments(Ref(f"Self.Timers ({i})")))
             for i in self.lasting.timed(state)
@@ -142,7 +143,8 @@ class Moving:
         completed = Assign(f"Self.{self.shape.completed(state)}", FALSE)
         undone = (completed,) if state in self.shape.completing else ()
         action = emit_flow(self.scope, self.region.state(state).exit)
-        return (*action, *stops, *undone, *self._remember(state))
+        freed = freed_by(self.shape, state)
+        return (*action, *stops, *undone, *freed, *self._remember(state))
 
     def _remember(self, leaf: str) -> tuple[Stmt, ...]:
         found: list[Stmt] = []

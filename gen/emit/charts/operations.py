@@ -29,6 +29,7 @@ from ..ada import (
 )
 from ..events import name_of
 from ..naming import ada_case
+from .deferring import FREED
 from .lanes import followed
 from .lasting import Lasting
 from .shape import START, RegionShape
@@ -129,10 +130,12 @@ def _released(shape: RegionShape) -> tuple[Expr, Expr]:
     """When an event is released from deferral, it comes next."""
     each = f"1 .. {shape.region.deferral_depth}"
     kept = Ref("Self.Deferred'Old")
-    released = call("Is_Released", kept, Ref(f"Self.{shape.place}"), Ref("I"))
+    freed = Ref(f"{FREED}'Old")
+    released = call("Is_Released", kept, Ref(f"Self.{shape.place}"), freed, Ref("I"))
     item = call("Deferrals.Element", kept, Ref("I"))
     comes = [equal(Ref("Now"), call("To_Occurrence", item))]
     comes += [equal(Ref("Item"), item)] if shape.takes_item else []
+    comes.append(equal(Ref(FREED), call("Freed_Without", Ref("I"), freed)))
     then = IfExpr(((released, both(*comes)),), None)
     return ForSome("I", each, released), ForAll("I", each, then)
 

@@ -21,6 +21,7 @@ from ..ada import Component as Field
 from ..components import reading_type
 from ..events import null_event
 from ..naming import ada_case, default_value, type_name, value
+from .deferring import freed_field, freed_type
 from .shape import START, RegionShape, guard_operators, guards_of
 from .working import done_types, work_fields
 
@@ -135,6 +136,7 @@ def _records(shape: RegionShape) -> list[Decl]:
                 ),
             ),
             UseType("Deferrals.List"),
+            *freed_type(shape),
         ]
     if shape.listed:
         most = shape.most_firings
@@ -168,6 +170,7 @@ def _region_fields(shape: RegionShape) -> tuple[Field, ...]:
     rows += work_fields(shape)
     if shape.deferring:
         rows.append(Field("Deferred", "Deferrals.List"))
+        rows.append(freed_field())
         rows.append(Field("Lost", "Boolean", FALSE))
     if shape.region.writes:
         rows.append(Field("Data", "Variables"))

@@ -44,7 +44,7 @@ TYPES = frozenset(
     (
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
-        *("firing_list", "firing_array", "done_states"),
+        *("firing_list", "firing_array", "done_states", "freed_events"),
     )
 )
 """What hides an event of the same name inside a region's package."""

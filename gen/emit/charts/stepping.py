@@ -34,6 +34,7 @@ from ..ada import (
 from ..events import null_event
 from ..naming import ada_case
 from ..terms import expressions_in, flow_operators
+from .deferring import FREED, is_due
 from .firing import MANY, Moves
 from .lanes import fire, lane_step, passing_step
 from .selection import selectors
@@ -113,31 +114,27 @@ def _polling(shape: RegionShape) -> list[Decl]:
 
 
 def _deferred(shape: RegionShape) -> tuple[Stmt, ...]:
-    """The oldest deferred event that no active state defers any more."""
-    place = Ref(f"Self.{shape.place}")
-
-    def item(index: str) -> Expr:
-        return call("Deferrals.Element", Ref("Self.Deferred"), Ref(index))
-
-    def deferred(index: str) -> Expr:
-        return call("Is_Deferred", item(index), place)
-
+    """The oldest deferred event that is due."""
+    held = f"Self.{shape.place}"
+    item = call("Deferrals.Element", Ref("Self.Deferred"), Ref("Released"))
     none_yet = equal(Ref("Released"), number(0))
-    waiting = ForAll("J", "1 .. I - 1", deferred("J"))
+    due_j, due_i = (is_due("Self.Deferred", held, FREED, index) for index in "JI")
+    waiting = ForAll("J", "1 .. I - 1", Prefix("not", due_j))
     search = Loop(
         "for I in 1 .. Deferrals.Count (Self.Deferred)",
         (
             Pragma("Loop_Invariant", (both(none_yet, waiting),)),
-            If(((Prefix("not", deferred("I")), (Assign("Released", Ref("I")), Say("exit"))),)),
+            If(((due_i, (Assign("Released", Ref("I")), Say("exit"))),)),
         ),
     )
-    claim = call("Is_Released", Ref("Self.Deferred"), place, Ref("Released"))
-    taken = (Assign("Item", item("Released")),) if shape.takes_item else ()
+    found = (Ref("Self.Deferred"), Ref(held), Ref(FREED), Ref("Released"))
+    taken = (Assign("Item", item),) if shape.takes_item else ()
     take = (
-        Pragma("Assert", (claim,)),
-        Assign("Now", call("To_Occurrence", item("Released"))),
+        Pragma("Assert", (call("Is_Released", *found),)),
+        Assign("Now", call("To_Occurrence", item)),
         *taken,
         Do("Deferrals.Remove", arguments(Ref("Self.Deferred"), Ref("Released"))),
+        Assign(FREED, call("Freed_Without", Ref("Released"), Ref(FREED))),
     )
     return (
         Assign("Now", Ref("Conditions")),

@@ -1,0 +1,156 @@
+"""Deferral: which of the events that are kept come next.
+
+A kept event is due when no active state defers it, and also from the exit of a state that
+defers it: PSSM 8.5.5 gives it back to the pool then, though the state may be entered again.
+The list of kept events is in the order in which they came, so for each event one number
+says which are *freed* by an exit: those among the first so many.
+"""
+
+from __future__ import annotations
+
+from ..ada import (
+    FALSE,
+    Aggregate,
+    Arg,
+    Aspect,
+    Assign,
+    CaseExpr,
+    Chain,
+    Comment,
+    Component,
+    Decl,
+    Expr,
+    ForAll,
+    IfExpr,
+    Param,
+    Prefix,
+    RecordType,
+    Ref,
+    Stmt,
+    Subprogram,
+    both,
+    call,
+    chain,
+    equal,
+    number,
+)
+from ..events import name_of
+from ..naming import ada_case
+from .compound import Kind
+from .shape import RegionShape
+
+FREED = "Self.Freed"
+COUNT = call("Deferrals.Count", Ref("Self.Deferred"))
+_TYPE = "Freed_Events"
+
+
+def kept_events(shape: RegionShape) -> list[str]:
+    """The events that a state defers, in model order."""
+    return [e for e in shape.region.events() if any(e in s.defers for s in shape.region.states)]
+
+
+def freed_type(shape: RegionShape) -> list[Decl]:
+    """For each event the length of the list when a state that defers it was exited last."""
+    rows = tuple(Component(ada_case(e), "Natural", number(0)) for e in kept_events(shape))
+    return [
+        Comment("Of each event those among the first so many were kept when it was freed by an exit."),
+        RecordType(_TYPE, rows),
+    ]
+
+
+def freed_field() -> Component:
+    """Its component of the region's state."""
+    return Component("Freed", _TYPE)
+
+
+def freed_by(shape: RegionShape, state: str) -> tuple[Stmt, ...]:
+    """The exit of a state frees what it defers."""
+    events = shape.region.state(state).defers
+    return tuple(Assign(f"{FREED}.{ada_case(e)}", COUNT) for e in events)
+
+
+def freed_after_exit(shape: RegionShape, state: str | None) -> Expr:
+    """The claim that the exit of a state freed what it defers; None: nothing has been freed."""
+    events = shape.region.state(state).defers if state is not None else ()
+    if not events:
+        return equal(Ref(FREED), Ref(f"{FREED}'Old"))
+    rows = tuple(
+        Arg(ada_case(e), COUNT if e in events else Ref(f"{FREED}'Old.{ada_case(e)}"))
+        for e in kept_events(shape)
+    )
+    return equal(Ref(FREED), Aggregate(rows))
+
+
+def freed_after(shape: RegionShape, domain: Expr, count: Expr) -> Expr:
+    """The claim that all was freed that states in a domain defer."""
+    held = Ref(f"Self.{shape.place}'Old")
+    return equal(Ref(FREED), call("Freed_After", domain, held, count, Ref(f"{FREED}'Old")))
+
+
+def declared_deferrals(shape: RegionShape) -> list[Decl]:
+    """What is deferred, what is due, and what is due next."""
+    rows: list[tuple[str, Expr]] = []
+    limits: list[tuple[str, Expr]] = []
+    for event in kept_events(shape):
+        states = [s.name for s in shape.region.states if event in s.defers]
+        inside = [shape.in_state(shape.place, s) for s in states]
+        rows.append((shape.event(event), chain("or else", inside)))
+        limits.append((shape.event(event), Ref(f"Freed.{ada_case(event)}")))
+    if len(rows) < len(shape.component.events):
+        rows.append(("others", FALSE))
+        limits.append(("others", number(0)))
+    item, place = Param("Item", "in", "Event"), Param(shape.place, "in", shape.place_type)
+    freed, index = Param("Freed", "in", _TYPE), Param("I", "in", "Positive")
+    kept = (Param("Kept", "in", "Deferrals.List"), place, freed, index)
+    name = Ref(name_of(shape.component, "Item"))
+    element = call("Deferrals.Element", Ref("Kept"), Ref("I"))
+    limit = call("Freed_Up_To", element, Ref("Freed"))
+    waits = call("Is_Deferred", element, Ref(place.name))
+    due = chain("or else", [Prefix("not", waits), Chain("<=", (Ref("I"), limit))])
+    there = Chain("<=", (Ref("I"), call("Deferrals.Count", Ref("Kept"))))
+    without = tuple(
+        Arg(
+            ada_case(e),
+            IfExpr(
+                ((Chain("<=", (Ref("I"), of)), Chain("-", (of, number(1)))),),
+                of,
+            ),
+        )
+        for e in kept_events(shape)
+        for of in (Ref(f"Freed.{ada_case(e)}"),)
+    )
+    deferrals = [ada_case(f.name) for f in shape.firings if f.kind is Kind.DEFERRAL]
+    return [
+        Subprogram("Is_Deferred", (item, place), "Boolean", expression=CaseExpr(name, tuple(rows))),
+        Comment("Does an active state defer it?"),
+        Subprogram(
+            "Freed_Up_To", (item, freed), "Natural", expression=CaseExpr(name, tuple(limits))
+        ),
+        Comment("Among how many of the oldest was it kept when a state that defers it was exited?"),
+        Subprogram("Is_Due", kept, "Boolean", expression=both(there, due)),
+        Comment("Does no active state defer it, or was one exited that does?"),
+        Subprogram(
+            "Is_Released",
+            kept,
+            "Boolean",
+            aspects=(Aspect("Ghost"),),
+            expression=both(
+                is_due("Kept", place.name, "Freed", "I"),
+                ForAll("J", "1 .. I - 1", Prefix("not", is_due("Kept", place.name, "Freed", "J"))),
+            ),
+        ),
+        Comment("Is it the oldest that is due?"),
+        Subprogram("Freed_Without", (index, freed), _TYPE, expression=Aggregate(without)),
+        Comment("What is freed when the event in this place is taken out."),
+        Subprogram(
+            "Is_Deferral",
+            (Param("T", "in", "Selection"),),
+            "Boolean",
+            expression=chain("or else", [equal(Ref("T"), Ref(n)) for n in deferrals]),
+        ),
+    ]
+
+
+def is_due(kept: str, place: str, freed: str, index: str) -> Expr:
+    """A call of that function."""
+    return call("Is_Due", Ref(kept), Ref(place), Ref(freed), Ref(index))
