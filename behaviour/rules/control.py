@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import networkx
 import z3
@@ -14,6 +14,7 @@ from gen.terms import Origin
 from . import logic
 from .logic import Term
 from .reach import Edge, Reach, Thread
+from .stepping import Beaten
 from .words import label, reached, trace, valuation, where
 
 Rule = Callable[[Reach, Thread], Iterator[Diagnostic]]
@@ -97,6 +98,10 @@ def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
             hint = f"change the order or the guards, or remove {transition.name}"
             yield error("RV-1102", transition.origin, message, notes=notes, hint=hint)
         else:
+            beaten = [b for b in _beaten(thread) if b.transition == transition.name]
+            if beaten:
+                yield _always_beaten(tree.region, transition, beaten)
+                continue
             what = "its guard never holds" if transition.guard is not None else "nothing lets it"
             message = f"{transition.name} never fires: {what} in {transition.source}"
             if transition.source not in tree.kinds and not _waits(thread, transition.source):
@@ -106,6 +111,32 @@ def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
                 )
             hint = "correct its guard, or remove it"
             yield error("RV-1102", transition.origin, message, hint=hint)
+
+
+def _beaten(thread: Thread) -> Iterator[Beaten]:
+    """What some step selects and does not fire, each once."""
+    yield from dict.fromkeys(b for edge in thread.edges for b in edge.outcome.beaten)
+
+
+def _always_beaten(region: Region, transition: Transition, beaten: Sequence[Beaten]) -> Diagnostic:
+    """A transition that is enabled, and always gives way to another region."""
+    name, source = transition.name, transition.source
+    states = [b.by for b in beaten if b.is_deferral]
+    if states:
+        message = (
+            f"{name} never fires: while {source} is active, {' or '.join(states)} defers the event"
+        )
+        notes = [(region.state(state).origin, f"{state} is here") for state in states]
+        hint = f"remove {name}, or `defer` from {' and '.join(states)}"
+    else:
+        winners = [_transition(region, b.by) for b in beaten]
+        message = f"{name} never fires: it conflicts with {' and '.join(w.name for w in winners)}"
+        notes = [(w.origin, f"{w.name} of an earlier region fires") for w in winners]
+        hint = (
+            f"change the order of the regions or the guards; where {name} is removed, the next "
+            f"transition of {source}, or of a state around it, takes its place and may fire"
+        )
+    return error("RV-1102", transition.origin, message, notes=notes, hint=hint)
 
 
 def _waits(thread: Thread, state: str) -> bool:

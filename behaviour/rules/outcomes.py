@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import z3
 
 from .logic import Read, Term, Variable
-from .stepping import Configuration, Rival, Step
+from .stepping import Beaten, Configuration, Rival, Step
 from .tree import Occurrence, Slot, Tree
 
 Past = Mapping[Slot, set[str]]
@@ -33,6 +33,7 @@ class Outcome:
     rivals: tuple[Rival, ...]
     entered: frozenset[str]
     left: frozenset[str]
+    beaten: tuple[Beaten, ...]
     recalled: frozenset[Slot] = frozenset()
     """The regions whose remembered leaf was any that is known of (`Past`)."""
     remembered: tuple[tuple[Slot, str], ...] = ()
@@ -120,6 +121,7 @@ def outcomes(
                 tuple(step.rivals),
                 frozenset(step.entered),
                 frozenset(step.left),
+                tuple(step.beaten),
                 frozenset(slots),
                 () if past is None else after.history,
             )

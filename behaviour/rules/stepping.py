@@ -59,6 +59,15 @@ class Stuck(Exception):  # noqa: N818
     """A pseudostate that no enabled segment leaves."""
 
 
+@dataclass(frozen=True, slots=True)
+class Beaten:
+    """A transition that was selected and not fired, for a transition or a deferring state."""
+
+    transition: str
+    by: str
+    is_deferral: bool
+
+
 @dataclass
 class Step:
     """One step that is being made."""
@@ -79,6 +88,7 @@ class Step:
     left: set[str] = field(default_factory=set)
     arrivals: list[str] = field(default_factory=list)
     rivals: list[Rival] = field(default_factory=list)
+    beaten: list[Beaten] = field(default_factory=list)
     stopped: bool = False
     deferred: bool = False
 
@@ -140,6 +150,7 @@ class Step:
     def select(self) -> list[Path]:
         """What each lane selects, in lane order; nothing when the event is deferred."""
         chosen: list[Path] = []
+        deferring: list[str] = []
         busy: set[str] = set()
         chains: dict[Lane, list[str]] = {}
         for name in reversed(self.tree.ordered(self.active)):
@@ -151,10 +162,12 @@ class Step:
             found = self.select_in(chain)
             if isinstance(found, Deferral):
                 self.deferred = True
+                deferring.append(found.state)
             elif found is not None:
                 chosen.append(found)
             if found is not None and lane.owner is not None:
                 busy |= set(self.tree.chains[lane.owner])
+        self.beaten += [Beaten(p[0].name, state, True) for p in chosen for state in deferring]
         return [] if self.deferred else chosen
 
     def select_in(self, chain: Sequence[str]) -> Path | Deferral | None:
@@ -214,7 +227,8 @@ class Step:
         """Fire what was selected; what an earlier firing conflicts with is dropped."""
         made: list[Path] = []
         for path in paths:
-            clash = any(self.conflict(path, one) or self.conflict(one, path) for one in made)
+            clash = [o for o in made if self.conflict(path, o) or self.conflict(o, path)]
+            self.beaten += [Beaten(path[0].name, one[0].name, False) for one in clash]
             if not clash and self.source(path) in self.active:
                 made.append(path)
                 self.fire(path)

@@ -278,3 +278,41 @@ def test_region_without_a_plain_state_is_looked_at(inside: str) -> None:
     if "terminate" in inside:
         leads += "\nstop: {from: A, to: E, on: Stop}"
     assert not said(model(region("Main", f"{{A: {{}}, B: {{{inside}}}}}", leads)))
+
+
+# --- What another region keeps from firing -----------------------------------------
+
+
+def test_deferral_in_another_region_is_the_reason_that_is_named() -> None:
+    states = (
+        "{O: {regions: {Left: {initial: L, states: {L: {}, M: {}}}, "
+        "Right: {initial: R, states: {R: {%s}}}}}}"
+    )
+    transitions = (
+        "go: {from: L, to: M, on: Go}\nover: {from: L, to: M, on: Stop}\n"
+        "back: {from: M, to: L, on: Stop}"
+    )
+    defers = model(
+        region("Main", states % "defer: [Go]", transitions, head="deferred: 1\n", initial="O")
+    )
+    found = only(defers)
+    assert found.code == "RV-1102"
+    assert found.message == "go never fires: while L is active, R defers the event"
+    assert not said(model(region("Main", states % "", transitions, initial="O")))
+
+
+def test_lost_conflict_is_named_with_what_removal_would_do() -> None:
+    states = (
+        "{O: {regions: {Left: {initial: L, states: {L: {}, M: {}}}, "
+        "Right: {initial: R, states: {R: {}, S: {}}}}}, Away: {}}"
+    )
+    transitions = (
+        "turn: {from: L, to: L, on: Go}\nleave: {from: R, to: Away, on: Go}\n"
+        "other: {from: R, to: S, on: Stop}\nback: {from: S, to: R, on: Stop}\n"
+        "on_again: {from: L, to: M, on: Stop}\nhome: {from: M, to: L, on: Go}\n"
+        "away: {from: O, to: Away, after: 20 ms}"
+    )
+    found = only(model(region("Main", states, transitions, initial="O")))
+    assert found.code == "RV-1102"
+    assert found.message == "leave never fires: it conflicts with turn and home"
+    assert found.hint is not None and "takes its place" in found.hint

@@ -53,7 +53,7 @@ def freed_type(shape: RegionShape) -> list[Decl]:
     """For each event the length of the list when a state that defers it was exited last."""
     rows = tuple(Component(ada_case(e), "Natural", number(0)) for e in kept_events(shape))
     return [
-        Comment("Of each event those among the first so many were kept when it was freed by an exit."),
+        Comment("Of each event those among the first so many were kept when an exit freed it."),
         RecordType(_TYPE, rows),
     ]
 
