@@ -285,14 +285,14 @@ class _Codec:
 
     def _bits_lemma(self, signal: Signal) -> Subprogram:
         """The bits that the codec takes are those of the row: a fact about bits alone."""
-        raw = self._raw(signal, self.frame)
-        widened = raw if container(signal) == WORD else call(WORD, raw)
         return Subprogram(
             f"Lemma_Bits_{ada_case(signal.name)}",
             (Param(self.frame, "in", self.frame_type),),
             aspects=(
                 Aspect("Ghost"),
-                Aspect("Post", equal(widened, self.table.bits_in(signal, self.frame))),
+                Aspect(
+                    "Post", equal(self._widened(signal), self.table.bits_in(signal, self.frame))
+                ),
             ),
             body=self._bit_steps(signal),
         )
@@ -300,7 +300,12 @@ class _Codec:
     def _bit_steps(self, signal: Signal) -> tuple[Stmt, ...]:
         if self.words == 1:
             return (NULL,)
-        return self.table.lemma_of_bits(signal, self.frame)
+        taken, lemma = self.table.lemma_of_bits(signal, self.frame)
+        return Pragma("Assert", (equal(self._widened(signal), taken),)), lemma
+
+    def _widened(self, signal: Signal) -> Expr:
+        raw = self._raw(signal, self.frame)
+        return raw if container(signal) == WORD else call(WORD, raw)
 
     def _value_lemma(self, signal: Signal) -> Subprogram:
         """The codec counts bits as the row does: a fact about numbers alone."""

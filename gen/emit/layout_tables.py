@@ -22,13 +22,11 @@ from .ada import (
     Expr,
     Object,
     Param,
-    Pragma,
     Ref,
-    Stmt,
     Subprogram,
     arguments,
     call,
-    equal,
+    chain,
     number,
 )
 from .naming import ada_case, type_name
@@ -74,11 +72,11 @@ class LayoutTable:
         """The bits of a signal, by its row."""
         return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
 
-    def lemma_of_bits(self, signal: Signal, frame: str) -> tuple[Stmt, ...]:
-        """The lemma that says by words what `bits_in` of a longer frame is, and its mask.
+    def lemma_of_bits(self, signal: Signal, frame: str) -> tuple[Expr, Do]:
+        """By words what `bits_in` of a longer frame is, and the lemma that says so.
 
         Provers reckon a row and a frame at once very slowly. What is wrong here is a
-        precondition or an assertion that fails.
+        precondition that fails.
         """
         upwards = signal.order is ByteOrder.INTEL
         byte, bit = divmod(signal.start, 8)
@@ -89,10 +87,20 @@ class LayoutTable:
         else:
             shift = (first + signal.width if last > word else -first - signal.width) % 64
         name = f"{_ORDERS[signal.order]}_{'Over' if last > word else 'Within'}"
-        given = arguments(Ref(frame), Ref(_row(signal)), number(word), number(shift))
-        mask = Ref(f"16#{(1 << signal.width) - 1:X}#")
-        known = equal(call(f"{LAYOUTS}.Mask", number(signal.width)), mask)
-        return Do(f"{LEMMAS}.Lemma_{name}", given), Pragma("Assert", (known,))
+        ones = Ref(f"16#{(1 << signal.width) - 1:X}#")
+        row, width = Ref(_row(signal)), number(signal.width)
+        given = arguments(Ref(frame), row, number(word), number(shift), width, ones)
+        words: list[Expr] = [Ref(f"{frame} ({index})") for index in range(word, last + 1)]
+        if not upwards:
+            words = [call(f"{LAYOUTS}.Reversed", one) for one in words]
+        ways = ["Right"] if last == word else ["Right", "Left"] if upwards else ["Left", "Right"]
+        by = [shift, 64 - shift]
+        parts = [
+            call(f"Interfaces.Shift_{way}", one, number(places))
+            for way, one, places in zip(ways, words, by, strict=False)
+        ]
+        taken = Chain("and", (chain("or", parts, number(0)), ones))
+        return taken, Do(f"{LEMMAS}.Lemma_{name}", given)
 
     def number_in(self, signal: Signal, frame: str) -> Expr:
         """The raw value of a signal of a frame, by its row."""

@@ -5,15 +5,19 @@ is
    procedure Lemma_Intel_Within
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    is null;
 
    procedure Lemma_Intel_Over
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    is
    begin
       pragma Assert
@@ -26,15 +30,19 @@ is
    procedure Lemma_Motorola_Within
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    is null;
 
    procedure Lemma_Motorola_Over
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    is
    begin
       pragma Assert

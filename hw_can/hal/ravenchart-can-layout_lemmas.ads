@@ -1,6 +1,6 @@
 --  What the bits of a signal of a longer frame are, by the words where they
 --  stand: proved here for all rows, so that of one row only its numbers are
---  left to compute.
+--  left to compute. Ones is the mask of the row.
 --
 --  Guarantees   by proof; nothing here is executed
 --  Tasking      none
@@ -16,14 +16,15 @@ is
    use Interfaces;
    use Ravenchart.Can.Layouts;
 
-   subtype Word_Index is Natural range 0 .. 7;
    subtype Bit_Shift is Natural range 0 .. 63;
 
    procedure Lemma_Intel_Within
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    with
      Global => null,
      Pre    =>
@@ -31,17 +32,21 @@ is
        and then Reaches_To (S) <= 512
        and then S.Start / 64 = Word
        and then (Reaches_To (S) - 1) / 64 = Word
-       and then S.Start mod 64 = Shift,
+       and then S.Start mod 64 = Shift
+       and then S.Width = Width
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
      Post   =>
        Raw (Words, S)
-       = (Shift_Right (Words (Word), Shift) and Mask (S.Width));
+       = (Shift_Right (Words (Word), Shift) and Ones);
    --  A signal in one word, from bit Shift of it on.
 
    procedure Lemma_Intel_Over
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    with
      Global => null,
      Pre    =>
@@ -50,19 +55,23 @@ is
        and then S.Start / 64 = Word
        and then Word < 7
        and then (Reaches_To (S) - 1) / 64 = Word + 1
-       and then S.Start mod 64 = Shift,
+       and then S.Start mod 64 = Shift
+       and then S.Width = Width
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
      Post   =>
        Raw (Words, S)
        = ((Shift_Right (Words (Word), Shift)
            or Shift_Left (Words (Word + 1), 64 - Shift))
-          and Mask (S.Width));
+          and Ones);
    --  A signal that begins at bit Shift of one word and ends in the next.
 
    procedure Lemma_Motorola_Within
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    with
      Global => null,
      Pre    =>
@@ -71,17 +80,21 @@ is
        and then S.Start / 64 = Word
        and then First_In_Order (S) / 64 = Word
        and then (Reaches_To (S) - 1) / 64 = Word
-       and then 63 - (Reaches_To (S) - 1) mod 64 = Shift,
+       and then 63 - (Reaches_To (S) - 1) mod 64 = Shift
+       and then S.Width = Width
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
      Post   =>
        Raw (Words, S)
-       = (Shift_Right (Reversed (Words (Word)), Shift) and Mask (S.Width));
+       = (Shift_Right (Reversed (Words (Word)), Shift) and Ones);
    --  A signal in one word, with Shift bits behind it.
 
    procedure Lemma_Motorola_Over
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
-      Word  : Word_Index;
-      Shift : Bit_Shift)
+      Word  : Fd_Frames.Word_Index;
+      Shift : Bit_Shift;
+      Width : Bit_Count;
+      Ones  : Unsigned_64)
    with
      Global => null,
      Pre    =>
@@ -90,12 +103,14 @@ is
        and then First_In_Order (S) / 64 = Word
        and then Word < 7
        and then (Reaches_To (S) - 1) / 64 = Word + 1
-       and then Reaches_To (S) mod 64 = Shift,
+       and then Reaches_To (S) mod 64 = Shift
+       and then S.Width = Width
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
      Post   =>
        Raw (Words, S)
        = ((Shift_Left (Reversed (Words (Word)), Shift)
            or Shift_Right (Reversed (Words (Word + 1)), 64 - Shift))
-          and Mask (S.Width));
+          and Ones);
    --  A signal that begins in one word and has Shift bits in the next.
 
 end Ravenchart.Can.Layout_Lemmas;
