@@ -25,6 +25,7 @@ is
          = (Shift_Right (Words (Word), Shift)
             or Shift_Left (Words (Word + 1), 64 - Shift)));
       pragma Assert (Raw (Words, S) = (Joined (Words, S) and Mask (S.Width)));
+      pragma Assert (Ones = Mask (Width));
    end Lemma_Intel_Over;
 
    procedure Lemma_Motorola_Within
@@ -50,6 +51,7 @@ is
          = (Shift_Left (Reversed (Words (Word)), Shift)
             or Shift_Right (Reversed (Words (Word + 1)), 64 - Shift)));
       pragma Assert (Raw (Words, S) = (Joined (Words, S) and Mask (S.Width)));
+      pragma Assert (Ones = Mask (Width));
    end Lemma_Motorola_Over;
 
 end Ravenchart.Can.Layout_Lemmas;
