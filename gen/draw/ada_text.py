@@ -28,7 +28,7 @@ _profile: "(" _parameter (";" _parameter)* ")" "return" NAME "is"
 _parameter: NAME ":" NAME
 condition: "when" NAME _ARROW conjunct (_AND_THEN conjunct)*
 move: "when" NAME _ARROW (conjunct | configuration)
-configuration: "(" leaf ("," leaf)* ")"
+configuration: "(" [NAME _DELTA] leaf ("," leaf)* ")"
 leaf: NAME _ARROW conjunct
 conjunct: _piece+
 _piece: NAME | NUMBER | SIGN | _group
@@ -36,6 +36,7 @@ _group: "(" (_piece | "," | _AND_THEN)* ")"
 
 _ARROW.2: "=>"
 _AND_THEN.2: /and\s+then\b/
+_DELTA.2: /with\s+delta\b/
 SIGN: "/=" | "<=" | ">=" | ".." | "=" | "<" | ">" | "+" | "-" | "*" | "/" | "|" | "'"
 NUMBER: /[0-9][0-9_]*/
 NAME: /[A-Za-z]\w*(\.[A-Za-z]\w*)*/
@@ -116,9 +117,9 @@ class _Reader(Transformer[Token, object]):
         """A component and its leaf."""
         return str(parts[0]), parts[1]
 
-    def configuration(self, _: Meta, parts: Sequence[tuple[str, str]]) -> Leaves:
-        """A leaf for each component."""
-        return dict(parts)
+    def configuration(self, _: Meta, parts: Sequence[object]) -> Leaves:
+        """A leaf for each component that does not stay as it was."""
+        return dict(part for part in parts if isinstance(part, tuple))
 
     def move(self, _: Meta, parts: Sequence[object]) -> tuple[str, object]:
         """A transition and where it leads."""

@@ -53,10 +53,14 @@ class Call:
 
 @frozen
 class Aggregate:
-    """A parenthesised list of associations, qualified by ``of_type`` where given."""
+    """A parenthesised list of associations, qualified by ``of_type`` where given.
+
+    Components that it does not name are those of ``base``.
+    """
 
     args: tuple[Arg, ...]
     of_type: str | None = None
+    base: str | None = None
 
 
 @frozen

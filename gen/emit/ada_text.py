@@ -120,6 +120,9 @@ def expression(expr: Expr) -> Doc:
             return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
         case Call(name, args):
             return group(name, nest(SOFT, _args(args), by=2))
+        case Aggregate(args, _, str(base)):
+            changed = _join([_arg(a) for a in args], ",")
+            return _bare(f"{base}{_DELTA}", nest(SOFT, *changed, by=2))
         case Aggregate(args, of_type):
             return group(f"{of_type}'" if of_type else "", _args(args))
         case IfExpr(branches, otherwise):
@@ -342,6 +345,10 @@ def _protected(decl: Protected) -> Doc:
     return upright(*parts, SOFT, f"end {decl.name};")
 
 
+_DELTA = " with delta"
+"""What the language of the other units does not have."""
+
+
 def print_item(unit: Unit) -> str:
     """The text of ``unit`` without its header and context, ending in a newline."""
     return _laid_out(_declaration(unit.item))
@@ -349,11 +356,14 @@ def print_item(unit: Unit) -> str:
 
 def print_unit(unit: Unit, item: str | None = None) -> str:
     """The text of ``unit``, ending in a newline; ``item`` is what `print_item` made of it."""
+    text = print_item(unit) if item is None else item
     parts: list[Doc] = [_comment(unit.header), ""]
+    if _DELTA in text:
+        parts += ["pragma Ada_2022;", 'pragma Warnings (Off, "*array aggregate using*");', ""]
     parts += [f"with {name};" for name in unit.withs]
     head = _laid_out(upright(*_join(parts)))
     gap = "\n" if unit.withs else ""
-    return head + gap + (print_item(unit) if item is None else item)
+    return head + gap + text
 
 
 def _laid_out(doc: Doc) -> str:

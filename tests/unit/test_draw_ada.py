@@ -91,7 +91,7 @@ def test_internal_transitions_and_deferrals_stand_in_their_state() -> None:
 def test_a_changed_target_is_seen_in_the_picture() -> None:
     texts = _texts()
     spec = texts["plant-every-life.ads"]
-    changed = spec.replace("(Top => Life_States.Work_End", "(Top => Life_States.Second", 1)
+    changed = spec.replace("Top => Life_States.Work_End", "Top => Life_States.Second", 1)
     assert changed != spec
     wrong = picture_of_ada("plant-every-life.ads", {**texts, "plant-every-life.ads": changed}.get)
     assert _arrows(wrong) - _arrows(_picture()) == {

@@ -1,15 +1,19 @@
-"""A chart of many leaf states is checked to the end."""
+"""A chart of many leaf states is checked to the end, and its code grows with its size alone."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from time import process_time
 
 import pytest
 
 from behaviour.rules import SECONDS, UNFINISHED, findings
 from behaviour.rules.reach import Clock, Reach
+from gen.claims import Claims
+from gen.generate import generate
 from gen.model import System
 from ravenchart.large_charts import large_chart
+from ravenchart.random_models import random_model
 from tests.support.interpreted import system_of
 
 
@@ -30,3 +34,28 @@ def test_each_further_block_is_as_many_nodes(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("behaviour.rules.reach.MOST_NODES", 9)
     nodes = [len(_reach(system_of(large_chart(b))).threads[0].nodes) for b in (2, 4, 6)]
     assert nodes[2] - nodes[1] == nodes[1] - nodes[0] == 2 * 13
+
+
+def _unit(text: str, name: str) -> str:
+    """The text of a generated unit of the region Motion."""
+    files = generate(system_of(text), Claims())
+    return next(made for file, made in files.items() if file.endswith(f"-motion.{name}"))
+
+
+def _fire(blocks: int) -> int:
+    """Lines of `Fire`."""
+    body = _unit(large_chart(blocks), "adb")
+    return body[body.index("procedure Fire ") : body.index("end Fire;")].count("\n")
+
+
+@pytest.mark.parametrize("of", [_fire, lambda n: _unit(large_chart(n), "ads").count("\n")])
+def test_each_further_block_is_as_many_lines(of: Callable[[int], int]) -> None:
+    few, some, many = of(3), of(6), of(9)
+    assert many - some <= 1.1 * (some - few)
+    assert many <= 90 * 100
+
+
+def test_each_further_leaf_of_a_hierarchy_is_as_many_lines() -> None:
+    lines = {n: _unit(random_model(n, 1), "adb").count("\n") for n in (60, 240)}
+    assert lines[240] <= 1.1 * 4 * lines[60]
+    assert lines[240] <= 240 * 60

@@ -122,10 +122,15 @@ class Moves:
             past += (Object("Kept", "Deferrals.List", kept, constant=True, aspects=ghost),)
         if len(rows) > MANY:
             before = [equal(o.value, Ref(o.name)) for o in past if o.value is not None]
+            #  said once, and not with each batch
+            agrees = Subprogram("Is_Agreed", (), "Boolean", ghost, expression=agreed)
+            timed = self.lasting.timing()
+            known = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
             claims = (
-                Aspect("Pre", both(*flat([Ref("Self.Started"), sources, *before, agreed]))),
-                Aspect("Post", both(*flat([done, agreed]))),
+                Aspect("Pre", both(Ref("Self.Started"), sources, *before, Ref(agrees.name))),
+                Aspect("Post", both(*flat([known, Ref(agrees.name)]))),
             )
+            procedures = (agrees, *timed, *procedures)
             batches = [rows[at : at + MANY] for at in range(0, len(rows), MANY)]
             procedures += tuple(d for batch in batches for d in _procedure(batch, claims))
             rows = [_call(batch) for batch in batches]

@@ -116,13 +116,14 @@ def restored_place(shape: RegionShape, history: str) -> Expr:
     own = shape.region.lane(history)
     rows = []
     for lane in reversed(shape.lanes):
-        here: Expr = Ref(shape.at(shape.place, lane))
+        here: Expr | None = None
         if lane == own:
             here = leaf
         elif lane.owner is not None and place in shape.compounds.places(lane.owner):
             here = _lane_again(shape, memory, lane, deep)
-        rows.append(Arg(shape.lane_field(lane), here))
-    return Aggregate(tuple(rows))
+        if here is not None:
+            rows.append(Arg(shape.lane_field(lane), here))
+    return Aggregate(tuple(rows), base=shape.place if len(rows) < len(shape.lanes) else None)
 
 
 def _lane_again(shape: RegionShape, memory: Memory, lane: Lane, deep: bool) -> Expr:

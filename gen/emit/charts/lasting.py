@@ -16,6 +16,7 @@ from ...statechart import After, Every
 from ..ada import (
     Aggregate,
     Arg,
+    Aspect,
     CaseExpr,
     Chain,
     Comment,
@@ -284,14 +285,38 @@ class Lasting:
             facts.append(freed_after(self.shape, Ref(_inside(place)), COUNT))
         return facts + self._kept()
 
-    def fired(self, chosen: str) -> list[Expr]:
-        """After a firing: what is declared; ``chosen`` names the transition."""
+    def timing(self) -> list[Subprogram]:
+        """`Is_Timed`: all time-outs are as declared, in one word, inside `Fire`."""
+        if not self.shape.timers:
+            return []
+        held = f"Self.{self.shape.place}"
+        rows = []
+        for i in range(1, len(self.shape.timers) + 1):
+            was = Ref(f"Was ({i})")
+            after = call("Timer_After", number(i), Ref("D"), Ref("Before"), Ref(held), was)
+            rows.append(equal(Ref(f"Self.Timers ({i})"), after))
+        params = (
+            Param("D", "in", "Domain"),
+            Param("Before", "in", self.shape.place_type),
+            Param("Was", "in", "Ravenchart.Timers.Timer_Array"),
+        )
+        bounds = equal(Ref("Was'First"), number(1)), equal(Ref("Was'Last"), number(len(rows)))
+        ghost = (Aspect("Ghost"), Aspect("Pre", both(*bounds)))
+        return [Subprogram("Is_Timed", params, "Boolean", ghost, expression=both(*rows))]
+
+    def fired(self, chosen: str, *, at_once: bool = False) -> list[Expr]:
+        """After a firing: what is declared; ``chosen`` names the transition.
+
+        ``at_once``: with `Is_Timed`.
+        """
         facts: list[Expr] = []
         held = f"Self.{self.shape.place}"
         domain = call("Domain_Of", Ref(chosen))
         if self.shape.timers:
             places = (Ref(f"{held}'Old"), Ref(held))
-            for i in range(1, len(self.shape.timers) + 1):
+            if at_once:
+                facts.append(call("Is_Timed", domain, places[0], Ref("Self.Timers'Old")))
+            for i in () if at_once else range(1, len(self.shape.timers) + 1):
                 before = Ref(f"Self.Timers'Old ({i})")
                 after = call("Timer_After", number(i), domain, *places, before)
                 facts.append(equal(Ref(f"Self.Timers ({i})"), after))
@@ -361,15 +386,13 @@ class Lasting:
             return []
         if not changed:
             return [equal(Ref("Self.Past"), Ref("Self.Past'Old"))]
-        new = dict(changed)
         rows: list[Arg] = []
-        for memory in self.shape.memories:
-            last, known = f"Self.Past'Old.{memory.last}", f"Self.Past'Old.{memory.known}"
-            if memory in new:
-                known = str(new[memory])
-                last = self.shape.literal(leaf) if new[memory] else last
-            rows += [Arg(memory.last, Ref(last)), Arg(memory.known, Ref(known))]
-        return [equal(Ref("Self.Past"), Aggregate(tuple(rows)))]
+        for memory, goes_on in changed:
+            if goes_on:
+                rows.append(Arg(memory.last, Ref(self.shape.literal(leaf))))
+            rows.append(Arg(memory.known, Ref(str(goes_on))))
+        base = "Self.Past'Old" if len(rows) < 2 * len(self.shape.memories) else None
+        return [equal(Ref("Self.Past"), Aggregate(tuple(rows), base=base))]
 
     def _recalled(self, domain: str) -> Expr:
         held = f"Self.{self.shape.place}'Old"

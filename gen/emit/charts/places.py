@@ -184,11 +184,14 @@ class Places:
         """A configuration with these leaves; those of other lanes come from ``kept``."""
         if self.single:
             return Ref(prefix + self.literal(leaves[self.lanes[0]]) if leaves else kept)
-        rows = []
-        for lane in reversed(self.lanes):
-            known = prefix + self.literal(leaves[lane]) if lane in leaves else self.at(kept, lane)
-            rows.append(Arg(self.lane_field(lane), Ref(known)))
-        return Aggregate(tuple(rows))
+        rows = tuple(
+            Arg(self.lane_field(lane), Ref(prefix + self.literal(leaves[lane])))
+            for lane in reversed(self.lanes)
+            if lane in leaves
+        )
+        if not rows:
+            return Ref(kept)
+        return Aggregate(rows, base=kept if len(rows) < len(self.lanes) else None)
 
     def initial(self, component: str = "") -> Expr:
         """The configuration before the region has started, seen from inside ``component``."""
