@@ -330,7 +330,7 @@ class RegionForm(Element):
     safe_state: Reference | None = optional("State that must be reachable from every other.")
     states: dict[Name, StateForm] = key("The top states and pseudostates.", min_length=1)
     transitions: dict[Name, TransitionForm] = key(
-        "Transitions by name; the earlier goes before the later.", min_length=1
+        "Transitions by name; the earlier goes before the later. `{}`: there are none."
     )
 
 

@@ -88,8 +88,8 @@ class LayoutTable:
             shift = (first + signal.width if last > word else -first - signal.width) % 64
         name = f"{_ORDERS[signal.order]}_{'Over' if last > word else 'Within'}"
         ones = Ref(f"16#{(1 << signal.width) - 1:X}#")
-        row, width = Ref(_row(signal)), number(signal.width)
-        given = arguments(Ref(frame), row, number(word), number(shift), width, ones)
+        row = Ref(_row(signal))
+        given = arguments(Ref(frame), row, number(word), number(shift), ones)
         words: list[Expr] = [Ref(f"{frame} ({index})") for index in range(word, last + 1)]
         if not upwards:
             words = [call(f"{LAYOUTS}.Reversed", one) for one in words]

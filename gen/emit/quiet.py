@@ -42,7 +42,7 @@ def has_decided_conditions(system: System) -> bool:
     if any(_has_one_value(t) for t in system.types):
         return True
     regions = [r for c in system.components for r in c.regions]
-    if any(_has_whole_lane(Places(r)) for r in regions):
+    if any(not r.transitions or _has_whole_lane(Places(r)) for r in regions):
         return True
     return any(_is_decided(e) for e in _expressions(system))
 

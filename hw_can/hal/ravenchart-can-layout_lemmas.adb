@@ -7,7 +7,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    is null;
 
@@ -16,7 +15,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    is
    begin
@@ -24,8 +22,7 @@ is
         (Joined (Words, S)
          = (Shift_Right (Words (Word), Shift)
             or Shift_Left (Words (Word + 1), 64 - Shift)));
-      pragma Assert (Raw (Words, S) = (Joined (Words, S) and Mask (S.Width)));
-      pragma Assert (Ones = Mask (Width));
+      pragma Assert (Raw (Words, S) = (Joined (Words, S) and Ones));
    end Lemma_Intel_Over;
 
    procedure Lemma_Motorola_Within
@@ -33,7 +30,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    is null;
 
@@ -42,7 +38,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    is
    begin
@@ -51,7 +46,7 @@ is
          = (Shift_Left (Reversed (Words (Word)), Shift)
             or Shift_Right (Reversed (Words (Word + 1)), 64 - Shift)));
       pragma Assert (Raw (Words, S) = (Joined (Words, S) and Mask (S.Width)));
-      pragma Assert (Ones = Mask (Width));
+      pragma Assert (Mask (S.Width) = Ones);
    end Lemma_Motorola_Over;
 
 end Ravenchart.Can.Layout_Lemmas;

@@ -23,7 +23,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    with
      Global => null,
@@ -33,8 +32,7 @@ is
        and then S.Start / 64 = Word
        and then (Reaches_To (S) - 1) / 64 = Word
        and then S.Start mod 64 = Shift
-       and then S.Width = Width
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
      Post   =>
        Raw (Words, S)
        = (Shift_Right (Words (Word), Shift) and Ones);
@@ -45,7 +43,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    with
      Global => null,
@@ -56,8 +53,7 @@ is
        and then Word < 7
        and then (Reaches_To (S) - 1) / 64 = Word + 1
        and then S.Start mod 64 = Shift
-       and then S.Width = Width
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
      Post   =>
        Raw (Words, S)
        = ((Shift_Right (Words (Word), Shift)
@@ -70,7 +66,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    with
      Global => null,
@@ -81,8 +76,7 @@ is
        and then First_In_Order (S) / 64 = Word
        and then (Reaches_To (S) - 1) / 64 = Word
        and then 63 - (Reaches_To (S) - 1) mod 64 = Shift
-       and then S.Width = Width
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
      Post   =>
        Raw (Words, S)
        = (Shift_Right (Reversed (Words (Word)), Shift) and Ones);
@@ -93,7 +87,6 @@ is
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
       Shift : Bit_Shift;
-      Width : Bit_Count;
       Ones  : Unsigned_64)
    with
      Global => null,
@@ -104,8 +97,7 @@ is
        and then Word < 7
        and then (Reaches_To (S) - 1) / 64 = Word + 1
        and then Reaches_To (S) mod 64 = Shift
-       and then S.Width = Width
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - Width),
+       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
      Post   =>
        Raw (Words, S)
        = ((Shift_Left (Reversed (Words (Word)), Shift)

@@ -22,7 +22,7 @@ components:
     regions: {{Subject: {{period: 10 ms, wcet: 10 us, queue: 4, {}}}}}
 nodes: {{board: {{context_switch: 1 us, critical_section: 1 us}}}}
 instances: {{unit: {{component: Part, node: board}}}}
-processors: {{runner: {{node: board, stack: 32 KiB, activities: [unit.Subject]}}}}
+processors: {{runner: {{node: board, stack: 32 KiB, activities: [{}]}}}}
 shutdown: {{raises: [unit.Go, unit.Bye, unit.Next], grace: 0 ms}}
 """
 
@@ -63,6 +63,14 @@ CHARTS = {
         transitions: {
           go: {from: A, to: Both, on: Go}, left: {from: L1, to: L2, on: Next},
           right: {from: R1, to: R2, on: Next}, up: {from: L, to: L2, on: Bye}}""",
+    "No_Transitions": """
+        initial: A, states: {A: {}, B: {}}, transitions: {go: {from: A, to: B, on: Go}}}, Still: {
+        period: 10 ms, wcet: 10 us, initial: A, states: {A: {}}, transitions: {}""",
+    "No_Transitions_In_Regions": """
+        initial: A, states: {A: {}, B: {}}, transitions: {go: {from: A, to: B, on: Go}}}, Still: {
+        period: 10 ms, wcet: 10 us, initial: A, states: {A: {regions: {
+          Left: {initial: L, states: {L: {}}}, Right: {initial: R1, states: {R1: {}}}}}},
+        transitions: {}""",
 }
 
 FEW = (1007, 1011, 1016, 1025, 1044, 1053, 1075)
@@ -71,7 +79,12 @@ RUNS = [range(first, first + 12) for first in range(1_000, 3_004, 12)] if LONG e
 
 
 def _models(charts: dict[str, str]) -> dict[str, str]:
-    return {name: FRAME.format(" ".join(chart.split())) for name, chart in charts.items()}
+    """The systems of these charts; one chart may close its region and begin another."""
+    found: dict[str, str] = {}
+    for name, chart in charts.items():
+        rows = ["unit.Subject", "unit.Still"] if "Still:" in chart else ["unit.Subject"]
+        found[name] = FRAME.format(" ".join(chart.split()), ", ".join(rows))
+    return found
 
 
 @pytest.fixture(params=["checks", "release"])

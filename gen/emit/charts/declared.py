@@ -10,6 +10,7 @@ from ...component import Component
 from ...model import System
 from ...statechart import Region, When
 from ..ada import (
+    FALSE,
     SPARK,
     Arg,
     Aspect,
@@ -24,6 +25,7 @@ from ..ada import (
     IfExpr,
     Package,
     Param,
+    Pragma,
     Prefix,
     Ref,
     Subprogram,
@@ -57,13 +59,19 @@ def emit_region(
     withs = ["Ravenchart.Timers"] if shape.timers else []
     withs += ["Ravenchart.Event_Lists"] if shape.deferring else []
     spec = Package(shape.package, _spec(shape), (SPARK,))
-    body = Package(shape.package, body_of(shape), (SPARK,), is_body=True)
+    body = Package(shape.package, (*_quiet(shape), *body_of(shape)), (SPARK,), is_body=True)
     seen = ("Ravenchart.Steps",) if noted else ()
     return Unit(header, tuple(withs), spec), Unit(header, seen, body)
 
 
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
-    return (*region_types(shape), *_declared(shape), *operations(shape))
+    return (*_quiet(shape), *region_types(shape), *_declared(shape), *operations(shape))
+
+
+def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
+    """Functions of a chart without transitions do not ask for what is active or occurs."""
+    words = () if shape.firings else ("formal parameter * is not referenced", "condition is always")
+    return tuple(Pragma("Warnings", (Ref("Off"), Ref(f'"*{word}*"'))) for word in words)
 
 
 # --- The chart as declared ---------------------------------------------------
@@ -74,8 +82,12 @@ def _declared(shape: RegionShape) -> list[Decl]:
     params = shape.choice_params()
     lines = tuple((ada_case(f.name), _enabled(shape, f)) for f in shape.firings)
     sources = tuple((ada_case(f.name), shape.in_sources(f)) for f in shape.firings)
+    if not lines:
+        lines = sources = (("None", FALSE),)
     start = shape.configuration(shape.after(shape.start), shape.place)
     targets = tuple((ada_case(f.name), _target(shape, f)) for f in shape.firings)
+    if not targets:
+        targets = (("None", start),)
     items: list[Decl] = [
         Subprogram("Enabled", (chosen, *params), "Boolean", expression=CaseExpr(Ref("T"), lines)),
         Comment("The declared chart: source, trigger and guard of each transition."),
@@ -134,14 +146,14 @@ def _target(shape: RegionShape, firing: Firing) -> Expr:
 def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
     if shape.single:
         return [
-            _is_selection("Is_Selection", "Transition", params),
+            _is_selection(shape, "Is_Selection", "Transition"),
             Comment("The first transition that is enabled, or None when none is."),
         ]
     items: list[Decl] = []
     lines: list[Expr] = []
     for lane in shape.busy_lanes:
         name = shape.lane_name(lane)
-        items.append(_is_selection(f"Is_{name}_Selection", f"{name}_Transition", params))
+        items.append(_is_selection(shape, f"Is_{name}_Selection", f"{name}_Transition"))
         right: Expr = Call(
             f"Is_{name}_Selection", (Arg(None, Ref(f"C.{name}")), *plain_args(params))
         )
@@ -185,7 +197,9 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
     return items
 
 
-def _is_selection(name: str, domain: str, params: tuple[Param, ...]) -> Subprogram:
+def _is_selection(shape: RegionShape, name: str, domain: str) -> Subprogram:
+    params = shape.choice_params()
+
     def enabled(which: str) -> Expr:
         return Call("Enabled", (Arg(None, Ref(which)), *plain_args(params)))
 

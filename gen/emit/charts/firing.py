@@ -104,6 +104,7 @@ class Moves:
         shape = self.shape
         start = (Assign("Self.Started", TRUE), *joined(self._steps(shape.start)))
         rows = [(ada_case(f.name), self._row(f)) for f in shape.firings]
+        rows = rows or [("None", (NULL,))]
         sources = call("In_Source", Ref("Chosen"), Ref(self.held))
         ready = IfExpr(
             ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),

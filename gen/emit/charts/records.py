@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..ada import (
     FALSE,
     Aggregate,
@@ -39,12 +41,20 @@ def region_types(shape: RegionShape) -> list[Decl]:
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
         EnumType("Selection", (START, *names, "None")),
-        PlainType("Firing", f"Selection range {START} .. {names[-1]}", subtype=True),
-        PlainType("Transition", f"Selection range {names[0]} .. {names[-1]}", subtype=True),
+        PlainType(
+            "Firing", f"Selection range {START} .. {names[-1] if names else 'None'}", subtype=True
+        ),
+        PlainType("Transition", _selection_of(names), subtype=True),
     ]
     if not shape.single:
         items += _lane_types(shape)
     return items + _records(shape)
+
+
+def _selection_of(names: Sequence[str]) -> str:
+    """The range of these transitions; a chart without any has None, which is never enabled."""
+    first, last = (names[0], names[-1]) if names else ("None", "None")
+    return f"Selection range {first} .. {last}"
 
 
 def _use_types(shape: RegionShape) -> list[Decl]:
@@ -71,9 +81,7 @@ def _lane_types(shape: RegionShape) -> list[Decl]:
     for lane in shape.busy_lanes:
         own = [ada_case(f.name) for f in shape.firings if f.lane == lane]
         name = shape.lane_name(lane)
-        items.append(
-            PlainType(f"{name}_Transition", f"Selection range {own[0]} .. {own[-1]}", subtype=True)
-        )
+        items.append(PlainType(f"{name}_Transition", _selection_of(own), subtype=True))
         fields.append(Field(name, "Selection", Ref("None")))
     items += [
         Comment("What one occurrence fires: at most one transition in each lane."),

@@ -123,8 +123,9 @@ class RegionShape(Places):
 
     @cached_property
     def busy_lanes(self) -> tuple[Lane, ...]:
-        """The lanes with transitions, in the order in which they fire."""
-        return tuple(n for n in self.lanes if any(f.lane == n for f in self.firings))
+        """The lanes with transitions, in the order in which they fire; the top one if none has."""
+        busy = tuple(n for n in self.lanes if any(f.lane == n for f in self.firings))
+        return busy or self.lanes[-1:]
 
     def lane_name(self, lane: Lane) -> str:
         """Its component of a choice."""

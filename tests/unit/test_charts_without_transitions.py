@@ -1,0 +1,21 @@
+"""A chart without transitions is a chart: it enters its states, and is checked like others."""
+
+from __future__ import annotations
+
+from tests.support.behaviour_models import model, region, said
+from tests.support.interpreted import steps
+
+
+def test_nothing_is_wrong_with_it() -> None:
+    still = region("Main", "{A: {entry: [{set: armed, to: true}]}}", "{}")
+    assert not said(model(still))
+
+
+def test_it_enters_its_states_and_stays() -> None:
+    chart = """
+    initial: A
+    states: {A: {initial: B, states: {B: {entry: [{set: x, to: 1}]}}}}
+    transitions: {}
+    data: {x: 0}
+    """
+    assert steps(chart) == ["0 A.entry, B.entry"]
