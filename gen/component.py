@@ -71,6 +71,8 @@ class Event:
     type: Type | None = None
     overflow: Overflow | None = None
     """What a full queue does with this event; None: what the region says."""
+    external: bool = False
+    """It may come from outside at any time, though the component raises it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -174,6 +174,7 @@ CODES: Mapping[str, str] = {
     "RV-1007": "A simulation came to a pseudostate from which no segment leads on.",
     "RV-1008": "The interpreter is to execute commands of devices or tasks, which it cannot.",
     "RV-1009": "The interpreter leaves out activities that the user writes.",
+    "RV-1010": "A file of events raises from outside what `check` takes to come from inside only.",
     "RV-1101": "No data lead into a state.",
     "RV-1102": "No data let a transition fire.",
     "RV-1103": "Two transitions with one source and trigger can both fire; the first does.",

@@ -106,7 +106,8 @@ def _events(form: ComponentForm, types: Scope[Type], space: Namespace) -> Scope[
             type_ = None if at.type is None else types.look_up(at.type, at.at("type"), findings)
             overflow = None if at.overflow is None else Overflow(at.overflow)
             sound = type_ is not None or at.type is None
-            event = Event(name, at.origin, type_, overflow) if sound else None
+            external = at.external is True
+            event = Event(name, at.origin, type_, overflow, external) if sound else None
             made.append((name, at.origin, event))
     else:
         for index, name in enumerate(form.events or ()):

@@ -362,11 +362,14 @@ class ActivityForm(Element):
 
 
 class EventForm(Element):
-    """An event, where it carries a value or has a rule of its own for full queues."""
+    """An event with a value, a rule of its own for full queues, or a source outside."""
 
     type: Reference | None = optional("The type of the value it carries; none unless given.")
     overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
         "What a full queue loses when it comes; what the region says unless given."
+    )
+    external: bool | None = optional(
+        "`true`: the event may also come from outside at any time, though the component raises it."
     )
 
 

@@ -7,12 +7,14 @@ order of `behaviour.machine` and prints the lines of `Record.text`.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 
 from behaviour.interpreter import Stuck
 from behaviour.machine import Machine
-from behaviour.stimuli import Stimuli, read
+from behaviour.rules.outside import external_events
+from behaviour.stimuli import Raised, Stimuli, read
 from behaviour.traces import Record, parsed
 from gen.diagnostics import Diagnostic, error, render, warning
 from gen.distribution import as_one
@@ -134,6 +136,21 @@ def left_out(system: System) -> Diagnostic | None:
     return warning("RV-1009", rows[0][1], message, hint=hint)
 
 
+def unexpected(system: System, stimuli: Stimuli) -> list[Diagnostic]:
+    """A warning for each event that comes from outside, which `check` does not reckon with."""
+    components = {i.name: i.component for i in system.instances}
+    raised = dict.fromkeys((e.instance, e.event) for e in stimuli.entries if isinstance(e, Raised))
+    found: list[Diagnostic] = []
+    for instance, name in raised:
+        component = components[instance]
+        if name not in {event for event, _ in external_events(component, system)}:
+            origin = next(e.origin for e in component.events if e.name == name)
+            message = f"only {component.name} raises {name}, and `check` relies on that"
+            hint = f"write `{name}: {{external: true}}` where it may come from outside too"
+            found.append(warning("RV-1010", origin, message, hint=hint))
+    return found
+
+
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
     """The trace of a model under the stimuli of a file, one step a line."""
     bindings = checked.system.bindings
@@ -142,6 +159,8 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
         hint = "leave out `--interpreter`: the program in virtual time has them"
         raise Refused(render(error("RV-1008", bindings[0].origin, message, hint=hint), {}))
     stimuli = stimuli_of(checked.system, events)
+    for one in unexpected(checked.system, stimuli):
+        print(render(one, {}), file=sys.stderr)
     if interpreter:
         records = simulated_by_interpreter(checked.system, stimuli)
     else:

@@ -76,7 +76,8 @@ def external_events(component: Component, system: System) -> Iterator[tuple[str,
     yield from ((e, None) for owner, e in system.raised_outside if owner in instances)
     raised = {e for item in component.runnables() for e in item.raises}
     raised |= {e for port in component.ports for e in (port.on_arrival, port.on_stale) if e}
-    yield from ((event.name, None) for event in component.events if event.name not in raised)
+    outside = (e for e in component.events if e.external or e.name not in raised)
+    yield from ((event.name, None) for event in outside)
 
 
 def parameters_of(component: Component, system: System) -> dict[str, dict[Variable, Term]]:

@@ -29,7 +29,7 @@ def test_nearly_every_code_is_shown_by_a_bad_model() -> None:
     # what is analysed but not generated, which stops a generation only
     unready = ["RV-0804"]
     # files of events, which have tests of their own
-    stimuli = [f"RV-{number}" for number in range(1001, 1010)]
+    stimuli = [f"RV-{number}" for number in range(1001, 1011)]
     # and so have scenarios
     scenarios = [f"RV-{number}" for number in range(1301, 1307)]
     read = ["RV-0102", "RV-0103", "RV-0113"]
