@@ -300,8 +300,8 @@ class _Codec:
     def _bit_steps(self, signal: Signal) -> tuple[Stmt, ...]:
         if self.words == 1:
             return (NULL,)
-        taken, lemma = self.table.lemma_of_bits(signal, self.frame)
-        return Pragma("Assert", (equal(self._widened(signal), taken),)), lemma
+        taken, lemmas = self.table.lemmas_of_bits(signal, self.frame)
+        return Pragma("Assert", (equal(self._widened(signal), taken),)), *lemmas
 
     def _widened(self, signal: Signal) -> Expr:
         raw = self._raw(signal, self.frame)

@@ -72,8 +72,8 @@ class LayoutTable:
         """The bits of a signal, by its row."""
         return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
 
-    def lemma_of_bits(self, signal: Signal, frame: str) -> tuple[Expr, Do]:
-        """By words what `bits_in` of a longer frame is, and the lemma that says so.
+    def lemmas_of_bits(self, signal: Signal, frame: str) -> tuple[Expr, tuple[Do, ...]]:
+        """By words what `bits_in` of a longer frame is, and the lemmas that say so.
 
         Provers reckon a row and a frame at once very slowly. What is wrong here is a
         precondition that fails.
@@ -89,7 +89,7 @@ class LayoutTable:
         name = f"{_ORDERS[signal.order]}_{'Over' if last > word else 'Within'}"
         ones = Ref(f"16#{(1 << signal.width) - 1:X}#")
         row = Ref(_row(signal))
-        given = arguments(Ref(frame), row, number(word), number(shift), ones)
+        given = arguments(Ref(frame), row, number(word), number(shift))
         words: list[Expr] = [Ref(f"{frame} ({index})") for index in range(word, last + 1)]
         if not upwards:
             words = [call(f"{LAYOUTS}.Reversed", one) for one in words]
@@ -100,7 +100,8 @@ class LayoutTable:
             for way, one, places in zip(ways, words, by, strict=False)
         ]
         taken = Chain("and", (chain("or", parts, number(0)), ones))
-        return taken, Do(f"{LEMMAS}.Lemma_{name}", given)
+        mask = Do(f"{LEMMAS}.Lemma_Mask", arguments(row, ones))
+        return taken, (mask, Do(f"{LEMMAS}.Lemma_{name}", given))
 
     def number_in(self, signal: Signal, frame: str) -> Expr:
         """The raw value of a signal of a frame, by its row."""

@@ -1,6 +1,6 @@
 --  What the bits of a signal of a longer frame are, by the words where they
 --  stand: proved here for all rows, so that of one row only its numbers are
---  left to compute. Ones is the mask of the row.
+--  left to compute.
 --
 --  Guarantees   by proof; nothing here is executed
 --  Tasking      none
@@ -18,12 +18,18 @@ is
 
    subtype Bit_Shift is Natural range 0 .. 63;
 
+   procedure Lemma_Mask (S : Signal; Ones : Unsigned_64)
+   with
+     Global => null,
+     Pre    => Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
+     Post   => Layouts.Mask (S.Width) = Ones;
+   --  The mask of a signal in numbers.
+
    procedure Lemma_Intel_Within
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
-      Shift : Bit_Shift;
-      Ones  : Unsigned_64)
+      Shift : Bit_Shift)
    with
      Global => null,
      Pre    =>
@@ -31,19 +37,17 @@ is
        and then Reaches_To (S) <= 512
        and then S.Start / 64 = Word
        and then (Reaches_To (S) - 1) / 64 = Word
-       and then S.Start mod 64 = Shift
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
+       and then S.Start mod 64 = Shift,
      Post   =>
        Raw (Words, S)
-       = (Shift_Right (Words (Word), Shift) and Ones);
+       = (Shift_Right (Words (Word), Shift) and Layouts.Mask (S.Width));
    --  A signal in one word, from bit Shift of it on.
 
    procedure Lemma_Intel_Over
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
-      Shift : Bit_Shift;
-      Ones  : Unsigned_64)
+      Shift : Bit_Shift)
    with
      Global => null,
      Pre    =>
@@ -52,21 +56,19 @@ is
        and then S.Start / 64 = Word
        and then Word < 7
        and then (Reaches_To (S) - 1) / 64 = Word + 1
-       and then S.Start mod 64 = Shift
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
+       and then S.Start mod 64 = Shift,
      Post   =>
        Raw (Words, S)
        = ((Shift_Right (Words (Word), Shift)
            or Shift_Left (Words (Word + 1), 64 - Shift))
-          and Ones);
+          and Layouts.Mask (S.Width));
    --  A signal that begins at bit Shift of one word and ends in the next.
 
    procedure Lemma_Motorola_Within
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
-      Shift : Bit_Shift;
-      Ones  : Unsigned_64)
+      Shift : Bit_Shift)
    with
      Global => null,
      Pre    =>
@@ -75,19 +77,18 @@ is
        and then S.Start / 64 = Word
        and then First_In_Order (S) / 64 = Word
        and then (Reaches_To (S) - 1) / 64 = Word
-       and then 63 - (Reaches_To (S) - 1) mod 64 = Shift
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
+       and then 63 - (Reaches_To (S) - 1) mod 64 = Shift,
      Post   =>
        Raw (Words, S)
-       = (Shift_Right (Reversed (Words (Word)), Shift) and Ones);
+       = (Shift_Right (Reversed (Words (Word)), Shift)
+          and Layouts.Mask (S.Width));
    --  A signal in one word, with Shift bits behind it.
 
    procedure Lemma_Motorola_Over
      (Words : Fd_Frames.Fd_Words;
       S     : Signal;
       Word  : Fd_Frames.Word_Index;
-      Shift : Bit_Shift;
-      Ones  : Unsigned_64)
+      Shift : Bit_Shift)
    with
      Global => null,
      Pre    =>
@@ -96,13 +97,12 @@ is
        and then First_In_Order (S) / 64 = Word
        and then Word < 7
        and then (Reaches_To (S) - 1) / 64 = Word + 1
-       and then Reaches_To (S) mod 64 = Shift
-       and then Ones = Shift_Right (Unsigned_64'Last, 64 - S.Width),
+       and then Reaches_To (S) mod 64 = Shift,
      Post   =>
        Raw (Words, S)
        = ((Shift_Left (Reversed (Words (Word)), Shift)
            or Shift_Right (Reversed (Words (Word + 1)), 64 - Shift))
-          and Ones);
+          and Layouts.Mask (S.Width));
    --  A signal that begins in one word and has Shift bits in the next.
 
 end Ravenchart.Can.Layout_Lemmas;

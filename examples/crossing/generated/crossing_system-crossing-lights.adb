@@ -2,6 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+pragma Warnings (Off, "*array aggregate using*");
+
 package body Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
@@ -578,9 +581,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Lights_States.Blinking,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Self.Place'Old.In_Cars)
+          = (Self.Place'Old with delta Top => Lights_States.Blinking)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Blinking)
           and then Self.Timers (1) = Ravenchart.Timers.Started (5, 5)
@@ -621,9 +622,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Lights_States.Stopping)
+          = (Self.Place'Old with delta In_Cars => Lights_States.Stopping)
           and then Active_Cars
             = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Stopping)
           and then Self.Timers (2) = Ravenchart.Timers.Started (20)
@@ -641,9 +640,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Lights_States.Held)
+          = (Self.Place'Old with delta In_Cars => Lights_States.Held)
           and then Active_Cars
             = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Held)
           and then Self.Timers = Self.Timers'Old
@@ -658,9 +655,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Lights_States.Red_Yellow)
+          = (Self.Place'Old with delta In_Cars => Lights_States.Red_Yellow)
           and then Active_Cars
             = (if Active_Top = Chart.Working
                   then Chart.Moved
@@ -710,9 +705,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Lights_States.Least)
+          = (Self.Place'Old with delta In_Cars => Lights_States.Least)
           and then Active_Cars
             = Chart.Moved (Active_Cars'Old, Chart.Green, Chart.Least)
           and then Self.Timers (4) = Ravenchart.Timers.Started (100)
@@ -729,9 +722,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Self.Place'Old.In_Walkers,
-             In_Cars => Lights_States.Yellow)
+          = (Self.Place'Old with delta In_Cars => Lights_States.Yellow)
           and then Active_Cars
             = (if Active_Top = Chart.Working
                   then Chart.Moved
@@ -781,9 +772,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Lights_States.Nobody,
-             In_Cars => Self.Place'Old.In_Cars)
+          = (Self.Place'Old with delta In_Walkers => Lights_States.Nobody)
           and then Active_Walkers
             = Chart.Moved
                 (Active_Walkers'Old,
@@ -802,9 +791,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Lights_States.Waiting,
-             In_Cars => Self.Place'Old.In_Cars)
+          = (Self.Place'Old with delta In_Walkers => Lights_States.Waiting)
           and then Active_Walkers
             = Chart.Moved
                 (Active_Walkers'Old,
@@ -850,9 +837,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Lights_States.Walking,
-             In_Cars => Self.Place'Old.In_Cars)
+          = (Self.Place'Old with delta In_Walkers => Lights_States.Walking)
           and then Active_Walkers
             = Chart.Moved
                 (Active_Walkers'Old,
@@ -874,9 +859,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Walkers => Lights_States.Leaving,
-             In_Cars => Self.Place'Old.In_Cars)
+          = (Self.Place'Old with delta In_Walkers => Lights_States.Leaving)
           and then Active_Walkers
             = Chart.Moved
                 (Active_Walkers'Old,

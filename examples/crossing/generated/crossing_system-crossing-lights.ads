@@ -2,6 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+pragma Warnings (Off, "*array aggregate using*");
+
 with Ravenchart.Timers;
 
 package Crossing_System.Crossing.Lights
@@ -200,57 +203,26 @@ is
      return Lights_States.Configuration is
      (case T is
         when Initial_Entry =>
-           (Top => Lights_States.Blinking,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Place.In_Cars),
-        when Stopped =>
-           (Top => Place.Top,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Lights_States.Held),
+           (Place with delta Top => Lights_States.Blinking),
+        when Stopped => (Place with delta In_Cars => Lights_States.Held),
         when Get_Ready =>
-           (Top => Place.Top,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Lights_States.Red_Yellow),
+           (Place with delta In_Cars => Lights_States.Red_Yellow),
         when Long_Enough =>
-           (Top => Place.Top,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Lights_States.Longer),
-        when Slow_Down =>
-           (Top => Place.Top,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Lights_States.Yellow),
-        when Start =>
-           (Top => Place.Top,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Lights_States.Least),
-        when Stop =>
-           (Top => Place.Top,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Lights_States.Stopping),
-        when Ask =>
-           (Top => Place.Top,
-            In_Walkers => Lights_States.Waiting,
-            In_Cars => Place.In_Cars),
-        when Walk =>
-           (Top => Place.Top,
-            In_Walkers => Lights_States.Walking,
-            In_Cars => Place.In_Cars),
+           (Place with delta In_Cars => Lights_States.Longer),
+        when Slow_Down => (Place with delta In_Cars => Lights_States.Yellow),
+        when Start => (Place with delta In_Cars => Lights_States.Least),
+        when Stop => (Place with delta In_Cars => Lights_States.Stopping),
+        when Ask => (Place with delta In_Walkers => Lights_States.Waiting),
+        when Walk => (Place with delta In_Walkers => Lights_States.Walking),
         when Last_Call =>
-           (Top => Place.Top,
-            In_Walkers => Lights_States.Leaving,
-            In_Cars => Place.In_Cars),
-        when Gone =>
-           (Top => Place.Top,
-            In_Walkers => Lights_States.Nobody,
-            In_Cars => Place.In_Cars),
+           (Place with delta In_Walkers => Lights_States.Leaving),
+        when Gone => (Place with delta In_Walkers => Lights_States.Nobody),
         when Into_Service =>
            (Top => Lights_States.Working,
             In_Walkers => Lights_States.Nobody,
             In_Cars => Lights_States.Stopping),
         when Out_Of_Service =>
-           (Top => Lights_States.Blinking,
-            In_Walkers => Place.In_Walkers,
-            In_Cars => Place.In_Cars),
+           (Place with delta Top => Lights_States.Blinking),
         when Blink => Place);
    --  The leaves it leads to; those of a composite are its defaults.
 

@@ -2,6 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+pragma Warnings (Off, "*array aggregate using*");
+
 package body Infusion_System.Pump.Infusion
 with SPARK_Mode
 is
@@ -466,25 +469,29 @@ is
                   pragma Loop_Invariant
                     (Released = 0
                      and then (for all J in 1 .. I - 1 =>
-                           Is_Deferred
-                             (Deferrals.Element (Self.Deferred, J),
-                              Self.Place)));
-                  if not Is_Deferred
-                       (Deferrals.Element (Self.Deferred, I),
-                        Self.Place)
-                  then
+                           not Is_Due
+                             (Self.Deferred,
+                              Self.Place,
+                              Self.Freed,
+                              J)));
+                  if Is_Due (Self.Deferred, Self.Place, Self.Freed, I) then
                      Released := I;
                      exit;
                   end if;
                end loop;
                if Released > 0 then
                   pragma Assert
-                    (Is_Released (Self.Deferred, Self.Place, Released));
+                    (Is_Released
+                       (Self.Deferred,
+                        Self.Place,
+                        Self.Freed,
+                        Released));
                   Now :=
                     To_Occurrence
                       (Deferrals.Element (Self.Deferred, Released));
                   Item := Deferrals.Element (Self.Deferred, Released);
                   Deferrals.Remove (Self.Deferred, Released);
+                  Self.Freed := Freed_Without (Released, Self.Freed);
                end if;
          end case;
       end if;
@@ -531,6 +538,12 @@ is
                      Self.Place'Old,
                      Self.Past'Old)
           else Self.Past = Self.Past'Old)
+       and then Self.Freed
+         = Freed_After
+             (Domain_Of (Chosen),
+              Self.Place'Old,
+              Deferrals.Count (Self.Deferred'Old),
+              Self.Freed'Old)
        and then (if Chosen
              in Defer_New_Portion_In_Loading | Defer_New_Portion_In_Filling
                | Defer_New_Portion_In_Self_Test
@@ -563,6 +576,22 @@ is
       with Ghost;
       Past : constant Memory := Self.Past;
       Kept : constant Deferrals.List := Self.Deferred with Ghost;
+      function Is_Agreed return Boolean is
+        (Active_Motor = Chart.Innermost_Motor (Self.Place)
+         and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
+         and then Active_Top = Chart.Innermost_Top (Self.Place))
+      with Ghost;
+      function Is_Timed
+        (D      : Domain;
+         Before : Infusion_States.Configuration;
+         Was    : Ravenchart.Timers.Timer_Array)
+        return Boolean is
+        (Self.Timers (1) = Timer_After (1, D, Before, Self.Place, Was (1))
+         and then Self.Timers (2)
+           = Timer_After (2, D, Before, Self.Place, Was (2))
+         and then Self.Timers (3)
+           = Timer_After (3, D, Before, Self.Place, Was (3)))
+      with Ghost, Pre => Was'First = 1 and then Was'Last = 3;
       procedure Exit_Self_Test
       with
         Post =>
@@ -579,6 +608,9 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Freed
+            = (New_Portion => Deferrals.Count (Self.Deferred),
+               New_Volume => Deferrals.Count (Self.Deferred))
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -586,6 +618,8 @@ is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Self.Completed_Self_Test := False;
+         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
+         Self.Freed.New_Volume := Deferrals.Count (Self.Deferred);
          Active_Top :=
            (if Active_Motor = Chart.Nowhere
                and then Active_Sensor = Chart.Nowhere
@@ -600,6 +634,7 @@ is
             = Chart.Moved (Active_Motor'Old, Chart.Turning, Chart.Nowhere)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -618,6 +653,7 @@ is
             = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Nowhere)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -635,6 +671,7 @@ is
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Infusing)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -654,12 +691,16 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Filling,
                Known_In_Infusing => True)
+          and then Self.Freed
+            = (New_Portion => Deferrals.Count (Self.Deferred),
+               New_Volume => Self.Freed'Old.New_Volume)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Completed_Filling := False;
+         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Self.Past.Last_In_Infusing := Infusion_States.Filling;
          Self.Past.Known_In_Infusing := True;
          Active_Top :=
@@ -675,6 +716,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -694,11 +736,15 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Loading,
                Known_In_Infusing => True)
+          and then Self.Freed
+            = (New_Portion => Deferrals.Count (Self.Deferred),
+               New_Volume => Self.Freed'Old.New_Volume)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
+         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Self.Past.Last_In_Infusing := Infusion_States.Loading;
          Self.Past.Known_In_Infusing := True;
          Active_Top :=
@@ -714,6 +760,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Maintaining,
                Known_In_Infusing => True)
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -734,6 +781,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.All_Given,
                Known_In_Infusing => True)
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -754,6 +802,7 @@ is
           and then Self.Past
             = (Last_In_Infusing => Infusion_States.Trickling,
                Known_In_Infusing => True)
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -772,12 +821,16 @@ is
             = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Nowhere)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed
+            = (New_Portion => Deferrals.Count (Self.Deferred),
+               New_Volume => Self.Freed'Old.New_Volume)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
       is
       begin
          Self.Data.Buzzer := False;
+         Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
          Active_Top := Chart.Moved (Active_Top, Chart.Alarm, Chart.Nowhere);
       end Exit_Alarm;
       procedure Exit_Silent
@@ -790,6 +843,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -814,6 +868,12 @@ is
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Alarm, Self.Place'Old, Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Inside_Alarm,
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred),
+                 Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -838,6 +898,12 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Giving, Self.Place'Old, Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Inside_Giving,
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred),
+                 Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -866,6 +932,12 @@ is
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Running, Self.Place'Old, Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Inside_Running,
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred),
+                 Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -897,6 +969,12 @@ is
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past
             = Remembered (Inside_Infusing, Self.Place'Old, Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Inside_Infusing,
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred),
+                 Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -927,6 +1005,12 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Motor, Self.Place'Old, Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Inside_Motor,
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred),
+                 Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -951,6 +1035,12 @@ is
           and then Self.Timers = Self.Timers'Old
           and then Self.Past
             = Remembered (Inside_Sensor, Self.Place'Old, Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Inside_Sensor,
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred),
+                 Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -987,6 +1077,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1007,9 +1098,7 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Infusion_States.Turning)
+          = (Self.Place'Old with delta In_Motor => Infusion_States.Turning)
           and then Active_Motor
             = (if Active_Top = Chart.Self_Test
                   then Chart.Moved
@@ -1019,6 +1108,7 @@ is
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1037,9 +1127,8 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Infusion_States.Motor_Good)
+          = (Self.Place'Old with delta
+               In_Motor => Infusion_States.Motor_Good)
           and then Active_Motor
             = (if Active_Top = Chart.Self_Test
                   then Chart.Moved
@@ -1049,6 +1138,7 @@ is
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1070,9 +1160,8 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Self.Place'Old.Top,
-             In_Sensor => Infusion_States.Sensor_Good,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta
+               In_Sensor => Infusion_States.Sensor_Good)
           and then Active_Sensor
             = (if Active_Top = Chart.Self_Test
                   then Chart.Moved
@@ -1082,6 +1171,7 @@ is
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1103,13 +1193,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Programming,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Programming)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Programming)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1128,6 +1217,7 @@ is
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Infusing)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1141,13 +1231,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Filling,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Filling)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.Filling)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1170,6 +1259,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1183,13 +1273,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Loading,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Loading)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Loading)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1205,13 +1294,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Maintaining,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Maintaining)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Giving, Chart.Maintaining)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1226,13 +1314,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.All_Given,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.All_Given)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Running, Chart.All_Given)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1247,13 +1334,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Trickling,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Trickling)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Infusing, Chart.Trickling)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1272,6 +1358,7 @@ is
             = Chart.Moved (Active_Top'Old, Chart.Nowhere, Chart.Alarm)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1284,13 +1371,12 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Sounding,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Sounding)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Sounding)
           and then Self.Timers = Self.Timers'Old
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1305,15 +1391,14 @@ is
       with
         Post =>
           Self.Place
-          = (Top => Infusion_States.Silent,
-             In_Sensor => Self.Place'Old.In_Sensor,
-             In_Motor => Self.Place'Old.In_Motor)
+          = (Self.Place'Old with delta Top => Infusion_States.Silent)
           and then Active_Top
             = Chart.Moved (Active_Top'Old, Chart.Alarm, Chart.Silent)
           and then Self.Timers (3) = Ravenchart.Timers.Started (600)
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Past = Self.Past'Old
+          and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
           and then Self.Lost = Self.Lost'Old
@@ -1332,34 +1417,15 @@ is
           and then In_Source (Chosen, Self.Place)
           and then Self.Past = Past
           and then Self.Deferred = Kept
-          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-          and then Active_Top = Chart.Innermost_Top (Self.Place),
+          and then Is_Agreed,
         Post =>
           Self.Started
           and then Self.Place
             = Target (Chosen, Self.Place'Old, Self.Past'Old)
-          and then Self.Timers (1)
-            = Timer_After
-                (1,
-                 Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Self.Place,
-                 Self.Timers'Old (1))
-          and then Self.Timers (2)
-            = Timer_After
-                (2,
-                 Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Self.Place,
-                 Self.Timers'Old (2))
-          and then Self.Timers (3)
-            = Timer_After
-                (3,
-                 Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Self.Place,
-                 Self.Timers'Old (3))
+          and then Is_Timed
+              (Domain_Of (Chosen),
+               Self.Place'Old,
+               Self.Timers'Old)
           and then (if Self.Started'Old
                 then Self.Past
                    = Remembered
@@ -1367,6 +1433,12 @@ is
                         Self.Place'Old,
                         Self.Past'Old)
              else Self.Past = Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred'Old),
+                 Self.Freed'Old)
           and then (if Chosen
                 in Defer_New_Portion_In_Loading
                   | Defer_New_Portion_In_Filling
@@ -1382,9 +1454,7 @@ is
                         or (Deferrals.Count (Self.Deferred'Old) = 4))
              else Self.Deferred = Self.Deferred'Old
                 and then Self.Lost = Self.Lost'Old)
-          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-          and then Active_Top = Chart.Innermost_Top (Self.Place)
+          and then Is_Agreed
       is
       begin
          case Chosen is
@@ -1582,34 +1652,15 @@ is
           and then In_Source (Chosen, Self.Place)
           and then Self.Past = Past
           and then Self.Deferred = Kept
-          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-          and then Active_Top = Chart.Innermost_Top (Self.Place),
+          and then Is_Agreed,
         Post =>
           Self.Started
           and then Self.Place
             = Target (Chosen, Self.Place'Old, Self.Past'Old)
-          and then Self.Timers (1)
-            = Timer_After
-                (1,
-                 Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Self.Place,
-                 Self.Timers'Old (1))
-          and then Self.Timers (2)
-            = Timer_After
-                (2,
-                 Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Self.Place,
-                 Self.Timers'Old (2))
-          and then Self.Timers (3)
-            = Timer_After
-                (3,
-                 Domain_Of (Chosen),
-                 Self.Place'Old,
-                 Self.Place,
-                 Self.Timers'Old (3))
+          and then Is_Timed
+              (Domain_Of (Chosen),
+               Self.Place'Old,
+               Self.Timers'Old)
           and then (if Self.Started'Old
                 then Self.Past
                    = Remembered
@@ -1617,6 +1668,12 @@ is
                         Self.Place'Old,
                         Self.Past'Old)
              else Self.Past = Self.Past'Old)
+          and then Self.Freed
+            = Freed_After
+                (Domain_Of (Chosen),
+                 Self.Place'Old,
+                 Deferrals.Count (Self.Deferred'Old),
+                 Self.Freed'Old)
           and then (if Chosen
                 in Defer_New_Portion_In_Loading
                   | Defer_New_Portion_In_Filling
@@ -1632,9 +1689,7 @@ is
                         or (Deferrals.Count (Self.Deferred'Old) = 4))
              else Self.Deferred = Self.Deferred'Old
                 and then Self.Lost = Self.Lost'Old)
-          and then Active_Motor = Chart.Innermost_Motor (Self.Place)
-          and then Active_Sensor = Chart.Innermost_Sensor (Self.Place)
-          and then Active_Top = Chart.Innermost_Top (Self.Place)
+          and then Is_Agreed
       is
       begin
          case Chosen is

@@ -2,6 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+pragma Ada_2022;
+pragma Warnings (Off, "*array aggregate using*");
+
 with Ravenchart.Timers;
 with Ravenchart.Event_Lists;
 
@@ -120,6 +123,13 @@ is
 
    use type Deferrals.List;
 
+   --  Of each event those among the first so many were kept when an exit
+   --  freed it.
+   type Freed_Events is record
+      New_Portion : Natural := 0;
+      New_Volume  : Natural := 0;
+   end record;
+
    type Firing_Array is array (1 .. 9) of Selection;
 
    --  What one step has fired, in order; None behind the last.
@@ -148,6 +158,7 @@ is
       Visits_Turning      : Ravenchart.Event_Count := 0;
       Visits_Filling      : Ravenchart.Event_Count := 0;
       Deferred            : Deferrals.List;
+      Freed               : Freed_Events;
       Lost                : Boolean := False;
       Data                : Variables;
    end record;
@@ -324,97 +335,42 @@ is
             In_Sensor => Infusion_States.Listening,
             In_Motor => Infusion_States.Turning),
         when Turned =>
-           (Top => Place.Top,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Infusion_States.Motor_Good),
+           (Place with delta In_Motor => Infusion_States.Motor_Good),
         when Heard =>
-           (Top => Place.Top,
-            In_Sensor => Infusion_States.Sensor_Good,
-            In_Motor => Place.In_Motor),
-        when Loaded =>
-           (Top => Infusion_States.Maintaining,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Change =>
-           (Top => Infusion_States.Maintaining,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+           (Place with delta In_Sensor => Infusion_States.Sensor_Good),
+        when Loaded => (Place with delta Top => Infusion_States.Maintaining),
+        when Change => (Place with delta Top => Infusion_States.Maintaining),
         when Defer_New_Portion_In_Loading => Place,
-        when Filled_Up =>
-           (Top => Infusion_States.Loading,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+        when Filled_Up => (Place with delta Top => Infusion_States.Loading),
         when Beat => Place,
-        when Enough =>
-           (Top => Infusion_States.All_Given,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+        when Enough => (Place with delta Top => Infusion_States.All_Given),
         when Defer_New_Portion_In_Filling => Place,
-        when Finished =>
-           (Top => Infusion_States.Trickling,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Hush =>
-           (Top => Infusion_States.Silent,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Remind =>
-           (Top => Infusion_States.Sounding,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+        when Finished => (Place with delta Top => Infusion_States.Trickling),
+        when Hush => (Place with delta Top => Infusion_States.Silent),
+        when Remind => (Place with delta Top => Infusion_States.Sounding),
         when Restore_Where_It_Was =>
-           (Top => Deep_Infusing (Past),
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+           (Place with delta Top => Deep_Infusing (Past)),
         when Default_Of_Where_It_Was =>
-           (Top => Infusion_States.Filling,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Ready =>
-           (Top => Infusion_States.Programming,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+           (Place with delta Top => Infusion_States.Filling),
+        when Ready => (Place with delta Top => Infusion_States.Programming),
         when Again =>
            (Top => Infusion_States.Self_Test,
             In_Sensor => Infusion_States.Listening,
             In_Motor => Infusion_States.Turning),
         when Order_Portion => Place,
         when Order_Volume => Place,
-        when Start =>
-           (Top => Infusion_States.Filling,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Stop =>
-           (Top => Infusion_States.Programming,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Lost =>
-           (Top => Infusion_States.Sounding,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Trouble =>
-           (Top => Infusion_States.Sounding,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Resume =>
-           (Top => Infusion_States.May_Go_On,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+        when Start => (Place with delta Top => Infusion_States.Filling),
+        when Stop => (Place with delta Top => Infusion_States.Programming),
+        when Lost => (Place with delta Top => Infusion_States.Sounding),
+        when Trouble => (Place with delta Top => Infusion_States.Sounding),
+        when Resume => (Place with delta Top => Infusion_States.May_Go_On),
         when Give_Up =>
-           (Top => Infusion_States.Programming,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
+           (Place with delta Top => Infusion_States.Programming),
         when Defer_New_Portion_In_Self_Test => Place,
         when Defer_New_Volume_In_Self_Test => Place,
         when Defer_New_Portion_In_Alarm => Place,
-        when Go_On =>
-           (Top => Infusion_States.Where_It_Was,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor),
-        when Not_Yet =>
-           (Top => Infusion_States.Sounding,
-            In_Sensor => Place.In_Sensor,
-            In_Motor => Place.In_Motor));
+        when Go_On => (Place with delta Top => Infusion_States.Where_It_Was),
+        when Not_Yet => (Place with delta Top => Infusion_States.Sounding));
    --  The leaves it leads to; those of a composite are its defaults.
 
    --  The innermost region that holds all that a transition leaves and
@@ -527,6 +483,34 @@ is
    --  What histories know then: the leaf that was left, nothing after a
    --  final state.
 
+   function Freed_After
+     (D     : Domain;
+      Place : Infusion_States.Configuration;
+      Count : Natural;
+      Freed : Freed_Events)
+     return Freed_Events is
+     ((New_Portion =>
+         (if (D = Everything and then Place.Top = Infusion_States.Self_Test)
+             or else ((D = Inside_Running
+                 or else D = Inside_Infusing
+                 or else D = Everything)
+                and then Place.Top = Infusion_States.Filling)
+             or else ((D = Inside_Giving
+                 or else D = Inside_Running
+                 or else D = Inside_Infusing
+                 or else D = Everything)
+                and then Place.Top = Infusion_States.Loading)
+             or else (D = Everything
+                and then Place.Top in Infusion_States.Alarm)
+             then Count
+          else Freed.New_Portion),
+       New_Volume =>
+         (if D = Everything and then Place.Top = Infusion_States.Self_Test
+             then Count
+          else Freed.New_Volume)));
+   --  Each exit of a state frees the events that it defers, of those kept
+   --  till then.
+
    function Is_Motor_Selection
      (Chosen : Selection;
       Place  : Infusion_States.Configuration;
@@ -628,17 +612,50 @@ is
         when others => False);
    --  Does an active state defer it?
 
-   function Is_Released
+   function Freed_Up_To (Item : Event; Freed : Freed_Events) return Natural is
+     (case Item.Name is
+        when New_Portion => Freed.New_Portion,
+        when New_Volume => Freed.New_Volume,
+        when others => 0);
+   --  Among how many of the oldest was it kept when a state that defers it
+   --  was exited?
+
+   function Is_Due
      (Kept  : Deferrals.List;
       Place : Infusion_States.Configuration;
+      Freed : Freed_Events;
       I     : Positive)
      return Boolean is
      (I <= Deferrals.Count (Kept)
-      and then not Is_Deferred (Deferrals.Element (Kept, I), Place)
+      and then (not Is_Deferred (Deferrals.Element (Kept, I), Place)
+         or else I <= Freed_Up_To (Deferrals.Element (Kept, I), Freed)));
+   --  Does no active state defer it, or was one exited that does?
+
+   function Is_Released
+     (Kept  : Deferrals.List;
+      Place : Infusion_States.Configuration;
+      Freed : Freed_Events;
+      I     : Positive)
+     return Boolean is
+     (Is_Due (Kept, Place, Freed, I)
       and then (for all J in 1 .. I - 1 =>
-            Is_Deferred (Deferrals.Element (Kept, J), Place)))
+            not Is_Due (Kept, Place, Freed, J)))
    with Ghost;
-   --  Is it the oldest that no active state defers any more?
+   --  Is it the oldest that is due?
+
+   function Freed_Without
+     (I : Positive;
+      Freed : Freed_Events)
+     return Freed_Events is
+     ((New_Portion =>
+         (if I <= Freed.New_Portion
+             then Freed.New_Portion - 1
+          else Freed.New_Portion),
+       New_Volume =>
+         (if I <= Freed.New_Volume
+             then Freed.New_Volume - 1
+          else Freed.New_Volume)));
+   --  What is freed when the event in this place is taken out.
 
    function Is_Deferral (T : Selection) return Boolean is
      (T = Defer_New_Portion_In_Loading
@@ -785,11 +802,16 @@ is
                         Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
                     then Now in Expiry_Of_Again .. Expiry_Of_Remind
                  elsif (for some I in 1 .. 4 =>
-                        Is_Released (Self.Deferred'Old, Self.Place, I))
+                        Is_Released
+                          (Self.Deferred'Old,
+                           Self.Place,
+                           Self.Freed'Old,
+                           I))
                     then (for all I in 1 .. 4 =>
                            (if Is_Released
                                  (Self.Deferred'Old,
                                   Self.Place,
+                                  Self.Freed'Old,
                                   I)
                                then Now
                                   = To_Occurrence
@@ -799,7 +821,9 @@ is
                                   and then Item
                                     = Deferrals.Element
                                         (Self.Deferred'Old,
-                                         I)))
+                                         I)
+                                  and then Self.Freed
+                                    = Freed_Without (I, Self.Freed'Old)))
                  else Now = Conditions));
    --  Its start, a completion, the time-out that is due or a deferred event
    --  that is due again; Conditions when there is none.
