@@ -613,6 +613,8 @@ is
                New_Volume => Deferrals.Count (Self.Deferred))
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -637,6 +639,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -656,6 +660,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -674,6 +680,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -696,6 +704,8 @@ is
                New_Volume => Self.Freed'Old.New_Volume)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -719,6 +729,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -741,6 +753,8 @@ is
                New_Volume => Self.Freed'Old.New_Volume)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -763,6 +777,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -784,6 +800,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -805,6 +823,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -826,6 +846,8 @@ is
                New_Volume => Self.Freed'Old.New_Volume)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -846,6 +868,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -876,6 +900,8 @@ is
                  Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -906,6 +932,8 @@ is
                  Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -940,6 +968,8 @@ is
                  Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -977,6 +1007,8 @@ is
                  Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1013,6 +1045,8 @@ is
                  Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1043,6 +1077,8 @@ is
                  Self.Freed'Old)
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1080,6 +1116,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1111,6 +1149,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1141,6 +1181,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1174,6 +1216,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1201,6 +1245,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1220,6 +1266,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1239,6 +1287,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1262,6 +1312,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1281,6 +1333,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1302,6 +1356,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1322,6 +1378,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1342,6 +1400,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1361,6 +1421,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1379,6 +1441,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin
@@ -1401,6 +1465,8 @@ is
           and then Self.Freed = Self.Freed'Old
           and then Self.Started = Self.Started'Old
           and then (if Self.Deferred'Old = Kept then Self.Deferred = Kept)
+          and then Deferrals.Count (Self.Deferred)
+            = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
       is
       begin

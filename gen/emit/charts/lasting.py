@@ -408,4 +408,5 @@ class Lasting:
         #  by way of one constant: for a prover the equality of lists is no simple thing
         was, remains = (equal(Ref(f"Self.Deferred{n}"), Ref("Kept")) for n in ("'Old", ""))
         lost = equal(Ref("Self.Lost"), Ref("Self.Lost'Old"))
-        return [started, IfExpr(((was, remains),), None), lost]
+        length = equal(COUNT, call("Deferrals.Count", Ref("Self.Deferred'Old")))
+        return [started, IfExpr(((was, remains),), None), length, lost]
