@@ -59,6 +59,7 @@ mutate: setup
 
 docs: setup
 	@$(PYTHON) -P -m gen.reference
+	@$(PYTHON) -P -m tests.support.faults
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 

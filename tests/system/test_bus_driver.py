@@ -18,6 +18,7 @@ from tests.support.bus_server import BusServer
 from tests.support.can_bus import started
 from tests.support.can_frames import FD_LENGTHS, WAIT, taken
 from tests.support.can_node import JOINED, node
+from tests.support.faults import shows
 
 MOST_OPEN = 8
 DEPTH = 1000
@@ -151,6 +152,11 @@ def test_the_filter_refuses_what_it_does_not_accept(echo: Path) -> None:
         assert a.wait(lambda now: now.sent == 1).received == 1
 
 
+@shows(
+    "the bus server is killed",
+    found_by="the driver `bus`",
+    reaction="state stopped, what is open is counted as lost; it joins the next server",
+)
 def test_a_server_that_is_killed_and_one_that_comes_in_its_place(echo: Path) -> None:
     with running("port=0") as (server, channel), node(echo, 0, channel) as a:
         a.wait_for("ERROR_ACTIVE")
@@ -224,6 +230,11 @@ def test_a_node_that_recovers_on_request_is_bus_off_until_then(echo: Path) -> No
         assert now.state == "ERROR_ACTIVE" and now.off == now.back
 
 
+@shows(
+    "bus-off, with recovery on request only",
+    found_by="the driver",
+    reaction="the node stays off the bus until it is asked",
+)
 def test_a_node_that_nobody_asks_to_recover_stays_bus_off(echo: Path) -> None:
     with (
         started(*HELD) as channel,
@@ -237,6 +248,11 @@ def test_a_node_that_nobody_asks_to_recover_stays_bus_off(echo: Path) -> None:
         assert (a.now.state, a.now.off, a.now.back) == ("BUS_OFF", 1, 0)
 
 
+@shows(
+    "a full transmit queue",
+    found_by="the driver",
+    reaction="the youngest frames are rejected and counted; none is out of order",
+)
 def test_a_full_queue_rejects(echo: Path) -> None:
     with started("bitrate=125000") as channel, node(echo, 0, channel) as a:
         a.wait_for("ERROR_ACTIVE")
@@ -258,6 +274,11 @@ GARBAGE = {
 }
 
 
+@shows(
+    "garbage in place of frames from the bus server",
+    found_by="the driver `bus`",
+    reaction="the connection is left and tried again",
+)
 @pytest.mark.parametrize("first", GARBAGE.values(), ids=GARBAGE.keys())
 def test_a_server_that_says_garbage_is_left_and_tried_again(echo: Path, first: bytes) -> None:
     server = BusServer(first=first)

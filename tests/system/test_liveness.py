@@ -21,6 +21,7 @@ from ravenchart import run, steps
 from ravenchart.__main__ import main
 from ravenchart.demo.result import RunResult
 from ravenchart.toolchain import ROOT
+from tests.support.faults import shows
 
 SECONDS = 2.0
 
@@ -164,6 +165,12 @@ DEATHS = (
 )
 
 
+@shows(
+    "a task ends by an exception or a false assertion",
+    found_by="the fallback handler of task termination",
+    reaction="shutdown of the model, report, exit status 1; the verdict names task and reason",
+    within="1 s, half of the run",
+)
 @pytest.mark.parametrize(("fault", "mode", "reason"), DEATHS)
 def test_a_task_that_dies_ends_the_controller_with_its_name_and_its_reason(
     breaking: Breaking, fault: str, mode: str, reason: str
@@ -178,6 +185,12 @@ def test_a_task_that_dies_ends_the_controller_with_its_name_and_its_reason(
     assert found.seen.end < SECONDS * 1e9 / 2
 
 
+@shows(
+    "an endless loop in a user body",
+    found_by="liveness supervision",
+    reaction="`Silence` once, the events of `on_silence`, no more feeds of the watchdog, exit status 1",
+    within="deadline + margin + one period of the supervision; 0.5 s more for a busy host",
+)
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_an_endless_loop_is_found_once_and_answered_by_the_chart(
     breaking: Breaking, mode: str
@@ -202,6 +215,11 @@ def test_an_endless_loop_is_found_once_and_answered_by_the_chart(
     assert 0 < found.fed <= faults[0].time // 10_000_000
 
 
+@shows(
+    "a task that sleeps for ever, in a node without `supervision`",
+    found_by="the verdict of a run: releases against elapsed time",
+    reaction="the run fails",
+)
 def test_a_run_without_supervision_sees_that_releases_are_missing(breaking: Breaking) -> None:
     found = breaking("sleep", "checks", supervised=False)
     assert found.result.ended.exit_code == 0
@@ -226,6 +244,11 @@ def test_the_command_fails_and_its_last_lines_have_the_reason(
     assert any("verdict: FAIL" in line and "ASSERTION_ERROR" in line for line in last)
 
 
+@shows(
+    "a stack overflow",
+    found_by="the operating system: SIGSEGV",
+    reaction="the process ends at once, without shutdown; the verdict says why",
+)
 def test_a_stack_overflow_ends_the_controller_and_the_verdict_says_so(breaking: Breaking) -> None:
     found = breaking("overflow", "release")
     assert found.result.ended.exit_code < 0
@@ -282,6 +305,12 @@ def _hit(mode: str, place: int, folder: Path) -> Hit:
     return Hit(process.returncode, reasons, trace.read_text())
 
 
+@shows(
+    "an exception in the task of the probe, the supervisor, a driver or a processor",
+    found_by="the fallback handler of task termination",
+    reaction="shutdown of the model, its event in the chart, exit status 1",
+    within="5 s",
+)
 @pytest.mark.parametrize(("place", "name"), TASKS)
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_whatever_task_is_hit_by_an_exception_the_controller_shuts_down(
@@ -298,6 +327,11 @@ def test_whatever_task_is_hit_by_an_exception_the_controller_shuts_down(
     assert re.search(rf"^T \d+ Raised {shutdown} ", found.trace, re.M)
 
 
+@shows(
+    "an exception in the main program",
+    found_by="the action for unhandled exceptions",
+    reaction="exit status 1, with the reason",
+)
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_an_exception_in_the_main_program_ends_the_process(tmp_path: Path, mode: str) -> None:
     found = _hit(mode, -1, tmp_path)
@@ -306,6 +340,11 @@ def test_an_exception_in_the_main_program_ends_the_process(tmp_path: Path, mode:
     assert reason.startswith("error: the main program has ended by CONSTRAINT_ERROR: ")
 
 
+@shows(
+    "a sporadic task hangs with a frame in its hands",
+    found_by="liveness supervision",
+    reaction="`Silence` once, the chart ends the mission, the run fails",
+)
 def test_a_sporadic_processor_that_hangs_is_found_and_the_mission_ends(
     copy_of: Callable[[str], Path], tmp_path: Path
 ) -> None:
@@ -338,6 +377,11 @@ def test_a_sporadic_processor_that_hangs_is_found_and_the_mission_ends(
     assert "Shut_Down" in seen.states_visited()["coordinator.Mission"]
 
 
+@shows(
+    "a false assertion in a task of the surgical robot",
+    found_by="the fallback handler of task termination",
+    reaction="exit status 1; the verdict names file and line",
+)
 def test_a_false_assertion_in_the_servo_of_the_surgical_robot_fails_the_run(
     copy_of: Callable[[str], Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -354,6 +398,11 @@ def test_a_false_assertion_in_the_servo_of_the_surgical_robot_fails_the_run(
     assert "ASSERTION_ERROR: surgical_robot-servo-activities.adb" in said
 
 
+@shows(
+    "a task of one of two nodes ends by an exception",
+    found_by="the fallback handler of task termination",
+    reaction="the run of both fails",
+)
 def test_of_two_nodes_the_one_whose_task_dies_fails_the_run_of_both(
     copy_of: Callable[[str], Path], tmp_path: Path
 ) -> None:

@@ -14,6 +14,7 @@ import pytest
 from ravenchart import bus
 from ravenchart.run import controller
 from ravenchart.steps import check, programs_of, write_program
+from tests.support.faults import shows
 from tests.support.processes import LAUNCHER, PYTHON, ROOT, Marked
 
 TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
@@ -41,6 +42,11 @@ def started(*words: str | Path) -> Iterator[Marked]:
         one.process.communicate()
 
 
+@shows(
+    "`run` is ended by TERM or KILL",
+    found_by="a guard process",
+    reaction="controllers and bus server are ended",
+)
 @pytest.mark.parametrize(
     ("number", "status"),
     [(signal.SIGKILL, -9), (signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGHUP, 129)],

@@ -14,6 +14,7 @@ import pytest
 from ravenchart import steps
 from ravenchart.demo.process import ControllerProcess
 from ravenchart.run import run_controller
+from tests.support.faults import shows
 
 HERE = Path("examples/cartesian_robot")
 
@@ -48,6 +49,12 @@ def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
     assert seen.faults["Queue_Overflow"] == 0
 
 
+@shows(
+    "the bench disappears in mid-travel",
+    found_by="stale input of each joint",
+    reaction="every joint and the coordinator are in their safe states; clean exit",
+    within="200 ms from the last arrival",
+)
 def test_a_bench_that_disappears_leads_to_the_safe_state_and_a_clean_exit(
     robot: tuple[steps.Checked, Path], tmp_path: Path
 ) -> None:

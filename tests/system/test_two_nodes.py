@@ -14,6 +14,7 @@ from rich.console import Console
 from ravenchart import simulate, steps
 from ravenchart.run import RunRequest, controller, run_model
 from ravenchart.toolchain import ROOT
+from tests.support.faults import shows
 from tests.support.two_nodes import by_chart
 
 EXAMPLE = ROOT / "examples" / "two_nodes"
@@ -87,6 +88,12 @@ def noted(checked: steps.Checked, to: Path, node: str, kind: str, element: str) 
     ]
 
 
+@shows(
+    "the bus is cut between two nodes",
+    found_by="the state of the CAN controller, read by `watch`; stale input",
+    reaction="`on_error_passive`; the servo is in its safe state, and follows when the bus is whole",
+    within="100 ms from silence to the safe state",
+)
 def test_who_is_alone_is_error_passive_and_never_bus_off(
     checked: steps.Checked, tmp_path: Path
 ) -> None:
@@ -97,6 +104,12 @@ def test_who_is_alone_is_error_passive_and_never_bus_off(
     assert faults(tmp_path, "drive") == (0, 0)
 
 
+@shows(
+    "the bus is held dominant",
+    found_by="the state of the CAN controller, read by `watch`",
+    reaction="`on_error_passive` on both nodes; the safe state, and back",
+    within="50 ms from silence to the safe state",
+)
 def test_a_bus_that_is_held_dominant_makes_both_error_passive(
     checked: steps.Checked, tmp_path: Path
 ) -> None:
@@ -106,6 +119,12 @@ def test_a_bus_that_is_held_dominant_makes_both_error_passive(
     assert faults(tmp_path, "panel")[1] == 0
 
 
+@shows(
+    "the bus is held recessive",
+    found_by="the state of the CAN controller, read by `watch`",
+    reaction="`on_bus_off` on both nodes, recovery after the given delay; the safe state, and back",
+    within="70 ms from silence to the safe state; the event within 5 ms of the fault",
+)
 def test_a_bus_that_is_held_recessive_makes_both_bus_off_again_and_again(
     checked: steps.Checked, tmp_path: Path
 ) -> None:
@@ -122,6 +141,12 @@ def test_a_bus_that_is_held_recessive_makes_both_bus_off_again_and_again(
         assert all(any(0 <= e - f < 5_000_000 for e in events) for f in found)
 
 
+@shows(
+    "the bus is held recessive, and the chart has to request recovery",
+    found_by="the state of the CAN controller, read by `watch`",
+    reaction="both nodes recover when the charts request it, and no oftener",
+    within="200 ms between requests",
+)
 def test_charts_that_request_recovery_bring_both_nodes_back(tmp_path: Path) -> None:
     checked = copied(tmp_path / "asked", change=by_chart)
     out = tmp_path / "out"

@@ -12,6 +12,7 @@ from gen.terms import Ns
 from hw_can.bench.scenario import Scenario, ScenarioError, parse_scenario
 from ravenchart.demo import expected
 from ravenchart.demo.process import Ended
+from tests.support.faults import shows
 
 ENDED = Ended(0, killed=False, real_time=True, warnings=())
 HEAD = "scenario: S\nsteps: [{wait: 1 s}]\n"
@@ -37,6 +38,11 @@ def judged(scenario: Scenario, shown: Observation) -> list[str]:
 LOST = {"counts": {"bus.lost_out": 4, "bus.sent": 100, "bus.received": 3, "trace": 0}}
 
 
+@shows(
+    "frames are lost, and the scenario does not expect it",
+    found_by="the verdict of a run",
+    reaction="the run fails, with the count",
+)
 def test_a_loss_that_nobody_expects_fails_the_run() -> None:
     nothing = parse_scenario(HEAD)
     assert judged(nothing, seen(**LOST)) == [
@@ -73,6 +79,11 @@ def test_what_must_come_and_does_not_fails_the_run() -> None:
     assert judged(scenario, seen()) == ["fault: Stale_Input, 0 times; the scenario expects 2"]
 
 
+@shows(
+    "a missed deadline or a full queue of events, not expected",
+    found_by="the verdict of a run",
+    reaction="the run fails, with the count",
+)
 def test_faults_and_missed_deadlines_are_expected_by_name() -> None:
     shown = seen(faults={"DEADLINE_MISS": 2, "QUEUE_OVERFLOW": 1}, missed={"control": 2})
     assert judged(parse_scenario(HEAD), shown) == [
@@ -91,6 +102,11 @@ def test_faults_and_missed_deadlines_are_expected_by_name() -> None:
     ]
 
 
+@shows(
+    "a time above its bound by more than the host withheld",
+    found_by="the probe of the node",
+    reaction="the run fails; by no more, `PASS (timing not judged: ...)`",
+)
 def test_only_what_the_host_withheld_is_excused() -> None:
     shown = seen(missed={"control": 2})
     late = Comparison("control", 100, 2, observed=900, bound=500, withheld=400)
