@@ -188,7 +188,7 @@ def test_a_task_that_dies_ends_the_controller_with_its_name_and_its_reason(
 @shows(
     "an endless loop in a user body",
     found_by="liveness supervision",
-    reaction="`Silence` once, the events of `on_silence`, no more feeds of the watchdog, exit status 1",
+    reaction="`Silence` once, events of `on_silence`, no feeding of the watchdog, exit status 1",
     within="deadline + margin + one period of the supervision; 0.5 s more for a busy host",
 )
 @pytest.mark.parametrize("mode", ["checks", "release"])

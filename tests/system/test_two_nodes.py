@@ -91,7 +91,7 @@ def noted(checked: steps.Checked, to: Path, node: str, kind: str, element: str) 
 @shows(
     "the bus is cut between two nodes",
     found_by="the state of the CAN controller, read by `watch`; stale input",
-    reaction="`on_error_passive`; the servo is in its safe state, and follows when the bus is whole",
+    reaction="`on_error_passive`; the servo is safe, and follows when the bus is whole",
     within="100 ms from silence to the safe state",
 )
 def test_who_is_alone_is_error_passive_and_never_bus_off(
