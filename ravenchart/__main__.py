@@ -209,11 +209,15 @@ def _checked(
 
 def _check(options: argparse.Namespace) -> int:
     system = _checked(options, finish=True).system
-    print(
-        f"{system.name}: {len(system.instances)} instances on {len(system.processors)} "
-        f"processors, {len(system.messages)} messages; every deadline is met"
-    )
+    instances = _several(len(system.instances), "instance")
+    processors = _several(len(system.processors), "processor")
+    messages = _several(len(system.messages), "message")
+    print(f"{system.name}: {instances} on {processors}, {messages}; every deadline is met")
     return OK
+
+
+def _several(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def _generate(options: argparse.Namespace) -> int:
@@ -222,7 +226,7 @@ def _generate(options: argparse.Namespace) -> int:
 
 
 def _written(written: steps.Written) -> None:
-    print(f"{written.folder}: {written.files} files, {written.changed} changed")
+    print(f"{written.folder}: {_several(written.files, 'file')}, {written.changed} changed")
     for name in written.edited:
         print(
             f"warning: {written.folder / name} was edited by hand and is generated again; "
