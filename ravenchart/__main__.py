@@ -195,6 +195,14 @@ def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     sub = commands.add_parser("import-dbc", help=help_text, description=help_text)
     sub.add_argument("database", type=Path, metavar="FILE", help="the database, a DBC file")
     sub.add_argument("--node", required=True, help="the node of the database that the model is of")
+    sub.add_argument(
+        "--period", metavar="TIME",
+        help="least time between frames of a message whose database has no cycle time: `100 ms`",
+    )  # fmt: skip
+    sub.add_argument(
+        "--periods", type=Path, metavar="FILE",
+        help="the same for single messages, in YAML: `message: 20 ms`",
+    )  # fmt: skip
     sub.set_defaults(command=_import_dbc)
 
 
@@ -369,7 +377,8 @@ def _bus(options: argparse.Namespace) -> int:
 
 
 def _import_dbc(options: argparse.Namespace) -> int:
-    found = import_dbc.imported(options.database, options.node)
+    given = import_dbc.periods(options.period, options.periods)
+    found = import_dbc.imported(options.database, options.node, given)
     print(found.text, end="")
     for problem in found.problems:
         print(problem, file=sys.stderr)

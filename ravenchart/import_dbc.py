@@ -13,12 +13,14 @@ from decimal import Decimal
 from pathlib import Path
 
 import cantools
+import yaml
 from cantools.database import Database
 from cantools.database.can import Message, Signal
 from cantools.database.errors import Error as DatabaseFault
 
 from gen.layouts import RAW_LIMIT, SIGNED_BITS
 from gen.names import meant, problem_of
+from gen.quantities import duration
 
 from .steps import Refused
 
@@ -38,8 +40,46 @@ class Imported:
     problems: list[str] = field(default_factory=list)
 
 
-def imported(path: Path, node: str) -> Imported:
-    """The messages of a database as seen from one of its nodes. Refused when it cannot be read."""
+@dataclass(frozen=True, slots=True)
+class Periods:
+    """Least times between frames that a database does not say, as models write durations."""
+
+    default: str | None = None
+    """Of each message without a cycle time and without a row."""
+    rows: Mapping[str, str] = field(default_factory=dict)
+    """Of messages by name; they stand before the cycle time of the database."""
+
+    def of(self, message: Message) -> str | None:
+        """That of a message; None where nobody says."""
+        return self.rows.get(message.name) or _cycle(message) or self.default
+
+
+def periods(default: str | None, path: Path | None) -> Periods:
+    """What the call says of periods: ``path`` is YAML, ``message: 20 ms``. Refused when wrong."""
+    rows: object = {}
+    if path is not None:
+        try:
+            rows = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+        except (OSError, UnicodeDecodeError, yaml.YAMLError) as fault:
+            raise Refused(f"{path}: error: {fault}") from None
+    if not isinstance(rows, dict):
+        raise Refused(f"{path}: error: expected rows `message: 20 ms`")
+    found = Periods(default, {str(name): str(text) for name, text in rows.items()})
+    given = [("--period", default)] if default is not None else []
+    for place, text in (*given, *((f"{path}: {name}", one) for name, one in found.rows.items())):
+        time = duration(text)
+        if time is None or time <= 0:
+            raise Refused(f"{place}: error: `{text}` is no duration such as `20 ms`")
+    return found
+
+
+def imported(path: Path, node: str, given: Periods | None = None) -> Imported:
+    """The messages of a database as seen from one of its nodes. Refused when it cannot be read.
+
+    A signal that models have no words for is left out of what the node receives; what it
+    sends is left out as a whole, for its bytes would be others.
+    """
+    given = given or Periods()
     try:
         database = cantools.database.load_file(path, database_format="dbc", strict=True)
     except (OSError, ValueError, DatabaseFault) as fault:
@@ -49,13 +89,19 @@ def imported(path: Path, node: str) -> Imported:
     if node not in names:
         hint = meant(node, names)
         raise Refused(f"{path}: error: no node is called {node}" + (f": {hint}" if hint else ""))
-    writer = _Writer(node)
+    unknown = [name for name in given.rows if name not in {m.name for m in database.messages}]
+    if unknown:
+        hint = meant(unknown[0], [m.name for m in database.messages])
+        told = f"no message is called {unknown[0]}" + (f": {hint}" if hint else "")
+        raise Refused(f"{path}: error: {told}")
+    writer = _Writer(node, given)
     problems: list[str] = []
     for message in database.messages:
         try:
             writer.add(message)
         except Unsayable as problem:
             problems.append(f"{path}: error: {message.name} is left out: {problem}")
+    problems += [f"{path}: error: {left}" for left in writer.left_out]
     return Imported(writer.text(path.name), problems)
 
 
@@ -64,11 +110,14 @@ class _Writer:
     """The sections of the model, line by line."""
 
     node: str
+    periods: Periods
     types: dict[str, str] = field(default_factory=dict)
     """Definition to name, in the order in which they are needed."""
     records: list[str] = field(default_factory=list)
     ports: list[str] = field(default_factory=list)
     messages: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    """Signals that are not in the model, each with its message and the reason."""
 
     @property
     def component(self) -> str:
@@ -100,16 +149,18 @@ class _Writer:
         lines += ["    extended: true"] if message.is_extended_frame else []
         lines += ["    format: fd"] if message.is_fd else []
         lines += [f"    bytes: {message.length}"]
-        period = _period(message)
+        period = self.periods.of(message)
         sends, takes = self.node in message.senders, self.node in message.receivers
         if not sends and period is None:
-            raise Unsayable("it has no cycle time, which a message from outside needs")
+            raise Unsayable(
+                "it has no cycle time, which a message from outside needs; `--period` gives one"
+            )
         if not sends and not takes:
             self.messages += [*lines, f"    period: {period}"]
             return
         if not message.signals:
             raise Unsayable("it has no signals, and a port has a value")
-        signals, known = self._signals(message)
+        signals, known = self._signals(message, whole=sends)
         self.types |= known
         record = f"{message.name}_Data"
         fields = ", ".join(f"{s.name}: {name}" for s, (name, _) in signals.items())
@@ -125,18 +176,34 @@ class _Writer:
         lines += [f"      {s.name}: {{{keys}}}" for s, (_, keys) in signals.items()]
         self.messages += lines
 
-    def _signals(self, message: Message) -> tuple[dict[Signal, tuple[str, str]], dict[str, str]]:
-        """The type and the layout of each signal; then all types, with those added."""
+    def _signals(
+        self, message: Message, *, whole: bool
+    ) -> tuple[dict[Signal, tuple[str, str]], dict[str, str]]:
+        """The type and the layout of each signal; then all types, with those added.
+
+        Unless ``whole`` a signal may be missing, but not the multiplexor.
+        """
         known = dict(self.types)
         found: dict[Signal, tuple[str, str]] = {}
+        left_out: list[str] = []
         for signal in message.signals:
-            _named("signal", signal.name)
-            definition, keys = _scalar(signal)
+            try:
+                _named("signal", signal.name)
+                definition, keys = _scalar(signal)
+                pages = _pages(message, signal)
+            except Unsayable as problem:
+                if whole or signal.is_multiplexer:
+                    raise
+                left_out.append(f"{message.name}.{signal.name} is left out: {problem}")
+                continue
             if definition is None:
                 name = "Boolean"
             else:
                 name = known.setdefault(definition, f"{message.name}_{signal.name}")
-            found[signal] = (name, ", ".join([*keys, *_pages(message, signal)]))
+            found[signal] = (name, ", ".join([*keys, *pages]))
+        if not found:
+            raise Unsayable("no signal of it has a place in a model")
+        self.left_out += left_out
         return found, known
 
 
@@ -146,7 +213,7 @@ def _named(kind: str, name: str) -> None:
         raise Unsayable(f"the {kind} {name} has a name that a model cannot have: {problem[1]}")
 
 
-def _period(message: Message) -> str | None:
+def _cycle(message: Message) -> str | None:
     return f"{message.cycle_time} ms" if message.cycle_time else None
 
 

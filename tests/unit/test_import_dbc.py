@@ -152,6 +152,72 @@ def test_what_a_model_cannot_say_is_told_and_left_out(
     assert list(yaml.safe_load(out.out)["messages"]) == ["fine"]
 
 
+SILENT = 'BO_ 1 odd: 8 other\n SG_ x : 0|8@1+ (1,0) [0|9] "" ecu'
+
+
+@pytest.mark.parametrize(
+    ("rows", "period"),
+    [(None, "100 ms"), ("odd: 40 ms\n", "40 ms"), ("fine: 20 ms\n", "100 ms")],
+)
+def test_a_message_without_a_cycle_time_gets_the_period_that_is_given(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: str | None, period: str
+) -> None:
+    told = ["import-dbc", str(database(tmp_path, SILENT)), "--node", "ecu", "--period", "100 ms"]
+    if rows is not None:
+        (tmp_path / "periods.yaml").write_text(rows)
+        told += ["--periods", str(tmp_path / "periods.yaml")]
+    assert main(told) == OK
+    text = capsys.readouterr().out
+    messages = yaml.safe_load(text)["messages"]
+    assert messages["odd"]["period"] == period
+    assert messages["fine"]["period"] == ("20 ms" if rows and "fine" in rows else "10 ms")
+    (tmp_path / "model.yaml").write_text(whole(text, "ecu"))
+    assert {m.name for m in system_of(tmp_path / "model.yaml").messages} == {"odd", "fine"}
+
+
+@pytest.mark.parametrize(
+    ("default", "rows", "told"),
+    [
+        ("fast", "", "--period: error: `fast` is no duration such as `20 ms`"),
+        ("0 ms", "", "--period: error: `0 ms` is no duration"),
+        (None, "odd: 7", "odd: error: `7` is no duration"),
+        (None, "- odd", "expected rows `message: 20 ms`"),
+        (None, "od: 20 ms", "no message is called od: did you mean `odd`"),
+        (None, "odd: [", "error: while parsing"),
+    ],
+)
+def test_periods_that_are_wrong_are_refused(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    default: str | None,
+    rows: str,
+    told: str,
+) -> None:
+    (tmp_path / "periods.yaml").write_text(rows)
+    call = ["import-dbc", str(database(tmp_path, SILENT)), "--node", "ecu"]
+    call += ["--periods", str(tmp_path / "periods.yaml")]
+    call += ["--period", default] if default is not None else []
+    assert main(call) == WRONG
+    out = capsys.readouterr()
+    assert told in out.err
+    assert out.out == ""
+
+
+def test_of_a_received_message_only_the_signal_without_words_is_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = f'{SILENT}\n SG_ y : 8|8@1+ (-1,0) [0|0] "" ecu'
+    path = database(tmp_path, text)
+    call = ["import-dbc", str(path), "--node", "ecu", "--period", "1 s"]
+    assert main(call) == WRONG
+    out = capsys.readouterr()
+    assert out.err == f"{path}: error: odd.y is left out: the signal y has the scale -1\n"
+    message = yaml.safe_load(out.out)["messages"]["odd"]
+    assert (list(message["signals"]), message["bytes"]) == (["x"], 8)
+    (tmp_path / "model.yaml").write_text(whole(out.out, "ecu"))
+    assert "odd" in {m.name for m in system_of(tmp_path / "model.yaml").messages}
+
+
 def test_names_of_single_values_are_told(tmp_path: Path) -> None:
     text = 'BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (1,0) [0|250] "" other\nVAL_ 1 x 255 "Absent" ;'
     (problem,) = imported(database(tmp_path, text), "ecu").problems
