@@ -192,9 +192,15 @@ def _add_bus(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
 
 def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     help_text = "print the messages of a CAN database as types, ports and messages of a model"
-    sub = commands.add_parser("import-dbc", help=help_text, description=help_text)
-    sub.add_argument("database", type=Path, metavar="FILE", help="the database, a DBC file")
-    sub.add_argument("--node", required=True, help="the node of the database that the model is of")
+    sub = commands.add_parser(
+        "import", aliases=["import-dbc"], help=help_text, description=help_text
+    )
+    sub.add_argument(
+        "database", type=Path, metavar="FILE", help="the database: DBC, KCD, SYM or ARXML"
+    )
+    seen = sub.add_mutually_exclusive_group(required=True)
+    seen.add_argument("--node", help="the node of the database that the model is of")
+    seen.add_argument("--all", action="store_true", help="a node that receives every message")
     sub.add_argument(
         "--period", metavar="TIME",
         help="least time between frames of a message whose database has no cycle time: `100 ms`",

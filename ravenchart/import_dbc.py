@@ -1,4 +1,4 @@
-"""`ravenchart import-dbc`: the messages of a CAN database as types, ports and messages of a model.
+"""`ravenchart import`: the messages of a CAN database as types, ports and messages of a model.
 
 A value counts the scale of its signal: 0.1 degC is a unit. Whatever has no place in a
 model is said, and the message that has it is left out.
@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from pathlib import Path
+from xml.etree import ElementTree
 
 import cantools
 import yaml
@@ -24,6 +25,10 @@ from gen.quantities import duration
 
 from .steps import Refused
 
+FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
+"""Databases by the ending of their files; a file with another one is read as DBC."""
+MONITOR = "monitor"
+"""The node that receives every message."""
 LONGEST_UNIT = 20
 """Characters of a unit at most."""
 
@@ -73,28 +78,33 @@ def periods(default: str | None, path: Path | None) -> Periods:
     return found
 
 
-def imported(path: Path, node: str, given: Periods | None = None) -> Imported:
+def imported(path: Path, node: str | None, given: Periods | None = None) -> Imported:
     """The messages of a database as seen from one of its nodes. Refused when it cannot be read.
+
+    None: seen by a node that receives all of them.
 
     A signal that models have no words for is left out of what the node receives; what it
     sends is left out as a whole, for its bytes would be others.
     """
     given = given or Periods()
+    ending = path.suffix.lower()
+    form = ending.removeprefix(".") if ending in FORMATS else "dbc"
     try:
-        database = cantools.database.load_file(path, database_format="dbc", strict=True)
-    except (OSError, ValueError, DatabaseFault) as fault:
+        database = cantools.database.load_file(path, database_format=form, strict=True)
+    except (OSError, ValueError, DatabaseFault, ElementTree.ParseError) as fault:
         raise Refused(f"{path}: error: {fault}") from None
-    assert isinstance(database, Database)
+    if not isinstance(database, Database):
+        raise Refused(f"{path}: error: it has diagnostics, and no messages")
     names = [one.name for one in database.nodes]
-    if node not in names:
-        hint = meant(node, names)
+    if node is not None and node not in names:
+        hint = meant(node, names) if names else "it has no nodes: use `--all`"
         raise Refused(f"{path}: error: no node is called {node}" + (f": {hint}" if hint else ""))
     unknown = [name for name in given.rows if name not in {m.name for m in database.messages}]
     if unknown:
         hint = meant(unknown[0], [m.name for m in database.messages])
         told = f"no message is called {unknown[0]}" + (f": {hint}" if hint else "")
         raise Refused(f"{path}: error: {told}")
-    writer = _Writer(node, given)
+    writer = _Writer(node or MONITOR, given, takes_all=node is None)
     problems: list[str] = []
     for message in database.messages:
         try:
@@ -111,6 +121,7 @@ class _Writer:
 
     node: str
     periods: Periods
+    takes_all: bool
     types: dict[str, str] = field(default_factory=dict)
     """Definition to name, in the order in which they are needed."""
     records: list[str] = field(default_factory=list)
@@ -150,7 +161,8 @@ class _Writer:
         lines += ["    format: fd"] if message.is_fd else []
         lines += [f"    bytes: {message.length}"]
         period = self.periods.of(message)
-        sends, takes = self.node in message.senders, self.node in message.receivers
+        sends = not self.takes_all and self.node in message.senders
+        takes = self.takes_all or self.node in message.receivers
         if not sends and period is None:
             raise Unsayable(
                 "it has no cycle time, which a message from outside needs; `--period` gives one"

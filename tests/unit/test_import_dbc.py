@@ -218,6 +218,40 @@ def test_of_a_received_message_only_the_signal_without_words_is_left_out(
     assert "odd" in {m.name for m in system_of(tmp_path / "model.yaml").messages}
 
 
+@pytest.mark.parametrize("form", ["kcd", "sym", "dbc"])
+def test_a_monitor_receives_all_messages_of_any_database(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], form: str
+) -> None:
+    first = cantools.database.load_file(database(tmp_path, SILENT))
+    assert isinstance(first, Database)
+    path = tmp_path / f"line.{form}"
+    path.write_text(getattr(first, f"as_{form}_string")())
+    assert main(["import", str(path), "--all", "--period", "100 ms"]) == OK
+    text = capsys.readouterr().out
+    model = yaml.safe_load(text)
+    assert {m["to"] for m in model["messages"].values()} == {"monitor.odd", "monitor.fine"}
+    (tmp_path / "model.yaml").write_text(whole(text, "monitor"))
+    found = system_of(tmp_path / "model.yaml")
+    fine = next(m for m in found.messages if m.name == "fine")
+    #  -40 degC .. 87.5 degC in counts of 0.5 degC, at bit 0
+    (signal,) = fine.signals
+    assert (signal.start, signal.width, signal.offset, fine.identifier) == (0, 8, -80, 256)
+
+
+def test_a_database_without_nodes_needs_all(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = cantools.database.load_file(database(tmp_path, SILENT))
+    assert isinstance(first, Database)
+    path = tmp_path / "line.sym"
+    path.write_text(first.as_sym_string())
+    assert main(["import", str(path), "--node", "ecu"]) == WRONG
+    assert "no node is called ecu: it has no nodes: use `--all`" in capsys.readouterr().err
+    path.with_suffix(".kcd").write_text("<no")
+    assert main(["import", str(path.with_suffix(".kcd")), "--all"]) == WRONG
+    assert "line.kcd: error: " in capsys.readouterr().err
+
+
 def test_names_of_single_values_are_told(tmp_path: Path) -> None:
     text = 'BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (1,0) [0|250] "" other\nVAL_ 1 x 255 "Absent" ;'
     (problem,) = imported(database(tmp_path, text), "ecu").problems
