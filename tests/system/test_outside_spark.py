@@ -23,9 +23,9 @@ components:
 nodes:
   board: {context_switch: 10 us, critical_section: 5 us}
 instances:
-  sensor: {component: Sensor, node: board}
+  unit: {component: Sensor, node: board}
 processors:
-  sampling: {node: board, stack: 32 KiB, activities: [sensor.read]}
+  sampling: {node: board, stack: 32 KiB, activities: [unit.read]}
 shutdown: {raises: [], grace: 0 ms}
 """
 BODY = """\
@@ -95,7 +95,7 @@ def test_a_body_outside_spark_fails_the_proof_by_name(
 def test_a_list_must_give_reasons_and_cover_something(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    model = _model(tmp_path, BODY.format(mode="\n  with SPARK_Mode", own="", change=""))
+    model = _model(tmp_path, BODY.format(mode="\n  with SPARK_Mode", own="", change=" / 2"))
     assert main(["prove", model]) == OK
     listed = tmp_path / "outside_spark.toml"
     listed.write_text('"Demo.Sensor" = "test T-12"\n')
@@ -109,7 +109,7 @@ def test_a_list_must_give_reasons_and_cover_something(
 def test_results_do_not_depend_on_what_lies_in_the_object_folder(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    model = _model(tmp_path, BODY.format(mode="\n  with SPARK_Mode", own="", change=""))
+    model = _model(tmp_path, BODY.format(mode="\n  with SPARK_Mode", own="", change=" / 2"))
     assert main(["prove", model, "--fresh"]) == OK
     first = capsys.readouterr().out.splitlines()[-1]
     assert main(["build", model]) == OK
