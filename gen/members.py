@@ -17,6 +17,9 @@ from .vocabulary import EVENT, Vocabulary
 TABLE_WORDS = ("ports", "receive")
 """What tables call the port region and a bus's reception."""
 
+RENAMED = ("state", "transition")
+"""Kinds of elements that get another name in Ada where theirs is one of Ada's."""
+
 
 @dataclass(slots=True)
 class Namespace:
@@ -48,7 +51,7 @@ class Namespace:
             what = f"its component {self.component}"
         elif name.lower() == self.system.lower():
             what = f"the system {self.system}"
-        elif name.lower() in HIDING:
+        elif kind not in RENAMED and name.lower() in HIDING:
             what = "a unit, type or value of Ada that the generated program uses"
         elif kind in ("region", "activity") and name.lower() in TABLE_WORDS:
             what = "a row that tables have anyway"

@@ -105,7 +105,8 @@ it, or `event.field` a field of it.
 Names of states, pseudostates and nested regions are all different in one region. A state with
 `states` is composite and has one region; with several `regions` it is orthogonal, and all of them
 are active while it is. A final state or pseudostate is declared among the states, by its `kind`,
-and has no other key.
+and has no other key. A state or transition may have a name that generated code uses itself: there
+its kind is added, so the transition `t` is the literal `T_Transition`.
 
 A transition from a state has one trigger; without any it is taken when the state completes: a leaf
 on entry, a composite when each of its regions is in a final state, a state with a do activity

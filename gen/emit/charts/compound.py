@@ -25,6 +25,7 @@ from ...statechart import (
     Trigger,
 )
 from ...terms import Expression, Flow
+from .own_names import transition_literal
 
 PASSED = (PseudoKind.CHOICE, PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY)
 """Pseudostates that an execution passes through as a leaf."""
@@ -86,6 +87,11 @@ class Firing:
     entries: tuple[Step, ...] = ()
     goal: str | None = None
     """The pseudostate or state it leads to; None for a fork."""
+
+    @property
+    def literal(self) -> str:
+        """Its name in Ada, which is none that the region's package has for itself."""
+        return transition_literal(self.name)
 
 
 @lru_cache(maxsize=4096)

@@ -80,12 +80,12 @@ def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
 def _declared(shape: RegionShape) -> list[Decl]:
     chosen = Param("T", "in", "Transition")
     params = shape.choice_params()
-    lines = tuple((ada_case(f.name), _enabled(shape, f)) for f in shape.firings)
-    sources = tuple((ada_case(f.name), shape.in_sources(f)) for f in shape.firings)
+    lines = tuple((f.literal, _enabled(shape, f)) for f in shape.firings)
+    sources = tuple((f.literal, shape.in_sources(f)) for f in shape.firings)
     if not lines:
         lines = sources = (("None", FALSE),)
     start = shape.configuration(shape.after(shape.start), shape.place)
-    targets = tuple((ada_case(f.name), _target(shape, f)) for f in shape.firings)
+    targets = tuple((f.literal, _target(shape, f)) for f in shape.firings)
     if not targets:
         targets = (("None", start),)
     items: list[Decl] = [
@@ -174,7 +174,7 @@ def _selections(shape: RegionShape, params: tuple[Param, ...]) -> list[Decl]:
         Comment("Each lane's first; none where a lane inside it has one."),
     ]
     for state in shape.left_states:
-        names = [ada_case(f.name) for f in shape.firings if state in shape.compounds.left(f)]
+        names = [f.literal for f in shape.firings if state in shape.compounds.left(f)]
         items += [
             Subprogram(
                 f"Leaves_{ada_case(state)}",

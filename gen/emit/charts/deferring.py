@@ -119,7 +119,7 @@ def declared_deferrals(shape: RegionShape) -> list[Decl]:
         for e in kept_events(shape)
         for of in (Ref(f"Freed.{ada_case(e)}"),)
     )
-    deferrals = [ada_case(f.name) for f in shape.firings if f.kind is Kind.DEFERRAL]
+    deferrals = [f.literal for f in shape.firings if f.kind is Kind.DEFERRAL]
     return [
         Subprogram("Is_Deferred", (item, place), "Boolean", expression=CaseExpr(name, tuple(rows))),
         Comment("Does an active state defer it?"),

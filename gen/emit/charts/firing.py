@@ -41,7 +41,6 @@ from ..ada import (
     equal,
     number,
 )
-from ..naming import ada_case
 from ..terms import certain_sends, emit_flow, flow_names
 from .compound import Effect, Firing, Kind, Place, Step
 from .history import Restoring
@@ -103,7 +102,7 @@ class Moves:
         """Exits, effects and entries of one transition; `Target` says where it leads."""
         shape = self.shape
         start = (Assign("Self.Started", TRUE), *joined(self._steps(shape.start)))
-        rows = [(ada_case(f.name), self._row(f)) for f in shape.firings]
+        rows = [(f.literal, self._row(f)) for f in shape.firings]
         rows = rows or [("None", (NULL,))]
         sources = call("In_Source", Ref("Chosen"), Ref(self.held))
         ready = IfExpr(

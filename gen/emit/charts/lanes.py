@@ -126,7 +126,7 @@ def _starts_with(shape: RegionShape, fired: Param) -> list[Decl]:
     ]
     items: list[Decl] = []
     if shape.passes:
-        names = [ada_case(f.name) for f in shape.firings if is_segment(shape, f)]
+        names = [f.literal for f in shape.firings if is_segment(shape, f)]
         items = [
             Subprogram(
                 "Is_Segment",

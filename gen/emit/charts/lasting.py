@@ -71,7 +71,7 @@ def declared_domains(shape: RegionShape) -> list[Decl]:
     """Domain, Domain_Of, Timer_After and Remembered, as far as the chart needs them."""
     if not has_domains(shape):
         return []
-    rows = tuple((ada_case(f.name), Ref(_domain(shape, f))) for f in shape.firings)
+    rows = tuple((f.literal, Ref(_domain(shape, f))) for f in shape.firings)
     regions = [Place(s.name, r.name) for s in shape.region.states for r in s.regions]
     found = {_domain(shape, f) for f in shape.firings}
     ends = ("Ending",) if "Ending" in found else ()
@@ -352,7 +352,7 @@ class Lasting:
         lost = equal(Ref("Self.Lost"), Chain("or", (Ref("Self.Lost'Old"), full)))
         names: dict[Ref, list[str]] = {}
         for firing in deferrals:
-            names.setdefault(shape.deferred_item(firing), []).append(ada_case(firing.name))
+            names.setdefault(shape.deferred_item(firing), []).append(firing.literal)
         added = tuple(
             (
                 Chain("in", (Ref(chosen), Ref(" | ".join(of)))),

@@ -35,8 +35,8 @@ from ..ada import (
     names_in,
     number,
 )
-from ..naming import ada_case
 from .compound import Place
+from .own_names import node_literal
 from .shape import RegionShape
 
 NODES = "Chart.Node"
@@ -74,7 +74,7 @@ def joined(statements: Sequence[Stmt]) -> tuple[Stmt, ...]:
 
 def node(state: str) -> Ref:
     """A state or pseudostate of the ghost."""
-    return Ref(f"Chart.{ada_case(state)}")
+    return Ref(f"Chart.{node_literal(state)}")
 
 
 class Nodes:
@@ -96,7 +96,7 @@ class Nodes:
         composites = [s.name for s in self.region.states if not shape.is_literal(s.name)]
         named = set(names_in(fire)) if composites else set()
         composites = [name for name in composites if node(name).text in named]
-        names = tuple(ada_case(v) for v in (*literals, *composites))
+        names = tuple(node_literal(v) for v in (*literals, *composites))
         functions: list[Decl] = []
         before = 1
         for lane in shape.lanes:

@@ -28,6 +28,7 @@ from ..ada import (
 )
 from ..naming import ada_case, states_package
 from .compound import Enter, Place, Step, compounds_of
+from .own_names import state_literal
 
 
 class Places:
@@ -106,7 +107,7 @@ class Places:
 
     def literal(self, vertex: str) -> str:
         """A leaf or composite by its expanded name."""
-        return f"{self.states}.{ada_case(vertex)}"
+        return f"{self.states}.{state_literal(vertex)}"
 
     def in_state(self, holder: str, vertex: str, prefix: str = "") -> Expr:
         """Is the configuration that ``holder`` names in a state, or inside it?"""
@@ -137,18 +138,18 @@ class Places:
         """The enumerations, the composites, and the configuration where there are lanes."""
         items: list[Decl] = []
         for lane in reversed(self.lanes):
-            names = tuple(ada_case(n) for n in self.literals(lane))
+            names = tuple(state_literal(n) for n in self.literals(lane))
             items.append(EnumType(self.lane_type(lane), names))
         for state in self.region.states:
             if len(state.regions) == 1:
                 leaves = list(self.literals_in(Place(state.name, state.regions[0].name)))
                 outer = self.parent_type(state.name)
-                bounds = f"{outer} range {ada_case(leaves[0])} .. {ada_case(leaves[-1])}"
-                items.append(PlainType(ada_case(state.name), bounds, subtype=True))
+                bounds = f"{outer} range {state_literal(leaves[0])} .. {state_literal(leaves[-1])}"
+                items.append(PlainType(state_literal(state.name), bounds, subtype=True))
         if not self.single:
             rows = tuple(
                 Component(
-                    self.lane_field(n), self.lane_type(n), Ref(ada_case(self.default_leaf(n)))
+                    self.lane_field(n), self.lane_type(n), Ref(state_literal(self.default_leaf(n)))
                 )
                 for n in reversed(self.lanes)
             )
@@ -161,7 +162,7 @@ class Places:
         parent = self.region.state(state).parent
         if parent is None or parent == lane.owner:
             return self.lane_type(lane)
-        return ada_case(parent)
+        return state_literal(parent)
 
     def default_leaf(self, lane: Lane) -> str:
         """The leaf that a lane starts with by default."""

@@ -33,7 +33,7 @@ TIMED = ("Ravenchart.Timers.Timer", "Ravenchart.Timers.Timer_Array")
 
 def region_types(shape: RegionShape) -> list[Decl]:
     """All types of the package, and the operators that its chart uses."""
-    names = tuple(ada_case(f.name) for f in shape.firings)
+    names = tuple(f.literal for f in shape.firings)
     path = f"{shape.component.name}.{shape.region.name}"
     items: list[Decl] = _use_types(shape)
     items += [
@@ -79,7 +79,7 @@ def _lane_types(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
     fields: list[Field] = []
     for lane in shape.busy_lanes:
-        own = [ada_case(f.name) for f in shape.firings if f.lane == lane]
+        own = [f.literal for f in shape.firings if f.lane == lane]
         name = shape.lane_name(lane)
         items.append(PlainType(f"{name}_Transition", _selection_of(own), subtype=True))
         fields.append(Field(name, "Selection", Ref("None")))

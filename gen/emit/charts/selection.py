@@ -142,7 +142,7 @@ def _in_leaf(shape: RegionShape, lane: Lane, leaf: str) -> Expr:
     """What is selected when this leaf is active."""
     inside = shape.ancestors(leaf)
     branches = [
-        (_condition(shape, f, leaf), Ref(ada_case(f.name)))
+        (_condition(shape, f, leaf), Ref(f.literal))
         for f in shape.firings
         if f.lane == lane and f.sources[0] in inside
     ]
