@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import resource
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
+from ravenchart.large_charts import large_chart
 from tests.support import random_charts, reference_charts
 from tests.support.compiled import complaints
 
@@ -109,3 +111,11 @@ def test_reference_charts_compile(mode: str, tmp_path: Path) -> None:
 def test_random_charts_compile(seeds: Sequence[int], mode: str, tmp_path: Path) -> None:
     models = {f"Random_{seed}": random_charts.model_of([seed]) for seed in seeds}
     assert complaints(models, tmp_path, mode) == ""
+
+
+@pytest.mark.parametrize("mode", ["checks", "release"] if LONG else ["release"])
+def test_240_leaves_compile_in_a_minute(mode: str, tmp_path: Path) -> None:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert complaints({"Chart_240": large_chart(24)}, tmp_path, mode) == ""
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 60

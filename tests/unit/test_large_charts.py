@@ -59,3 +59,7 @@ def test_each_further_leaf_of_a_hierarchy_is_as_many_lines() -> None:
     lines = {n: _unit(random_model(n, 1), "adb").count("\n") for n in (60, 240)}
     assert lines[240] <= 1.1 * 4 * lines[60]
     assert lines[240] <= 240 * 60
+
+
+def test_240_leaves_are_few_lines() -> None:
+    assert _unit(large_chart(24), "adb").count("\n") <= 240 * 150

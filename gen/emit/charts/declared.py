@@ -77,6 +77,11 @@ def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:
 # --- The chart as declared ---------------------------------------------------
 
 
+MANY_LANES = 4
+"""Above this a step, which asks each lane for its source, calls In_Source: inlined there, it made
+the program grow with the square of the chart."""
+
+
 def _declared(shape: RegionShape) -> list[Decl]:
     chosen = Param("T", "in", "Transition")
     params = shape.choice_params()
@@ -92,7 +97,11 @@ def _declared(shape: RegionShape) -> list[Decl]:
         Subprogram("Enabled", (chosen, *params), "Boolean", expression=CaseExpr(Ref("T"), lines)),
         Comment("The declared chart: source, trigger and guard of each transition."),
         Subprogram(
-            "In_Source", (chosen, params[0]), "Boolean", expression=CaseExpr(Ref("T"), sources)
+            "In_Source",
+            (chosen, params[0]),
+            "Boolean",
+            aspects=(Aspect("No_Inline"),) if len(shape.busy_lanes) > MANY_LANES else (),
+            expression=CaseExpr(Ref("T"), sources),
         ),
         Comment("Is its source the leaf, or around it?"),
         *restored_functions(shape),

@@ -171,7 +171,7 @@ def _follows(shape: RegionShape) -> Expr:
     facts = [
         ForAll("I", _FIRED, _unless_segment(shape, chain("or else", chosen), "I")),
         call("Is_Ordered", Ref("Fired")),
-        *(fact for n in shape.busy_lanes for fact in (_has(shape, n), *_apart(shape, n))),
+        *_asked(shape, shape.busy_lanes),
     ]
     deferrals = tuple(
         (
@@ -184,15 +184,20 @@ def _follows(shape: RegionShape) -> Expr:
     return IfExpr(deferrals, both(*facts)) if deferrals else both(*facts)
 
 
+def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
+    """What is chosen for these lanes is fired, but for what conflicts with an earlier lane; where
+    ways go on from choices and histories, what is chosen for the first lane that asks."""
+    if not shape.passes:
+        return [fact for n in lanes for fact in (_has(shape, n), *_apart(shape, n))]
+    rows = ((Chain("/=", (_choice(shape, n), Ref("None"))), _fired(shape, n)) for n in lanes)
+    return [IfExpr(tuple(rows), None)]
+
+
 def _has(shape: RegionShape, lane: Lane) -> Expr:
-    """What is chosen for a lane is fired, unless an earlier lane has come between."""
-    none = Ref("None")
-    asked: list[Expr] = [Chain("/=", (_choice(shape, lane), none))]
+    """What is chosen for a lane is fired, unless what conflicts with it was."""
+    asked: list[Expr] = [Chain("/=", (_choice(shape, lane), Ref("None")))]
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
-    if shape.passes:
-        asked += [equal(_choice(shape, n), none) for n in before]
-    else:
-        asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
+    asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
     return IfExpr(((both(*asked), _fired(shape, lane)),), None)
 
 
@@ -216,7 +221,7 @@ def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator
 def _apart(shape: RegionShape, lane: Lane) -> Iterator[Expr]:
     """What is fired for a lane conflicts with nothing that is fired for an earlier one."""
     before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
-    for clash in () if shape.passes else _clashes(shape, lane, before):
+    for clash in _clashes(shape, lane, before):
         yield Prefix("not", both(_fired(shape, lane), clash))
 
 
@@ -331,7 +336,7 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
         *few,
         ForAll("I", _FIRED, _unless_segment(shape, each, "I")),
         call("Is_Ordered", Ref("Fired")),
-        *(fact for n in done for fact in (_has(shape, n), *_apart(shape, n))),
+        *_asked(shape, done),
         *_unmoved(shape, done),
     )
     return Pragma("Assert", (both(*facts),))
