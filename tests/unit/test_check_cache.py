@@ -37,15 +37,15 @@ def path(tmp_path: Path) -> Path:
     return found
 
 
-def test_check_and_generate_look_once(
+def test_check_generate_and_build_look_once(
     looked: list[str], path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     said = []
-    for command in ("check", "check", "generate"):
+    for command in ("check", "check", "generate", "build"):
         assert main([command, str(path)]) == 0
         said.append(capsys.readouterr().err)
     assert looked == ["Random_8"]
-    assert said[0] == said[1] == said[2]
+    assert said[0] == said[1] == said[2] == said[3]
 
 
 def test_another_content_is_looked_at(looked: list[str], path: Path) -> None:
