@@ -6,6 +6,8 @@ It speaks the protocol of docs/bus-protocol.md over TCP; the channel is "HOST:PO
 from __future__ import annotations
 
 import copy
+import os
+import select
 import selectors
 import socket
 import threading
@@ -40,6 +42,9 @@ PATIENCE = 5.0
 
 SLICE = 0.01
 """Seconds for which a sender reads before it lets another thread read."""
+
+CHUNK = 512 * RECORD_BYTES
+"""Bytes that are read at once."""
 
 LINGER = 0.5
 """Seconds for which the end of a bus waits for what is still to be transmitted."""
@@ -92,21 +97,28 @@ class RavenchartBus(can.BusABC):
         self._writing = threading.Lock()
         self._reading = threading.Lock()
         self._settled = threading.Condition()
+        self._signalling = threading.Lock()
+        self._is_signalled = False
         self._arrived: deque[can.Message] = deque()
         self._open: dict[int, can.Message] = {}
         self._awaited: dict[int, str | None] = {}
-        self._refusal: str | None = None
+        self._refusals: list[str] = []
         self._broken: str | None = None
-        self._partial = b""
+        self._unread = bytearray()
         self._number = 0
         self._start = 0
         self._errors = (0, 0)
         self._state = can.BusState.ACTIVE
         self._link = _connected(channel, address)
+        self._channel = channel
         self._input = self._link.dup()
         self._input.setblocking(False)
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._input, selectors.EVENT_READ)
+        self._signal = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
+        self._ready = select.epoll()
+        for descriptor in (self._input.fileno(), self._signal):
+            self._ready.register(descriptor, select.EPOLLIN)
         try:
             self._greet(channel, hello, fd)
         except BaseException:
@@ -116,8 +128,8 @@ class RavenchartBus(can.BusABC):
         super().__init__(channel, can_filters, **kwargs)
 
     def fileno(self) -> int:
-        """Readable when a record has come, unless a thread waits in `send` and read it."""
-        return self._input.fileno()
+        """Readable while a frame waits for `recv`, or something has come that nobody has read."""
+        return self._ready.fileno()
 
     @property
     def state(self) -> can.BusState:
@@ -144,13 +156,16 @@ class RavenchartBus(can.BusABC):
         """Ask for ``msg`` to be transmitted; with a ``timeout`` > 0 s, wait until it was.
 
         Raises CanOperationError when it is no frame, was refused, or the bus is gone, and
-        CanTimeoutError after ``timeout``. Without one, a refusal is raised by a later send.
+        CanTimeoutError after ``timeout``. Without one, the next send raises for all frames that
+        were refused by then. Confirmations are read here: who only sends need not call `recv`.
         """
         waits = timeout is not None and timeout > 0
+        while not self._reading.locked() and self._take(0):
+            pass
         with self._writing:
-            refusal, self._refusal = self._refusal, None
-            if refusal is not None:
-                raise can.CanOperationError(f"an earlier frame was refused: {refusal}")
+            refusals, self._refusals = self._refusals, []
+            if refusals:
+                raise can.CanOperationError(_refused(refusals))
             if msg.is_fd and self._can_protocol is not can.CanProtocol.CAN_FD:
                 raise can.CanOperationError("the bus was not opened for FD frames")
             number = self._number % NUMBER_LAST + 1
@@ -178,6 +193,7 @@ class RavenchartBus(can.BusABC):
         while True:
             if self._arrived:
                 message = self._arrived.popleft()
+                self._signal_frames()
                 return message, message.is_error_frame
             rest = None if end is None else max(0.0, end - time.monotonic())
             if not self._take(rest, receiving=True) and rest == 0 and not self._arrived:
@@ -203,7 +219,7 @@ class RavenchartBus(can.BusABC):
             raise can.CanOperationError(f"the frame was refused: {outcome}")
 
     def _take(self, timeout: float | None, *, receiving: bool = False) -> bool:
-        """Read at most one record within ``timeout`` s and act on it; whether bytes came.
+        """Read what comes within ``timeout`` s and act on it; whether bytes came.
 
         One who is ``receiving`` reads nothing when a frame has arrived already.
         """
@@ -213,32 +229,45 @@ class RavenchartBus(can.BusABC):
             self._check_usable()
             if receiving and self._arrived:
                 return False
-            octets = self._bytes(timeout)
+            octets = self._bytes(timeout, CHUNK)
             if octets is None:
                 return False
-            self._partial += octets
-            if len(self._partial) == RECORD_BYTES:
-                whole, self._partial = self._partial, b""
-                self._act_on(decode(whole))
+            self._unread += octets
+            whole = len(self._unread) - len(self._unread) % RECORD_BYTES
+            records = bytes(self._unread[:whole])
+            del self._unread[:whole]
+            for start in range(0, whole, RECORD_BYTES):
+                self._act_on(decode(records[start : start + RECORD_BYTES]))
             return True
         except can.CanOperationError as fault:
             self._broken = self._broken or str(fault)
             raise
         finally:
+            self._signal_frames()
             self._reading.release()
             with self._settled:
                 self._settled.notify_all()
 
-    def _bytes(self, timeout: float | None) -> bytes | None:
-        """What has come of the next record; None after ``timeout`` s."""
-        missing = RECORD_BYTES - len(self._partial)
+    def _signal_frames(self) -> None:
+        """Let `fileno` be readable while frames wait."""
+        with self._signalling:
+            if self._is_signalled == bool(self._arrived):
+                return
+            self._is_signalled = not self._is_signalled
+            if self._is_signalled:
+                os.eventfd_write(self._signal, 1)
+            else:
+                os.eventfd_read(self._signal)
+
+    def _bytes(self, timeout: float | None, most: int) -> bytes | None:
+        """At most so many of the bytes that come; None after ``timeout`` s."""
         try:
             try:
-                octets = self._input.recv(missing)
+                octets = self._input.recv(most)
             except BlockingIOError:
                 if not self._selector.select(timeout):
                     return None
-                octets = self._input.recv(missing)
+                octets = self._input.recv(most)
         except BlockingIOError:
             return None
         except (OSError, ValueError) as fault:
@@ -251,7 +280,9 @@ class RavenchartBus(can.BusABC):
         """What a record from the server means."""
         match record.kind:
             case Kind.FRAME | Kind.ERROR_FRAME:
-                self._arrived.append(message_of(record, self._start))
+                arrived = message_of(record, self._start)
+                arrived.channel = self._channel
+                self._arrived.append(arrived)
             case Kind.STATE:
                 self._state = _STATES[State(record.code)]
                 self._errors = (record.transmit_errors, record.receive_errors)
@@ -260,6 +291,7 @@ class RavenchartBus(can.BusABC):
                 if self._echo:
                     message.timestamp = (self._start + record.time) / 1e9
                     message.is_rx = False
+                    message.channel = self._channel
                     self._arrived.append(message)
                 if record.number in self._awaited:
                     self._awaited[record.number] = ""
@@ -271,7 +303,7 @@ class RavenchartBus(can.BusABC):
                 if record.number in self._awaited:
                     self._awaited[record.number] = words
                 else:
-                    self._refusal = words
+                    self._refusals.append(words)
             case _:
                 raise can.CanOperationError(f"bus protocol: a {record.kind.name.lower()} came")
 
@@ -299,12 +331,10 @@ class RavenchartBus(can.BusABC):
         end = time.monotonic() + PATIENCE
         octets = b""
         while len(octets) < RECORD_BYTES:
-            self._partial = octets
-            part = self._bytes(max(0.0, end - time.monotonic()))
+            part = self._bytes(max(0.0, end - time.monotonic()), RECORD_BYTES - len(octets))
             if part is None and time.monotonic() >= end:
                 raise can.CanOperationError(f"no welcome within {PATIENCE:g} s")
             octets += part or b""
-        self._partial = b""
         record = decode(octets)
         if record.kind is Kind.STATUS:
             raise can.CanOperationError(f"refused: {Status(record.code).words}")
@@ -344,8 +374,16 @@ class RavenchartBus(can.BusABC):
             self._link.shutdown(socket.SHUT_RDWR)
         with self._reading:
             self._selector.close()
+            self._ready.close()
+            os.close(self._signal)
             self._input.close()
             self._link.close()
+
+
+def _refused(reasons: list[str]) -> str:
+    if len(reasons) == 1:
+        return f"an earlier frame was refused: {reasons[0]}"
+    return f"{len(reasons)} earlier frames were refused, the last: {reasons[-1]}"
 
 
 def _address(channel: str) -> tuple[str, int]:

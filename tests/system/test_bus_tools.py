@@ -56,6 +56,19 @@ def test_a_thousand_mixed_frames_are_exact_both_ways(
         assert abs(got[-1].timestamp - time.time()) < 60
 
 
+def test_who_only_sends_need_not_receive(
+    pair: tuple[RavenchartBus, RavenchartBus],
+) -> None:
+    sender, receiver = pair
+    got: list[can.Message] = []
+    taking = threading.Thread(target=lambda: got.extend(taken(receiver, 20_000)))
+    taking.start()
+    for number in range(20_000):
+        sender.send(can.Message(arbitration_id=number % 0x7FF, is_extended_id=False))
+    taking.join()
+    assert [m.arbitration_id for m in got] == [number % 0x7FF for number in range(20_000)]
+
+
 def test_three_nodes_hear_each_other_and_not_themselves(channel: str) -> None:
     with (
         RavenchartBus(channel, receive_own_messages=True) as a,

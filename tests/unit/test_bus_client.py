@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import socket
 import threading
 import time
@@ -90,6 +91,59 @@ def test_a_refusal_is_raised_at_once_or_by_the_next_send(
     with pytest.raises(can.CanOperationError, match="an earlier frame was refused: no room"):
         bus.send(frame)
     bus.send(frame, timeout=WAIT)
+
+
+def test_each_refusal_is_counted_by_the_next_send(
+    server: BusServer, pair: tuple[RavenchartBus, RavenchartBus]
+) -> None:
+    bus, _ = pair
+    server.refuses = Status.NO_ROOM
+    asked = refused = 0
+
+    def send() -> None:
+        nonlocal asked, refused
+        try:
+            bus.send(can.Message(arbitration_id=1))
+            asked += 1
+        except can.CanOperationError as fault:
+            count = str(fault).split(" earlier frame")[0]
+            refused += 1 if count == "an" else int(count)
+
+    for _ in range(200):
+        send()
+    server.refuses = None
+    assert within(lambda: bus.state is can.BusState.ACTIVE and not bus._open)
+    before = asked
+    send()
+    assert refused == before > 0
+
+
+def test_who_only_sends_need_not_receive(server: BusServer) -> None:
+    with RavenchartBus(server.channel) as bus:
+        for number in range(20_000):
+            bus.send(can.Message(arbitration_id=number % 0x7FF))
+        assert within(lambda: bus.state is can.BusState.ACTIVE and not bus._open)
+
+
+def test_a_frame_that_a_send_has_read_is_signalled(
+    server: BusServer, pair: tuple[RavenchartBus, RavenchartBus]
+) -> None:
+    a, b = pair
+    assert within(lambda: b.state is can.BusState.ACTIVE and not readable(b))
+    for number in (1, 2):
+        a.send(can.Message(arbitration_id=number), timeout=WAIT)
+    b.send(can.Message(arbitration_id=3), timeout=WAIT)
+    for number in (1, 2):
+        assert readable(b)
+        got = b.recv(0)
+        assert got is not None
+        assert (got.arbitration_id, got.channel) == (number, server.channel)
+    assert not readable(b)
+
+
+def readable(bus: RavenchartBus) -> bool:
+    """Whether an event loop would call `recv` now."""
+    return bool(select.select([bus.fileno()], [], [], 0)[0])
 
 
 def test_without_acknowledgement_a_send_ends_in_time(
