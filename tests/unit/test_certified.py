@@ -78,6 +78,14 @@ def test_the_code_takes_its_facts_from_the_certificate(unit: str) -> None:
         assert fact in text, fact
 
 
+def test_the_program_says_which_model_it_is_of() -> None:
+    for node in ("drive", "panel"):
+        text = files()[f"{node}/two_nodes-timing_certificate.ads"]
+        assert f'Model_Digest : constant String := "{model().digest}"' in text
+        put = "Ravenchart.Hosts.Put_Model (Two_Nodes.Timing_Certificate.Model_Digest);"
+        assert put in files()[f"{node}/two_nodes_main.adb"]
+
+
 def test_no_number_of_the_analysis_stands_in_the_code() -> None:
     """Priorities of tasks, identifiers and rates: the certificate alone has them."""
     for name, text in files().items():
