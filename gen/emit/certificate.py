@@ -67,6 +67,9 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             stated(f"{own}_Context_Switch", node.context_switch),
             stated(f"{own}_Critical_Section", node.critical_section),
         ]
+        items += [
+            stated(_section(system, item).text, item.section) for item in _longer(system, node)
+        ]
         if node.release:
             items.append(stated(f"{own}_Release", node.release))
         if node.tick is not None:
@@ -108,6 +111,22 @@ def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
     return found
 
 
+def _longer(system: System, node: Node) -> list[SharedObject]:
+    """The objects of a node with a section of their own: the longest call of a device."""
+    return [
+        item
+        for item in system.objects
+        if item.node == node.name and item.section != node.critical_section
+    ]
+
+
+def _section(system: System, item: SharedObject) -> Ref:
+    """The longest time inside an object."""
+    node = system.node(item.node)
+    own = item.element if item in _longer(system, node) else f"{item.node}.critical"
+    return Ref(f"{name_of(own)}_Section")
+
+
 def _silences(system: System, node: Node) -> list[Decl]:
     """When a processor is silent, and when its supervisor has found it at the latest."""
     if node.supervision is None:
@@ -132,9 +151,9 @@ def _silences(system: System, node: Node) -> list[Decl]:
 
 def _terms(system: System, task: Task) -> list[Decl]:
     """What is known of a task."""
-    own, node = name_of(task.element), ada_case(task.node)
+    own = name_of(task.element)
     held = blocker(system, task)
-    blocking = Ref(f"{node}_Critical_Section") if held else number(0)
+    blocking = _section(system, held[0]) if held else number(0)
     items: list[Decl] = [Comment(_words(system, task, held))]
     items.append(named(f"{own}_Priority", priority(task.priority)))
     for slot in task.slots:

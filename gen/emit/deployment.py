@@ -262,7 +262,6 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
         Subprogram("On_Deadline_Miss", body=missed),
     ]
     if processor.on_overrun:
-        uses.append(UseType("Ravenchart.Nanoseconds"))
         over = Chain(">", (Ref("Used"), Ref("Budgets (Item)")))
         raised = _fault(system, processor, "Overrun", processor.on_overrun)
         found.append(Subprogram("On_Executed", _EXECUTED, body=(If(((over, raised),)),)))

@@ -12,6 +12,8 @@ from analysis.claims import claims_of
 from analysis.timing import analyse
 from gen.generate import generate
 from gen.model import System
+from ravenchart import steps
+from ravenchart.toolchain import ROOT
 from tests.support.certificates import certificate, changed, compiled
 from tests.support.systems import bus, message, system, task
 from tests.support.two_nodes import system_of
@@ -132,6 +134,17 @@ def test_facts_that_the_sums_contradict_are_refused(
     )
     assert count == 1, number
     assert words in compiled(text, tmp_path)
+
+
+def test_the_longest_call_of_a_device_blocks(tmp_path: Path) -> None:
+    """It is longer than the sections of the runtime, and the sum has it."""
+    model_file = ROOT / "tests" / "feature" / "devices" / "model.yaml"
+    text = certificate(steps.check(model_file).analysis)
+    assert "Fast_B : constant := Board_1_Section;" in text
+    assert "Slow_B : constant := Board_Critical_Section;" in text
+    assert compiled(text, tmp_path, "Devices_Feature") == ""
+    shorter = changed(text, "Board_1_Section", -1)
+    assert "fast claims more than" in compiled(shorter, tmp_path, "Devices_Feature")
 
 
 @pytest.mark.parametrize("by", [-1, 1])
