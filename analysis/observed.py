@@ -1,7 +1,8 @@
 """What one run of a controller showed: its trace file, read with the generator's map.
 
 The file holds one record a line, times in nanoseconds from the controller's start:
-``E clock``, the machine's clock at that start, ``T time kind element value``, then the
+``E clock``, the machine's clock at that start, ``M digest`` of the model that the program was
+generated from, ``T time kind element value``, then the
 counts ``P processor releases misses worst_response``, ``A row worst_execution``,
 ``H fault count``, ``L what count``, ``W host_latency``, ``N now`` before the counts that
 were read then, ``F feeds``, and ``END``. Without ``END`` the run was cut off. The map tells
@@ -123,6 +124,8 @@ class Observation:
     feeds: int | None = None
     """How often the supervision fed the watchdog, where there is one."""
     complete: bool = False
+    digest: str = ""
+    """SHA-256 of the model that the program was generated from, as the program says."""
     start: Ns = NO_TIME
     """The machine's clock when this controller's time was 0."""
     ready: Ns = NO_TIME
@@ -203,6 +206,16 @@ def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -
     return seen
 
 
+def of_model(seen: Observation, digest: str, file: str = "trace") -> None:
+    """TraceError where the program that wrote a trace was not generated from this model."""
+    if seen.digest != digest:
+        found = f"has the digest {seen.digest[:12]}" if seen.digest else "has no digest"
+        raise TraceError(
+            f"{file}: error: the trace {found}, and the model has {digest[:12]}: the program that "
+            "wrote it was generated from another model; generate, build and run again"
+        )
+
+
 def together(parts: Mapping[str, Observation]) -> Observation:
     """What several controllers on one machine showed, by node: as if it were one.
 
@@ -228,6 +241,7 @@ def together(parts: Mapping[str, Observation]) -> Observation:
             whole.host_latency = max(whole.host_latency or Ns(0), part.host_latency)
         whole.complete = whole.complete and part.complete
         whole.ready = max(whole.ready, Ns(late))
+        whole.digest = part.digest
         whole.map = replace(part.map, elements=elements)
     whole.records.sort(key=lambda record: record.time)
     return whole
@@ -238,6 +252,8 @@ def _take(words: list[str], seen: Observation) -> None:
     match words:
         case ["T", time, kind, element, value]:
             seen.records.append(_record(time, kind, element, value, seen.map))
+        case ["M", digest]:
+            seen.digest = digest
         case ["E", clock]:
             seen.start = Ns(_count(clock))
         case ["P", number, releases, misses, worst]:

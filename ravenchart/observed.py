@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from analysis.observed import TraceError, read_map, read_trace
+from analysis.observed import TraceError, of_model, read_map, read_trace
 from analysis.report import Execution, executions
 from analysis.units import microseconds
 
@@ -24,6 +24,7 @@ def within_budgets(checked: Checked, path: Path) -> bool:
         trace_map = read_map(names.read_text(encoding="utf-8"), str(names))
         with path.open(encoding="ascii", errors="replace") as lines:
             seen = read_trace(lines, trace_map, str(path))
+        of_model(seen, checked.system.digest, str(path))
     except TraceError as fault:
         raise Refused(str(fault)) from None
     if not seen.complete:

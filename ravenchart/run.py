@@ -14,6 +14,7 @@ from analysis.observed import (
     Observation,
     TraceError,
     TraceMap,
+    of_model,
     read_map,
     read_trace,
     together,
@@ -314,7 +315,10 @@ def read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation |
     """The trace, or one more problem."""
     try:
         with trace.open(encoding="ascii", errors="replace") as lines:
-            return read_trace(lines, trace_map, trace.name)
+            seen = read_trace(lines, trace_map, trace.name)
+        if seen.complete or seen.digest:
+            of_model(seen, trace_map.digest, trace.name)
+        return seen
     except OSError as fault:
         problems.append(f"the controller wrote no trace: {fault.strerror}")
     except TraceError as fault:

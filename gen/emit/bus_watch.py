@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..model import Bus, System
+from ..model import Bus, Slot, System, Work
 from .ada import (
     SPARK,
     Assign,
@@ -25,6 +25,7 @@ from .ada import (
     number,
 )
 from .events import event_value
+from .executions import ELEMENT_ID, EXECUTED, executed, run_spec
 from .naming import ada_case, root_package
 from .trace_calls import note, traced
 
@@ -37,8 +38,10 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
         return []
     root = root_package(system)
     name = f"{root}.{ada_case(bus.name)}.Watch"
-    spec = (
-        Subprogram("Run_Watch"),
+    slot = _slot(system, bus)
+    spec: tuple[Decl, ...] = (
+        UseType(ELEMENT_ID),
+        run_spec("Watch", slot),
         Comment(
             f"[{bus.name}.watch] look at the controller, and raise the events of what has "
             "happened to it since the last look."
@@ -49,18 +52,24 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
     context |= {f"{root}.{ada_case(i)}" for i in owners}
     context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
     if traced(system):
-        context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces", "Ravenchart.Health"}
+        context |= {f"{root}.Trace", "Ravenchart.Traces", "Ravenchart.Health"}
     return [
-        Unit(header, (), Package(name, spec, (SPARK,))),
+        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
         Unit(
             header,
             tuple(sorted(context)),
-            Package(name, _body(system, bus), (SPARK,), is_body=True),
+            Package(name, _body(system, bus, slot), (SPARK,), is_body=True),
         ),
     ]
 
 
-def _body(system: System, bus: Bus) -> tuple[Decl, ...]:
+def _slot(system: System, bus: Bus) -> Slot:
+    """The row that looks at the controller."""
+    slots = (slot for processor in system.processors for slot in processor.slots)
+    return next(s for s in slots if s.work is Work.BUS_WATCH and s.owner == bus.name)
+
+
+def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
     items: list[Decl] = [
         Comment(f"[{bus.name}.watch] the controller at the last look"),
         Object("Seen", f"{NOTICES}.Fault_Log"),
@@ -110,7 +119,10 @@ def _body(system: System, bus: Bus) -> tuple[Decl, ...]:
         ]  # fmt: skip
         steps.append(Do(f"{NOTICES}.Count_Off", arguments(*counted)))
         steps.append(If(((Ref("Is_Due"), (Do("Controller.Request_Recovery"),)),)))
-    items.append(Subprogram("Run_Watch", declarations=tuple(locals_), body=tuple(steps)))
+    steps.append(executed(slot))
+    items.append(
+        Subprogram("Run_Watch", (EXECUTED,), declarations=tuple(locals_), body=tuple(steps))
+    )
     return tuple(items)
 
 

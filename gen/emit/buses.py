@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..model import Bus, End, Message, System
+from ..model import Bus, End, Message, System, Task, Work
 from .ada import (
     FALSE,
     SPARK,
@@ -21,19 +21,23 @@ from .ada import (
     Object,
     Package,
     Param,
+    Pragma,
     Ref,
     Stmt,
     Subprogram,
     Unit,
     UseType,
     arguments,
+    both,
     call,
     equal,
     member,
     number,
 )
 from .bus_watch import emit_watch
+from .certified import CERTIFICATE, agrees, fact
 from .codecs import codec_name, words_of
+from .executions import ELEMENT_ID, EXECUTED, executed, run_spec
 from .naming import ada_case, priority, root_package, type_name
 from .remote_calls import received_as
 from .trace_calls import note, traced
@@ -68,9 +72,10 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     sent, received = _sent(system, bus), _received(system, bus)
     transmit = system.object(f"{bus.name}.transmit").ceiling
     receive = system.object(f"{bus.name}.receive").ceiling
-    driver = max(t.priority for t in system.tasks if t.element.startswith(f"{bus.name}.driver"))
-    standard = [f"{m.identifier:_}" for m in received if not m.extended]
-    extended = [f"{m.identifier:_}" for m in received if m.extended]
+    drivers = [t for t in system.tasks if t.element.startswith(f"{bus.name}.driver")]
+    driver = max(drivers, key=lambda t: t.priority)
+    standard = [fact(m.element, "Id").text for m in received if not m.extended]
+    extended = [fact(m.element, "Id").text for m in received if m.extended]
     wanted: list[tuple[str, Expr]] = []
     for label, ids in (("Standard", standard), ("Extended", extended)):
         accepts = member(Ref("Id"), " | ".join(ids)) if ids else Ref("False")
@@ -93,7 +98,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             arguments(
                 Transmit_Ceiling=priority(transmit),
                 Receive_Ceiling=priority(receive),
-                Driver_Priority=priority(driver),
+                Driver_Priority=fact(driver.element, "Priority"),
                 Transmit_Depth=number(bus.transmit_depth),
                 Receive_Depth=number(bus.receive_depth),
                 Stack_Bytes=number(DRIVER_STACK),
@@ -102,10 +107,11 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             ),
         ),
     ]
+    items += _checks(bus, driver)
     for message in sent:
         items.append(_send_spec(system, message))
         items.append(Comment(f"[{message.name}] hand one frame to the controller; never blocks."))
-    withs = ("Ravenchart.Can", "Ravenchart.Can.Controllers", "System")
+    withs = ("Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}")
     units = [Unit(header, withs, Package(name, tuple(items), (SPARK,)))]
     if sent:
         bodies = tuple(_send_body(system, bus, m) for m in sent)
@@ -120,11 +126,31 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     return units + emit_watch(system, bus, header)
 
 
+def _checks(bus: Bus, driver: Task) -> list[Decl]:
+    """The controller runs as the certificate says."""
+    same = [
+        equal(Ref(f"Controller.Given_Setting.{what}"), rate) for what, rate in _rates(bus).items()
+    ]
+    level = fact(driver.element, "Priority")
+    return [
+        UseType("Ravenchart.Can.Bits_Per_Second"),
+        agrees("Controller.Given_Priority", level, bus.name, "priority of its driver"),
+        Pragma("Assert", (both(*same),)),
+    ]
+
+
+def _rates(bus: Bus) -> dict[str, Expr]:
+    """The bit rates as certified; 0 for one that the bus does not have."""
+    return {
+        "Bit_Rate": fact(bus.name, "Bit_Rate"),
+        "Data_Rate": fact(bus.name, "Data_Rate") if bus.data_rate else number(0),
+    }
+
+
 def _setting(bus: Bus) -> Expr:
     """How the controller is configured."""
     settings = {
-        "Bit_Rate": number(bus.bit_rate),
-        "Data_Rate": number(bus.data_rate or 0),
+        **_rates(bus),
         "Takes_Fd": TRUE if bus.takes_fd else FALSE,
         "Recovery": Ref(
             f"Ravenchart.Can.{'On_Request' if bus.recovers_by_request else 'Automatic'}"
@@ -143,9 +169,9 @@ def _frame(bus: Bus, message: Message) -> Expr:
     """The frame that carries an item."""
     packed: Expr = call(f"Codecs.{codec_name(message)}.Pack", Ref("Item"))
     head = {
-        "Id": number(message.identifier),
+        "Id": fact(message.element, "Id"),
         "Format": _format(message),
-        "Length": number(message.length),
+        "Length": fact(message.element, "Length"),
     }
     if not message.fd:
         return call("Ravenchart.Can.Data_Frame", **head, Payload=packed)
@@ -190,10 +216,13 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     root = root_package(system)
     name = f"{root}.{ada_case(bus.name)}.Receiver"
     received = _received(system, bus)
+    slots = (slot for processor in system.processors for slot in processor.slots)
+    slot = next(s for s in slots if s.work is Work.BUS_RECEIVE and s.owner == bus.name)
     spec: tuple[Decl, ...] = (
         Subprogram("Wait"),
         Comment(f"[{bus.name}.receive.release] suspend until a frame is there."),
-        Subprogram("Run_Receive"),
+        UseType(ELEMENT_ID),
+        run_spec("Receive", slot),
         Comment(f"[{bus.name}.receive] decode it and hand it to its receivers."),
     )
     rows: list[tuple[Expr, tuple[Stmt, ...]]] = []
@@ -208,7 +237,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         matches = Chain(
             "and then",
             (
-                equal(call(f"{ANY}.Id", Ref("Frame")), number(message.identifier)),
+                equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
                 equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
             ),
         )
@@ -221,7 +250,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             arguments(_data(message), Ref(item), Ref("Valid")),
         )
         family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
-        carried = call(f"{ANY}.Carries", Ref("Frame"), family, number(message.length))
+        carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
         good = Chain("and then", (Ref("Valid"), carried))
         deliver = (*note(system, "Arrived", message.name, "message"), *puts)
         rows.append((matches, (unpack, If(((good, deliver),)))))
@@ -232,14 +261,19 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
             body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref("Unused_Stamp"))),),
         ),
-        Subprogram("Run_Receive", declarations=tuple(declarations), body=(If(tuple(rows)),)),
+        Subprogram(
+            "Run_Receive",
+            (EXECUTED,),
+            declarations=tuple(declarations),
+            body=(If(tuple(rows)), executed(slot)),
+        ),
     )
     context = {f"{root}.Codecs", ANY}
     context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
     if traced(system):
-        context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+        context |= {f"{root}.Trace", "Ravenchart.Traces"}
     return [
-        Unit(header, (), Package(name, spec, (SPARK,))),
+        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
         Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
     ]
 

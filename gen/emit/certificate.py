@@ -16,12 +16,13 @@ from ..claims import ChainClaim, Claims
 from ..derive import SUPERVISOR
 from ..instants import has_offset
 from ..model import Node, SharedObject, System, Task
-from .ada import SPARK, Aspect, Chain, Comment, Decl, Expr, Package, Ref, Unit, number
+from .ada import SPARK, Aspect, Chain, Comment, Decl, Expr, Object, Package, Ref, Unit, number
 from .certificate_bus import bus_claims, bus_terms
 from .certificate_chains import chain_claims
 from .certificate_demand import costs, demand, most, switches, work
 from .certificate_hops import hops_of
 from .certificate_offsets import offset_claims
+from .certificate_tables import order, table_terms
 from .certificate_terms import (
     LATE,
     SLOW,
@@ -29,6 +30,7 @@ from .certificate_terms import (
     assured,
     before,
     bounded,
+    least,
     name_of,
     named,
     plus,
@@ -36,20 +38,25 @@ from .certificate_terms import (
     stated,
     times,
 )
-from .naming import ada_case
+from .naming import ada_case, priority
 
 LETTERS = (
     "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
     "event to the release, C longest execution (with context switches) or transmission, "
     "B blocking, R the claimed response from the event, W the time claimed from the start of a "
     "busy period. A is J + T - 1, so that (W + A) / T is the number of releases within W. Needs "
-    "is the demand that arises within W: where it is more, W is too short."
+    "is the demand that arises within W, and equals it: where it is more, W is too short; where it "
+    "is less, a term is missing."
 )
 
 
 def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     """The certificate of a system; its claims are those of the analysis."""
-    items: list[Decl] = [Comment(LETTERS)]
+    items: list[Decl] = [
+        Comment("SHA-256 of the model: the program and its trace carry it."),
+        Object("Model_Digest", "String", Ref(f'"{system.digest}"'), constant=True),
+        Comment(LETTERS),
+    ]
     elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
     items.append(Comment("The claimed responses: each is some other's lateness, or its own bound."))
     items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
@@ -60,6 +67,9 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             stated(f"{own}_Context_Switch", node.context_switch),
             stated(f"{own}_Critical_Section", node.critical_section),
         ]
+        items += [
+            stated(_section(system, item).text, item.section) for item in _longer(system, node)
+        ]
         if node.release:
             items.append(stated(f"{own}_Release", node.release))
         if node.tick is not None:
@@ -67,6 +77,8 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             items.append(stated(f"{own}_Tick_C", node.tick.wcet))
     for task in system.tasks:
         items += _terms(system, task)
+    for node in system.nodes:
+        items += order(system, node)
     for bus in system.buses:
         items += bus_terms(system, bus)
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
@@ -83,7 +95,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     package = Package(
         f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
     )
-    return Unit(header, (), package)
+    return Unit(header, ("System",), package)
 
 
 def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
@@ -97,6 +109,22 @@ def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
         if reaches and lower is not None and longer:
             found = item, lower
     return found
+
+
+def _longer(system: System, node: Node) -> list[SharedObject]:
+    """The objects of a node with a section of their own: the longest call of a device."""
+    return [
+        item
+        for item in system.objects
+        if item.node == node.name and item.section != node.critical_section
+    ]
+
+
+def _section(system: System, item: SharedObject) -> Ref:
+    """The longest time inside an object."""
+    node = system.node(item.node)
+    own = item.element if item in _longer(system, node) else f"{item.node}.critical"
+    return Ref(f"{name_of(own)}_Section")
 
 
 def _silences(system: System, node: Node) -> list[Decl]:
@@ -123,10 +151,11 @@ def _silences(system: System, node: Node) -> list[Decl]:
 
 def _terms(system: System, task: Task) -> list[Decl]:
     """What is known of a task."""
-    own, node = name_of(task.element), ada_case(task.node)
+    own = name_of(task.element)
     held = blocker(system, task)
-    blocking = Ref(f"{node}_Critical_Section") if held else number(0)
+    blocking = _section(system, held[0]) if held else number(0)
     items: list[Decl] = [Comment(_words(system, task, held))]
+    items.append(named(f"{own}_Priority", priority(task.priority)))
     for slot in task.slots:
         items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
     if not task.slots:
@@ -134,6 +163,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
     if has_offset(system, task):
         items.append(stated(f"{own}_O", task.offset))
+    items += table_terms(task)
     items.append(named(f"{own}_J", _jitter(system, task)))
     items.append(arrivals(own))
     items += [named(f"{own}_{letter}", value) for letter, value in costs(task).items()]
@@ -151,7 +181,7 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
         what = "released every T"
         if has_offset(system, task):
             what += ", first O after the epoch of its node"
-    text = f"[{task.element}] priority {task.priority}, {what}."
+    text = f"[{task.element}] {what}."
     text += f" B: {held[1]} may be inside {held[0].element}." if held else " Nothing blocks it."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
     if rare:
@@ -185,6 +215,7 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
         Comment(f"[{label}] what can delay it: jobs of the same or higher priority")
     ]
     last: Expr = Ref(f"{own}_W")
+    ends: list[Expr] = []
     for job, window in enumerate(windows):
         tail = "" if len(windows) == 1 else f"_{job + 1}"
         last, needs = Ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
@@ -197,8 +228,9 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
             done = plus(*(Ref(f"{own}_{letter}") for letter in costs(task)))
         items.append(named(needs, demand(system, task, last, done)))
         items += bounded(Ref(needs), last, label)
-        if len(windows) > 1:
-            items.append(refuse(plus(jitter, last, *before(own, job)), bound, label, SLOW))
+        ends.append(plus(jitter, last, *before(own, job)))
+    if len(windows) > 1:
+        items += least(bound, ends, label, SLOW)
     limit = times(number(len(windows)), period)
     problem = "can be released again before it completes"
     items.append(refuse(plus(jitter, last), limit, label, problem))

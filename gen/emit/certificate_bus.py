@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Set
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 from ..claims import Claim, Claims
 from ..identifiers import leading
@@ -27,6 +28,7 @@ from .certificate_terms import (
     before,
     bounded,
     ceiling,
+    least,
     name_of,
     named,
     plus,
@@ -64,9 +66,21 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
             stated(f"{own}_Error_T", bus.errors.period),
             stated(f"{own}_Error_Bits", ERROR_BITS),
         ]
-    for message in _of(system, bus):
+    messages = _of(system, bus)
+    for message in messages:
         items += _terms(message, bus)
+    for first, second in pairwise(messages):
+        problem = f"must win the arbitration against {second.element}"
+        items.append(refuse(plus(_rank(first), ONE), _rank(second), first.element, problem))
     return items
+
+
+def _rank(message: Message) -> Expr:
+    """A number for each identifier: of two frames the one with the lesser wins."""
+    identifier = Ref(f"{name_of(message.element)}_Id")
+    if message.extended:
+        return plus(times(number(2), identifier), ONE)
+    return times(Ref("2**19"), identifier)
 
 
 def _terms(message: Message, bus: Bus) -> list[Decl]:
@@ -75,11 +89,13 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
     width = 29 if message.extended else 11
     sender = "somebody outside" if message.source is None else str(message.source)
     words = (
-        f"[{message.element}] {width}-bit identifier {message.identifier:#x}, {message.length} "
-        f"bytes{' of CAN FD' if message.fd else ''} from {sender}"
+        f"[{message.element}] {width}-bit identifier Id, Length bytes"
+        f"{' of CAN FD' if message.fd else ''} from {sender}"
     )
     items: list[Decl] = [
         Comment(words),
+        named(f"{own}_Id", Ref(f"16#{message.identifier:X}#")),
+        stated(f"{own}_Length", message.length),
         stated(f"{own}_T", message.period),
         stated(f"{own}_D", message.limit),
         *length_terms(message, bus),
@@ -169,12 +185,12 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     ]
     lost = _Level(bus, order[0], order, [], system.queue).lost(busiest)
     problem = "can be busy longer than claimed"
-    items = [
+    items: list[Decl] = [
         Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
         named(f"{line}_Busiest_Needs", plus(*works, *lost)),
         refuse(ONE, busiest, bus.name, problem),
-        refuse(Ref(f"{line}_Busiest_Needs"), busiest, bus.name, problem),
+        *least(busiest, [Ref(f"{line}_Busiest_Needs")], bus.name, problem),
     ]
     for message in order:
         if message.element in claims.waits:
@@ -182,7 +198,7 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
             problem = "can wait longer than claimed"
             longest = Chain("-", (busiest, Ref(f"{own}_C")))
             items.append(stated(f"{own}_Wait", claims.waits[message.element]))
-            items.append(refuse(longest, Ref(f"{own}_Wait"), message.element, problem))
+            items += least(Ref(f"{own}_Wait"), [longest], message.element, problem)
     return items
 
 
@@ -212,11 +228,12 @@ def _of_message(level: _Level, claims: Claims) -> list[Decl]:
         words += ", and one of those that go behind it, the longest of which counts once"
     items: list[Decl] = [Comment(words)]
     items += _instances(own, message.element, claim, waiting, busy)
+    responses = []
     for instance in range(len(claim.windows)):
         tail = _tail(claim, instance)
         response = plus(Ref(f"{own}_J"), Ref(f"{own}_W{tail}"), Ref(f"{own}_C"))
-        response = plus(response, *before(own, instance))
-        items.append(refuse(response, Ref(f"{own}_R"), message.element, SLOW))
+        responses.append(plus(response, *before(own, instance)))
+    items += least(Ref(f"{own}_R"), responses, message.element, SLOW)
     items.append(refuse(Ref(f"{own}_R"), Ref(f"{own}_D"), message.element, "can miss its deadline"))
     items.append(assured(Ref(f"{own}_R"), Ref(f"{own}_D")))
     return items
@@ -240,7 +257,7 @@ def _instances(
     items.append(named(f"{own}_{prefix}Busy_Needs", busy(window)))
     problem = "can keep others waiting for longer than claimed"
     items.append(refuse(ONE, window, label, problem))  # no time at all is a solution too
-    items.append(refuse(Ref(f"{own}_{prefix}Busy_Needs"), window, label, problem))
+    items += least(window, [Ref(f"{own}_{prefix}Busy_Needs")], label, problem)
     late = Ref(f"{own}_J") if not prefix else Ref(f"{own}_{prefix}J")
     most = times(number(len(claim.windows)), Ref(f"{own}_T"))
     problem = "can come again before it is sent"
@@ -290,9 +307,10 @@ def _turns(system: System, one: Reception, claim: Claim) -> list[Decl]:
         *_instances(own, label, claim, waiting, lambda w: plus(*served(w, received)), "Turn_"),
         stated(f"{own}_Turn", claim.response),
     ]
+    turns = []
     for instance in range(len(claim.windows)):
         late = plus(Ref(f"{own}_Turn_J"), Ref(f"{own}_Turn_W{_tail(claim, instance)}"))
-        late = plus(late, *before(own, instance))
-        items.append(refuse(late, Ref(f"{own}_Turn"), label, SLOW))
+        turns.append(plus(late, *before(own, instance)))
+    items += least(Ref(f"{own}_Turn"), turns, label, SLOW)
     items.append(named(f"{own}_Handed", plus(Ref(f"{own}_Turn"), times(number(2), response))))
     return items

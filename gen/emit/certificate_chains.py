@@ -10,7 +10,7 @@ from ..model import Chain as ModelChain
 from ..model import Processor, System
 from .ada import Chain, Comment, Decl, Expr, Ref, number
 from .certificate_hops import Hop, hops_of
-from .certificate_terms import assured, name_of, named, plus, refuse, stated, times
+from .certificate_terms import assured, least, name_of, named, plus, refuse, stated, times
 from .naming import ada_case
 
 SUFFIX = {"row": "Done", "item": "R", "handed": "Handed"}
@@ -69,7 +69,7 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
         ]
         label, low = f"chain {chain.name}", what.lower()
         needs, claimed = Ref(f"{own}_{what}_Needs"), Ref(f"{own}_{what}")
-        items.append(refuse(needs, claimed, label, f"can have a longer {low} than claimed"))
+        items += least(claimed, [needs], label, f"can have a longer {low} than claimed")
         problem = f"can exceed the limit of its {low}"
         items.append(refuse(claimed, Ref(f"{own}_{what}_Limit"), label, problem))
         items.append(assured(needs, Ref(f"{own}_{what}_Limit")))
@@ -121,6 +121,5 @@ def _queue(
         named(burst, plus(Chain("/", (late, period)), number(1))),
         stated(wait, claimed),
         refuse(times(many, cycle), period, label, "can fill a queue"),
-        refuse(last, Ref(wait), label, problem),
-        refuse(following, Ref(wait), label, problem),
+        *least(Ref(wait), [last, following], label, problem),
     ]

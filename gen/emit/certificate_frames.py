@@ -55,7 +55,7 @@ def length_terms(message: Message, bus: Bus) -> list[Decl]:
     second = Ref("10**9")
     if not message.fd:
         return [
-            named(stuffed.text, Ref(f"{_head(message)} + 8 * {message.length}")),
+            named(stuffed.text, Ref(f"{_head(message)} + 8 * {own}_Length")),
             named(bits.text, plus(stuffed, number(UNSTUFFED), _quarter(stuffed))),
             named(f"{own}_C", ceiling(times(bits, second), rate)),
         ]
@@ -68,7 +68,7 @@ def length_terms(message: Message, bus: Bus) -> list[Decl]:
     return [
         stated(head.text, _head(message)),
         named(early.text, _quarter(head)),
-        named(stuffed.text, Ref(f"{head.text} + {CONTROL} + 8 * {message.length}")),
+        named(stuffed.text, Ref(f"{head.text} + {CONTROL} + 8 * {own}_Length")),
         named(body.text, plus(*behind, number(_checks(message)))),
         named(bits.text, plus(head, early, number(UNSTUFFED))),
         named(f"{own}_C", cost),

@@ -7,6 +7,7 @@ from .naming import constant_name as name_of
 
 __all__ = [
     "LATE",
+    "LOOSE",
     "ONE",
     "SLOW",
     "arrivals",
@@ -14,6 +15,8 @@ __all__ = [
     "before",
     "bounded",
     "ceiling",
+    "differs",
+    "least",
     "name_of",
     "named",
     "plus",
@@ -28,6 +31,8 @@ ONE = number(1)
 LATE = "can miss its deadline"
 
 SLOW = "can take longer than its claimed response time"
+
+LOOSE = "claims more than its terms add up to"
 
 
 def named(name: str, value: Expr) -> Decl:
@@ -75,19 +80,39 @@ def within(own: str, window: Expr) -> Expr:
 
 def refuse(left: Expr, right: Expr, element: str, problem: str) -> Decl:
     """A build fails, with our words, when ``left`` exceeds ``right``."""
+    return _refused(Chain(">", (left, right)), element, problem)
+
+
+def differs(left: Expr, right: Expr, element: str, problem: str) -> Decl:
+    """A build fails, with our words, when the two differ."""
+    return _refused(Chain("/=", (left, right)), element, problem)
+
+
+def _refused(condition: Expr, element: str, problem: str) -> Decl:
     words = Chain("&", (Ref(f'"{element} "'), Ref(f'"{problem}"')))
-    return Pragma("Compile_Time_Error", (Chain(">", (left, right)), words))
+    return Pragma("Compile_Time_Error", (condition, words))
 
 
 def bounded(needs: Expr, window: Expr, element: str) -> list[Decl]:
-    """A window holds its demand, and is none that ends before it begins.
+    """A window holds its demand and no more, and is none that ends before it begins.
 
     Ada rounds quotients towards zero: a negative window could hold the demand of what
-    needs more than all of the time.
+    needs more than all of the time. The least window that holds its demand equals it: a
+    longer one shows that a term is missing.
     """
     return [
         refuse(number(0), window, element, SLOW),
         refuse(needs, window, element, SLOW),
+        refuse(window, needs, element, LOOSE),
+    ]
+
+
+def least(bound: Expr, terms: list[Expr], element: str, problem: str) -> list[Decl]:
+    """A bound is the longest of the terms: not less than any, and not more than all."""
+    above = chain("and then", [Chain(">", (bound, term)) for term in terms])
+    return [
+        *(refuse(term, bound, element, problem) for term in terms),
+        _refused(above, element, LOOSE),
     ]
 
 

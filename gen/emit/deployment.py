@@ -24,16 +24,20 @@ from .ada import (
     Package,
     Param,
     PlainType,
+    Pragma,
     Ref,
     Stmt,
     Subprogram,
     Unit,
     UseType,
     arguments,
+    do,
+    equal,
     number,
 )
 from .buses import emit_bus
-from .certificate_terms import name_of
+from .certified import CERTIFICATE, agrees, fact, rows_agree
+from .executions import ELEMENT_ID
 from .naming import ada_case, priority, processor_package, root_package, row_name
 from .reports import emit_main, emit_reports
 from .supervision import emit_supervision, offer
@@ -70,11 +74,18 @@ def _health(system: System, header: str) -> Unit:
 
 
 def _holding(
-    system: System, unit: str, name: str, generic: str, args: tuple[Arg, ...], header: str
+    system: System,
+    unit: str,
+    name: str,
+    generic: str,
+    args: tuple[Arg, ...],
+    header: str,
+    checks: tuple[Decl, ...] = (),
 ) -> Unit:
     """A unit around an instance: gnatprove checks no ceiling in an instance that is a unit."""
-    package = Package(f"{root_package(system)}.{unit}", (Instance(name, generic, args),), (SPARK,))
-    return Unit(header, (generic, "System"), package)
+    root = root_package(system)
+    package = Package(f"{root}.{unit}", (Instance(name, generic, args), *checks), (SPARK,))
+    return Unit(header, (generic, f"{root}.{CERTIFICATE}" if checks else "System"), package)
 
 
 def _trace(system: System, header: str) -> Unit:
@@ -85,14 +96,19 @@ def _trace(system: System, header: str) -> Unit:
 
 def _probe(system: System, node: Node, header: str) -> Unit:
     assert node.probe is not None
-    level = next(t.priority for t in system.tasks if t.element == f"{node.name}.probe")
+    element = f"{node.name}.probe"
     args = arguments(
-        Name=Ref(f'"{node.name}.probe"'),
-        Period=number(node.probe.period),
-        Probe_Priority=priority(level),
+        Name=Ref(f'"{element}"'),
+        Period=fact(element, "T"),
+        Probe_Priority=fact(element, "Priority"),
         Stack_Bytes=number(PROBE_STACK),
     )
-    return _holding(system, "Host_Probe", "Probe", "Ravenchart.Host_Probes", args, header)
+    checks = (
+        UseType("Ravenchart.Nanoseconds"),
+        agrees("Probe.Given_Period", fact(element, "T"), element, "period"),
+        agrees("Probe.Given_Priority", fact(element, "Priority"), element, "priority"),
+    )
+    return _holding(system, "Host_Probe", "Probe", "Ravenchart.Host_Probes", args, header, checks)
 
 
 def _elements(system: System, header: str) -> Unit:
@@ -111,9 +127,8 @@ def _elements(system: System, header: str) -> Unit:
 
 def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     root, name = root_package(system), processor_package(system, processor)
-    certificate = "Timing_Certificate"
-    own = ada_case(processor.name)
     shifted = any(has_offset(system, t) for t in system.tasks if t.element == processor.name)
+    offset = fact(processor.name, "O") if shifted else number(0)
     rows = tuple(row_name(s) for s in processor.slots)
     items: list[Decl] = [
         Comment(f"[{processor.name}.table] the activities, in the order in which they run"),
@@ -122,8 +137,8 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         Subprogram("On_Deadline_Miss"),
     ]
     shared = arguments(
-        Deadline=Ref(f"{certificate}.{own}_D"),
-        Task_Priority=priority(processor.priority),
+        Deadline=fact(processor.name, "D"),
+        Task_Priority=fact(processor.name, "Priority"),
         Ceiling=priority(system.object(f"{processor.name}.monitor").ceiling),
         Stack_Bytes=number(processor.stack_bytes),
         Execute=Ref("Execute"),
@@ -138,14 +153,14 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
             Table_Type=Ref("Row_Table"),
             Table=Aggregate(slots),
             Cycle=number(processor.cycle),
-            Period=Ref(f"{certificate}.{own}_T"),
-            Offset=Ref(f"{certificate}.{own}_O") if shifted else number(0),
+            Period=fact(processor.name, "T"),
+            Offset=offset,
         )
     else:
         generic = "Ravenchart.Sporadic_Processors"
         args = arguments(
             Activity_Id=Ref("Row"),
-            Minimum_Separation=Ref(f"{certificate}.{own}_T"),
+            Minimum_Separation=fact(processor.name, "T"),
             Wait=Ref(f"{ada_case(processor.released_by)}.Receiver.Wait"),
         )
     if processor.on_overrun:
@@ -154,7 +169,8 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     items.append(Comment(f"[{processor.name}]"))
     named = arguments(Name=Ref(f'"{processor.name}"'))
     items.append(Instance("Processor", generic, (*named, *args, *shared)))
-    withs = {generic, "System", f"{root}.{certificate}"}
+    items += _checks(processor, offset)
+    withs = {generic, "System", f"{root}.{CERTIFICATE}"}
     if processor.released_by is None:
         withs.add("Ravenchart.Schedules")
     else:
@@ -165,8 +181,9 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     context |= {
         f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in processor.raises
     }
+    context.add(f"{root}.Elements")
     if traced(system):
-        context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+        context |= {f"{root}.Trace", "Ravenchart.Traces"}
     spec = Package(name, tuple(items), (SPARK,))
     body = Package(name, _processor_body(system, processor), (SPARK,), is_body=True)
     return [
@@ -175,8 +192,28 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     ]
 
 
+def _checks(processor: Processor, offset: Expr) -> list[Decl]:
+    """The task runs as its certificate says."""
+    separation = "Period" if processor.released_by is None else "Separation"
+    compared: list[tuple[str, Expr, str]] = [
+        ("Given_Priority", fact(processor.name, "Priority"), "priority"),
+        (f"Given_{separation}", fact(processor.name, "T"), separation.lower()),
+        ("Given_Deadline", fact(processor.name, "D"), "deadline"),
+    ]
+    if processor.released_by is None:
+        compared.append(("Given_Offset", offset, "offset"))
+    found: list[Decl] = [
+        UseType("Ravenchart.Nanoseconds"),
+        *(agrees(f"Processor.{given}", to, processor.name, what) for given, to, what in compared),
+    ]
+    if processor.released_by is None:
+        found += rows_agree(processor, "Processor.Given_Table")
+    return found
+
+
 def _slot(slot: Slot) -> Expr:
-    return Aggregate((Arg("Divisor", number(slot.divisor)), Arg("Phase", number(slot.phase))))
+    facts = {what: fact(slot.element, what) for what in ("Divisor", "Phase")}
+    return Aggregate(tuple(Arg(what, value) for what, value in facts.items()))
 
 
 def _owner_unit(system: System, slot: Slot) -> str:
@@ -193,7 +230,9 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
     rows = []
     for slot in processor.slots:
         name = slot.work.value if slot.of_bus else slot.name
-        rows.append((row_name(slot), (Do(f"{_package(slot)}.Run_{ada_case(name)}"),)))
+        rows.append(
+            (row_name(slot), (do(f"{_package(slot)}.Run_{ada_case(name)}", Ref("Executed")),))
+        )
     execute: list[Stmt] = []
     if traced(system):
         execute.append(
@@ -207,14 +246,22 @@ def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
             )
         )
     execute.append(Case(Ref("Item"), tuple(rows)))
+    #  each row once, and none for another
+    execute.append(
+        Pragma("Assert", (equal(Ref("Executed"), row_number(processor, "Row", "Item")),))
+    )
     missed = _fault(system, processor, "Deadline_Miss", processor.on_deadline_miss)
-    uses = [UseType("Ravenchart.Element_Id")] if traced(system) else []
+    uses = [UseType(ELEMENT_ID)]
     found: list[Decl] = [
-        Subprogram("Execute", (Param("Item", "in", "Row"),), body=tuple(execute)),
+        Subprogram(
+            "Execute",
+            (Param("Item", "in", "Row"),),
+            declarations=(Object("Executed", ELEMENT_ID, number(0)),),
+            body=tuple(execute),
+        ),
         Subprogram("On_Deadline_Miss", body=missed),
     ]
     if processor.on_overrun:
-        uses.append(UseType("Ravenchart.Nanoseconds"))
         over = Chain(">", (Ref("Used"), Ref("Budgets (Item)")))
         raised = _fault(system, processor, "Overrun", processor.on_overrun)
         found.append(Subprogram("On_Executed", _EXECUTED, body=(If(((over, raised),)),)))
@@ -226,10 +273,7 @@ _EXECUTED = (Param("Item", "in", "Row"), Param("Used", "in", "Ravenchart.Nanosec
 
 def _budgets(processor: Processor) -> list[Decl]:
     """What each row may use, and what compares it with what it used."""
-    rows = tuple(
-        Arg(row_name(slot), Ref(f"Timing_Certificate.{name_of(slot.element)}_Budget"))
-        for slot in processor.slots
-    )
+    rows = tuple(Arg(row_name(slot), fact(slot.element, "Budget")) for slot in processor.slots)
     return [
         Subprogram("On_Executed", _EXECUTED),
         PlainType("Row_Budgets", "array (Row) of Ravenchart.Nanoseconds"),

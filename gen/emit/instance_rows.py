@@ -125,7 +125,7 @@ class Rows(Site):
 
     # --- body: regions
 
-    def run_region(self, region: Region) -> list[Decl]:
+    def run_region(self, region: Region) -> list[Subprogram]:
         shape = RegionShape(self.system, self.instance.component, region, noted=self.noted)
         name = ada_case(region.name)
         package = f"{self.component}.{name}"

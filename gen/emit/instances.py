@@ -52,6 +52,7 @@ from .device_calls import (
     taken_replies,
 )
 from .events import event_value, name_of, null_event
+from .executions import ELEMENT_ID, executing, run_spec
 from .instance_rows import Rows
 from .instance_site import Site
 from .naming import (
@@ -82,7 +83,8 @@ class Glue(Site):
         component = self.instance.component
         own = (f"{ada_case(self.system.name)}.{self.component}",)
         asked = ("Ravenchart.Queueing",) if self._served() else ()
-        return (*asked, *(own if component.events or asked else ()))
+        rows = (f"{ada_case(self.system.name)}.Elements",) if self._slots() else ()
+        return (*asked, *(own if component.events or asked else ()), *rows)
 
     def _body_withs(self) -> tuple[str, ...]:
         root = ada_case(self.system.name)
@@ -139,8 +141,10 @@ class Glue(Site):
                 )
             )
         items += self._command_specs()
+        if self._slots():
+            items.insert(0, UseType(ELEMENT_ID))
         for slot in self._slots():
-            items.append(Subprogram(f"Run_{ada_case(slot.name)}"))
+            items.append(run_spec(ada_case(slot.name), slot))
             items.append(Comment(f"[{slot.element}] one execution, by its processor alone."))
         return tuple(items)
 
@@ -223,12 +227,13 @@ class Glue(Site):
         for slot in self._slots():
             match slot.work:
                 case Work.PORT_REGION:
-                    items.append(rows.run_ports())
+                    run = [rows.run_ports()]
                 case Work.REGION:
-                    items += rows.run_region(component.region(slot.name))
+                    run = rows.run_region(component.region(slot.name))
                 case _:
                     activity = next(a for a in component.activities if a.name == slot.name)
-                    items.append(rows.run_activity(activity))
+                    run = [rows.run_activity(activity)]
+            items += [*run[:-1], executing(run[-1], slot)]
         return tuple(items)
 
     def _board(self, name: str, of_type: str, initial: Expr, element: str) -> Instantiation:

@@ -24,9 +24,11 @@ from .ada import (
     UseType,
     arguments,
     call,
+    do,
     equal,
     number,
 )
+from .certified import CERTIFICATE
 from .events import event_value
 from .naming import ada_case, processor_package, root_package
 from .supervision import safe_state, supervised
@@ -175,6 +177,7 @@ def emit_main(system: System, header: str) -> Unit:
     steps = -(-system.shutdown.grace // POLL_NS)
     body: list[Stmt] = [
         Do("Ravenchart.Hosts.Start"),
+        do("Ravenchart.Hosts.Put_Model", Ref(f"{root}.{CERTIFICATE}.Model_Digest")),
         Loop(
             "",
             (
@@ -195,6 +198,7 @@ def emit_main(system: System, header: str) -> Unit:
         Do("Ravenchart.Hosts.Finish", arguments(Success=TRUE)),
     ]
     withs = {"Ada.Real_Time", "Ravenchart.Hosts", "System", f"{root}.Reports"}
+    withs.add(f"{root}.{CERTIFICATE}")
     withs |= {f"{root}.{ada_case(i)}" for i, _ in system.shutdown.raises}
     withs |= {
         f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in system.shutdown.raises

@@ -17,6 +17,7 @@ from ..terms import IntegerType, RecordType, ScalarType, Type, Value
 from .ada import (
     Aggregate,
     Arg,
+    Assign,
     Case,
     Chain,
     Decl,
@@ -38,6 +39,7 @@ from .ada import (
 )
 from .ada import Instance as Instantiation
 from .events import event_value
+from .executions import ELEMENT_ID
 from .naming import ada_case, root_package, type_name
 
 Stimulus = tuple[str, str, Type | None]
@@ -95,11 +97,15 @@ def emit_simulation(system: System, header: str) -> Unit:
         for slot in processor.slots:
             if slot.of_bus:
                 continue
-            run = do(f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}")
+            run = (
+                Assign("Executed", number(0)),
+                do(f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}", Ref("Executed")),
+            )
             turn = Chain("mod", (Ref("Count"), number(slot.divisor)))
             due = equal(turn, number(slot.phase))
-            rows.append(run if slot.divisor == 1 else If(((due, (run,)),)))
+            rows += run if slot.divisor == 1 else (If(((due, run),)),)
         releases.append((str(position), tuple(rows)))
+    executes = any(rows for _, rows in releases)
     takes = [
         (str(k), _taken(system, root, name, what, of_type))
         for k, (name, what, of_type) in enumerate(stimuli(system), 1)
@@ -119,6 +125,7 @@ def emit_simulation(system: System, header: str) -> Unit:
                 Subprogram(
                     "Release",
                     (Param("P", "in", "Processor"), Param("Count", "in", "Natural")),
+                    declarations=(Object("Executed", ELEMENT_ID),) if executes else (),
                     body=(Case(Ref("P"), tuple(releases)),),
                 ),
                 Subprogram(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..derive import SUPERVISOR
+from ..instants import has_offset
 from ..model import Node, Processor, Supervision, System
 from .ada import (
     SPARK,
@@ -23,11 +24,13 @@ from .ada import (
     Stmt,
     Subprogram,
     Unit,
+    UseType,
     arguments,
     call,
     number,
 )
-from .naming import ada_case, constant_name, priority, processor_package, root_package
+from .certified import agrees, fact
+from .naming import ada_case, priority, processor_package, root_package
 from .trace_calls import note, traced
 
 STACK = 32_768
@@ -65,7 +68,6 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
     root = root_package(system)
     name = f"{root}.Liveness_Supervision"
     element = f"{node.name}.{SUPERVISOR}"
-    task = next(t for t in system.tasks if t.element == element)
     watched = sorted(
         (p for p in system.processors if p.node == node.name), key=lambda p: -p.priority
     )
@@ -77,9 +79,9 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
     args = arguments(
         Processor_Id=Ref("Watched"),
         Name=Ref(f'"{element}"'),
-        Period=Ref(f"Timing_Certificate.{constant_name(element)}_T"),
+        Period=fact(element, "T"),
         Patience=number(system.shutdown.grace + END_MARGIN),
-        Task_Priority=priority(task.priority),
+        Task_Priority=fact(element, "Priority"),
         Ceiling=priority(system.object(f"{element}.board").ceiling),
         Stack_Bytes=number(STACK),
         Look=Ref("Look"),
@@ -96,9 +98,12 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Comment("It has not: count it, raise its events, and shut down."),
         Comment(f"[{element}]"),
         Instance("Supervisor", "Ravenchart.Supervisors", args),
+        UseType("Ravenchart.Nanoseconds"),
+        agrees("Supervisor.Given_Period", fact(element, "T"), element, "period"),
+        agrees("Supervisor.Given_Priority", fact(element, "Priority"), element, "priority"),
     )
     seen = Object("Seen", "Ravenchart.Liveness.Progress")
-    looks = tuple((_literal(p), _look(p)) for p in watched)
+    looks = tuple((_literal(p), _look(system, p)) for p in watched)
     events = tuple((_literal(p), _silence(system, p)) for p in watched)
     body: tuple[Decl, ...] = (
         Subprogram("Look", look, declarations=(seen,), body=(Case(Ref("Item"), looks),)),
@@ -138,18 +143,20 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
     ]
 
 
-def _look(processor: Processor) -> tuple[Stmt, ...]:
+def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
     """Ask one processor how far it has come, and judge."""
-    name, certificate = ada_case(processor.name), "Timing_Certificate"
-    limit = Ref(f"{certificate}.{name}_L")
+    name = ada_case(processor.name)
+    limit = fact(processor.name, "L")
     seen, elapsed = Ref("Seen"), Ref("Elapsed")
     if processor.released_by is not None:
         judged = call("Ravenchart.Liveness.Is_Stuck", limit, seen, elapsed)
     else:
+        shifted = any(has_offset(system, t) for t in system.tasks if t.element == processor.name)
+        offset = fact(processor.name, "O") if shifted else number(0)
         rhythm = Aggregate(
             (
-                Arg("Offset", number(processor.offset)),
-                Arg("Period", Ref(f"{certificate}.{name}_T")),
+                Arg("Offset", offset),
+                Arg("Period", fact(processor.name, "T")),
                 Arg("Limit", limit),
             )
         )

@@ -46,6 +46,11 @@ is
      (Driver_Priority <= Transmit_Ceiling
       and then Driver_Priority <= Receive_Ceiling);
 
+   Given_Priority : constant System.Priority := Driver_Priority;
+   Given_Setting  : constant Bus_Setting := Setting;
+   --  The controller as it runs, for a timing certificate to be compared
+   --  with.
+
    procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
    with
      Global => (In_Out => (State, Wake_Up)),

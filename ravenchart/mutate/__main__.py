@@ -14,7 +14,7 @@ from queue import SimpleQueue
 from ..toolchain import ROOT, ToolFailed, ToolMissing
 from .catalogue import KINDS, mutants_of
 from .mutants import Mutant, sampled
-from .observing import Observer, Played, Simulated
+from .observing import Observer, Played, PlayedTogether, Simulated
 from .report import Explained, Outcome, as_json, explanations, reason_of, survivors, table
 from .workbench import PATIENCE, Verdict, Workbench
 
@@ -26,12 +26,17 @@ class Subject:
     name: str
     model: Path
     observer: type[Observer]
+    node: str = ""
+    """The node whose program is broken, where there are several."""
 
 
 SUBJECTS = (
     Subject("rich", ROOT / "tests" / "feature" / "rich" / "model.yaml", Simulated),
     Subject("three_components", ROOT / "examples" / "three_components" / "model.yaml", Simulated),
     Subject("cartesian_robot", ROOT / "examples" / "cartesian_robot" / "model.yaml", Played),
+    Subject(
+        "two_nodes", ROOT / "examples" / "two_nodes" / "model.yaml", PlayedTogether, node="drive"
+    ),
 )
 EXPLAINED = Path(__file__).parent / "explained.toml"
 
@@ -43,7 +48,9 @@ def tried(
     with tempfile.TemporaryDirectory(prefix="ravenchart-mutate-") as place:
         free: SimpleQueue[Workbench] = SimpleQueue()
         for number in range(min(jobs, len(chosen))):
-            bench = Workbench(subject.model, Path(place) / str(number), subject.observer)
+            bench = Workbench(
+                subject.model, Path(place) / str(number), subject.observer, subject.node
+            )
             units = {u: None for m in chosen for u in bench.units_of(m)}
             if number == 0 and units:
                 bench.prove(list(units), jobs=jobs, patience=PATIENCE)
@@ -70,7 +77,7 @@ def tried(
 def mutants(subject: Subject, limit: int | None, seed: int, kinds: Sequence[str]) -> list[Mutant]:
     """The chosen mutants of a subject; of its model only where the interpreter can run it."""
     with tempfile.TemporaryDirectory(prefix="ravenchart-mutate-") as place:
-        files = Workbench(subject.model, Path(place), Observer).files
+        files = Workbench(subject.model, Path(place), Observer, subject.node).files
     wanted = [
         m
         for m in mutants_of(files)

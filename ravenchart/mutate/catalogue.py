@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from . import firing_rules, model_rules, program_rules, selection_rules
+from . import fact_rules, firing_rules, model_rules, program_rules, selection_rules
 from .mutants import Files, Mutant, Part, Rule, numbered
 
 
@@ -31,8 +31,16 @@ def _ceilings(name: str, text: str) -> bool:
     return name.endswith((".ads", ".adb")) and "Ceiling => System" in text
 
 
-def _processor(name: str, text: str) -> bool:
-    return name.endswith(".ads") and "is new Ravenchart.Periodic_Processors" in text
+def _spec(name: str, text: str) -> bool:
+    return name.endswith(".ads") and "Timing_Certificate." in text
+
+
+def _bus(name: str, text: str) -> bool:
+    return name.endswith((".ads", ".adb")) and "Timing_Certificate." in text
+
+
+def _executing(name: str, text: str) -> bool:
+    return name.endswith(".adb") and "procedure Execute (Item : Row) is" in text
 
 
 def _certificate(name: str, _text: str) -> bool:
@@ -73,8 +81,13 @@ ENTRIES = (
     Entry("domain", firing_rules.domain_declared, _region_spec, "declared"),
     Entry("completion", firing_rules.completion, _region_body),
     Entry("ceiling", program_rules.ceiling, _ceilings),
-    Entry("period", program_rules.period, _processor),
     Entry("certificate", program_rules.certificate, _certificate),
+    Entry("fact", fact_rules.task, _spec),
+    Entry("fact", fact_rules.table, _spec),
+    Entry("fact", fact_rules.bus, _bus),
+    Entry("fact", fact_rules.calls, _executing),
+    Entry("fact", fact_rules.sums, _certificate, "declared"),
+    Entry("fact", fact_rules.supposed, _certificate, "declared"),
     Entry("codec", program_rules.codec_in_code, _codecs),
     Entry("codec", program_rules.codec_declared, _codec_spec, "declared"),
     Entry("target", model_rules.target, _model, "model"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
@@ -103,6 +104,11 @@ def sampled(mutants: Sequence[Mutant], limit: int | None, seed: int) -> list[Mut
         rng = Random(f"{seed} {row}")
         chosen += rng.sample(group, min(limit, len(group)))
     return [mutants[i] for i in sorted(chosen)]
+
+
+def matches(text: str, pattern: str) -> Iterator[re.Match[str]]:
+    """Where a pattern is in a text; ^ and $ are the ends of lines."""
+    return re.compile(pattern, re.M).finditer(text)
 
 
 def replaced(span: Span, text: str) -> tuple[Edit, ...]:

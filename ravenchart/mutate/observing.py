@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -17,13 +19,12 @@ from behaviour.machine import Machine
 from behaviour.stimuli import Arrived, Raised, Stimuli
 from behaviour.traces import Record
 from gen.component import Event, Port
-from gen.emit.naming import ada_case
 from gen.generate import simulation
 from gen.model import End, System
 from gen.terms import IntegerType, Ns, RecordType, Scalar, ScalarType, Type, Value
 
 from .. import simulate, steps
-from ..run import run_controller
+from ..run import controller, run_controller, run_nodes
 from ..toolchain import ROOT, ToolFailed
 from .catalogue import mutants_of
 from .mutants import Mutant
@@ -32,8 +33,6 @@ SEEDS = range(4)
 """The first run gets no stimuli, the others random ones."""
 VIRTUAL = Ns(4 * 10**9)
 SECONDS = 1.5
-HOLDS = 40
-"""How often a program is held up to see whether it notices missed deadlines."""
 
 Process = subprocess.Popen[bytes]
 
@@ -50,12 +49,6 @@ class Observer:
 
     def differs(self, mutant: Mutant, executable: Path) -> str:
         """How the broken program differs; empty when it does not."""
-        if mutant.rule == "Deadline":
-            return unnoticed(self.checked.system, mutant.file, executable, self.folder)
-        return self.seen(mutant, executable)
-
-    def seen(self, mutant: Mutant, executable: Path) -> str:
-        """How it differs where nothing holds it up."""
         raise NotImplementedError
 
     def model_differs(self, system: System) -> str:
@@ -119,11 +112,11 @@ class Simulated(Observer):
         if difference := self._difference():
             raise ToolFailed(f"the unbroken program differs: {difference}")
 
-    def seen(self, mutant: Mutant, executable: Path) -> str:
+    def differs(self, mutant: Mutant, executable: Path) -> str:
         """The first step that differs."""
         twin = self.mutants.get(mutant.key)
         if twin is None:
-            return self.real.seen(mutant, executable)
+            return self.real.differs(mutant, executable)
         path = self.home / "source" / mutant.file
         path.write_text(twin.applied(self.files[mutant.file]))
         try:
@@ -199,34 +192,6 @@ def ran(executable: Path, folder: Path, meanwhile: Callable[[Process], None]) ->
     return read_trace(trace.read_text(encoding="ascii").splitlines(), names)
 
 
-def unnoticed(system: System, file: str, executable: Path, folder: Path) -> str:
-    """Does a periodic processor, held up for longer than its deadline, count few misses?
-
-    ``file`` is the spec of its package. It is held up for less than twice its deadline:
-    what starts in the first 0.75 of one must be seen to miss it, which is so often half
-    of the time at least that this is said of less.
-    """
-    processor = next(
-        p for p in system.processors if file.endswith(f"-{ada_case(p.name).lower()}.ads")
-    )
-    deadline, period = processor.deadline / 1e9, processor.period / 1e9
-
-    def hold_up(process: Process) -> None:
-        for _ in range(HOLDS):
-            time.sleep(period + 2 * deadline)
-            process.send_signal(signal.SIGSTOP)
-            time.sleep(1.75 * deadline)
-            process.send_signal(signal.SIGCONT)
-        time.sleep(2 * period)
-
-    try:
-        misses = ran(executable, folder, hold_up).processors[processor.name].misses
-    except (TraceError, OSError) as problem:
-        return str(problem)
-    expected = HOLDS * min(1.0, 0.75 * deadline / period)
-    return f"{misses} misses, not about {expected:.0f}" if misses < expected / 2 else ""
-
-
 class Real(Observer):
     """The program itself for a moment: its transitions in order, and how often rows run."""
 
@@ -239,7 +204,7 @@ class Real(Observer):
     def _observed(self, executable: Path) -> Observation:
         return ran(executable, self.folder, lambda process: time.sleep(SECONDS))
 
-    def seen(self, mutant: Mutant, executable: Path) -> str:
+    def differs(self, mutant: Mutant, executable: Path) -> str:
         """Another transition, another rate, or an end with an error."""
         try:
             seen = self._observed(executable)
@@ -277,7 +242,7 @@ def _near(found: int, wanted: int) -> bool:
 class Played(Observer):
     """A scenario on the program's bus."""
 
-    def seen(self, mutant: Mutant, executable: Path) -> str:
+    def differs(self, mutant: Mutant, executable: Path) -> str:
         """What failed."""
         return self._failures(executable)
 
@@ -296,5 +261,45 @@ class Played(Observer):
             None,
             self.folder / "run",
             analysis=self.checked.analysis,
+        )
+        return "; ".join(outcome.failures)
+
+
+class PlayedTogether(Observer):
+    """A scenario on the bus of several nodes, of which the program of one is broken."""
+
+    def differs(self, mutant: Mutant, executable: Path) -> str:
+        """What failed."""
+        return self._failures(executable)
+
+    def prepare(self, executable: Path) -> None:
+        """Build the programs of the other nodes; ToolFailed when the scenario fails."""
+        home = self.folder / "unbroken"
+        home.mkdir()
+        for source in self.checked.folder.glob("*.yaml"):
+            shutil.copy(source, home)
+        unbroken = steps.check(home / self.checked.path.name)
+        steps.write_program(unbroken)
+        self.generated = unbroken.generated
+        self.controllers = [controller(made) for made in steps.programs_of(unbroken)]
+        if failures := self._failures(executable):
+            raise ToolFailed(f"the unbroken program fails its scenario: {failures}")
+
+    def _failures(self, executable: Path) -> str:
+        broken = self.folder / "model" / "generated" / "trace.json"
+        names = broken.read_text(encoding="utf-8")
+        controllers = [
+            replace(one, executable=executable)
+            if one.trace_json.read_text(encoding="utf-8") == names
+            else one
+            for one in self.controllers
+        ]
+        outcome = run_nodes(
+            controllers,
+            self.checked.analysis,
+            next(self.generated.glob("*.dbc")),
+            self.checked.folder / "scenario.yaml",
+            0.0,
+            self.folder / "run",
         )
         return "; ".join(outcome.failures)

@@ -1,44 +1,27 @@
-"""Breaks outside the regions: ceilings, periods, the timing certificate, codecs."""
+"""Breaks outside the regions: ceilings, the timing certificate, codecs."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 
-from .mutants import Files, Found, replaced
+from .mutants import Files, Found, matches, replaced
 from .source import Span, Subprogram, subprograms
-
-
-def _matches(text: str, pattern: str) -> Iterator[re.Match[str]]:
-    return re.compile(pattern, re.M).finditer(text)
 
 
 def ceiling(file: str, files: Files) -> Iterator[Found]:
     """A protected object whose ceiling is one too low."""
     text = files[file]
-    for match in _matches(text, r"Ceiling => System\.Default_Priority \+ (\d+)"):
+    for match in matches(text, r"Ceiling => System\.Default_Priority \+ (\d+)"):
         package = re.findall(r"package (\w+) is new", text[: match.start()])[-1]
         lower = int(match.group(1)) - 1
         yield package, "lower", replaced(Span(*match.span(1)), str(lower))
 
 
-def period(file: str, files: Files) -> Iterator[Found]:
-    """A task or a row of its table that runs at another rate."""
-    text = files[file]
-    for name in ("Period", "Deadline"):
-        for match in _matches(text, rf"\b{name} => (Timing_Certificate\.\w+)"):
-            yield "Processor", name, replaced(Span(*match.span(1)), f"2 * {match.group(1)}")
-    for match in _matches(text, r"Divisor => (\d+), Phase"):
-        yield "Table", "divisor", replaced(Span(*match.span(1)), str(int(match.group(1)) + 1))
-    for match in _matches(text, r"Cycle => (\d+)"):
-        if match.group(1) != "1":
-            yield "Processor", "cycle", replaced(Span(*match.span(1)), str(int(match.group(1)) + 1))
-
-
 def certificate(file: str, files: Files) -> Iterator[Found]:
     """A claimed response time, a budget or a deadline that does not hold."""
     text = files[file]
-    for match in _matches(text, r"^   (\w+)_(R|D|Budget) : constant :=\s+([\d_]+);"):
+    for match in matches(text, r"^   (\w+)_(R|D|Budget) : constant :=\s+([\d_]+);"):
         name, what, value = match.group(1), match.group(2), int(match.group(3).replace("_", ""))
         if what == "R":
             yield name, "bound", replaced(Span(*match.span(3)), str(value - 1))

@@ -48,11 +48,16 @@ class Workbench:
     checks: neither is an error here.
     """
 
-    def __init__(self, model: Path, folder: Path, observer: type[Observer] = Simulated) -> None:
+    def __init__(
+        self, model: Path, folder: Path, observer: type[Observer] = Simulated, node: str = ""
+    ) -> None:
+        """Of a model with several nodes, the program of ``node`` is broken."""
         checked = steps.check(model)
         self.folder = folder
         self.driver = steps.default_driver(checked)
         files = dict(generate(checked.system, steps.claims(checked)))
+        home = f"{node}/" if node else ""
+        files = {n.removeprefix(home): t for n, t in files.items() if n.startswith(home)}
         self.model = checked.path
         self.files: Files = {
             **{n: t for n, t in files.items() if n.endswith((".ads", ".adb"))},
@@ -100,6 +105,17 @@ class Workbench:
         path.write_text(broken)
         try:
             return self._judged(mutant, broken)
+        finally:
+            path.write_text(text)
+
+    def run_broken(self, mutant: Mutant) -> str:
+        """How the program differs with a break that the compiler lets pass; "" if it does not."""
+        text = self.files[mutant.file]
+        path = self.source / mutant.file
+        path.write_text(mutant.applied(text))
+        try:
+            self._compile()
+            return self.observer.differs(mutant, self.executable)
         finally:
             path.write_text(text)
 
@@ -171,10 +187,10 @@ class Workbench:
         raise ValueError(name)
 
     def units_of(self, mutant: Mutant) -> list[str]:
-        """What is proved again: the unit; for ceilings and periods the tasks and the main."""
+        """What is proved again: the unit; for ceilings the tasks and the main."""
         if mutant.part == "model":
             return []
-        if mutant.kind in ("ceiling", "period"):
+        if mutant.kind == "ceiling":
             tasks = [_body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t]
             return [*tasks, f"{self.main}.adb"]
         body = _body(mutant.file)

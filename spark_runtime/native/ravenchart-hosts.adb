@@ -228,6 +228,15 @@ is
    is (Stop_Flag or else Failures.Stop_Needed);
 
    ---------------
+   -- Put_Model --
+   ---------------
+
+   procedure Put_Model (Digest : String) is
+   begin
+      Put_Line ("M " & Digest);
+   end Put_Model;
+
+   ---------------
    -- Put_Trace --
    ---------------
 

@@ -26,6 +26,10 @@ package Ravenchart.Host_Probes
       (State with Synchronous, External => (Async_Readers, Async_Writers)),
     Initializes    => State
 is
+   Given_Period   : constant Positive_Nanoseconds := Period;
+   Given_Priority : constant System.Priority := Probe_Priority;
+   --  The task as it runs, for a timing certificate to be compared with.
+
    procedure Read (Longest : out Nanoseconds)
    with Global => (Input => State);
    --  The largest lateness seen.

@@ -9,11 +9,11 @@
 --
 --  The report goes to the file that the environment variable RAVENCHART_TRACE
 --  names, and nowhere when it is not set. Lines: E clock, the time of this
---  machine's real-time clock at Start of Epochs; T time kind element value;
---  P processor releases misses worst_response; A activity worst_execution;
---  H kind count; L what count; W host_latency; N now, the time at which the
---  statistics were read; F feeds of the watchdog; END last. Times are in
---  nanoseconds.
+--  machine's real-time clock at Start of Epochs; M digest, of the model from
+--  which the program was generated; T time kind element value; P processor
+--  releases misses worst_response; A activity worst_execution; H kind count;
+--  L what count; W host_latency; N now, the time at which the statistics
+--  were read; F feeds of the watchdog; END last. Times are in nanoseconds.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -37,6 +37,12 @@ is
    function Stop_Requested return Boolean
    with Volatile_Function, Global => (Process, Failures.State);
    --  Has a signal asked the controller to end, or is there a failure?
+
+   procedure Put_Model (Digest : String)
+   with
+     Global => (In_Out => Process),
+     Pre    => Digest'Length in 1 .. 80;
+   --  Write an M line; Digest is one word.
 
    procedure Put_Trace (Item : Traces.Trace_Record)
    with Global => (In_Out => Process);

@@ -47,6 +47,13 @@ is
    pragma Assert (Name'Length in 1 .. 128);
    pragma Assert (for all Slot of Table => Schedules.Fits (Slot, Cycle));
 
+   Given_Table    : constant Table_Type := Table;
+   Given_Period   : constant Positive_Nanoseconds := Period;
+   Given_Offset   : constant Nanoseconds := Offset;
+   Given_Deadline : constant Positive_Nanoseconds := Deadline;
+   Given_Priority : constant System.Priority := Task_Priority;
+   --  The task as it runs, for a timing certificate to be compared with.
+
    package Releases is new Measured_Releases
      (Activity_Id      => Activity_Id,
       Table_Type       => Table_Type,

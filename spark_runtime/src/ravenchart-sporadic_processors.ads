@@ -42,6 +42,11 @@ package Ravenchart.Sporadic_Processors
 is
    pragma Assert (Name'Length in 1 .. 128);
 
+   Given_Separation : constant Positive_Nanoseconds := Minimum_Separation;
+   Given_Deadline   : constant Positive_Nanoseconds := Deadline;
+   Given_Priority   : constant System.Priority := Task_Priority;
+   --  The task as it runs, for a timing certificate to be compared with.
+
    type Table_Type is array (Activity_Id) of Schedules.Slot;
    --  Has the form that a release needs.
 

@@ -46,6 +46,10 @@ package Ravenchart.Supervisors
 is
    pragma Assert (Name'Length in 1 .. 128);
 
+   Given_Period   : constant Positive_Nanoseconds := Period;
+   Given_Priority : constant System.Priority := Task_Priority;
+   --  The task as it runs, for a timing certificate to be compared with.
+
    procedure Read (Fed : out Event_Count)
    with Global => (Input => State);
    --  How often the watchdog was fed.

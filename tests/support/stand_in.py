@@ -2,7 +2,8 @@
 
 It serves slcan on a free TCP port, moves each axis that the bus database knows,
 writes the trace, and ends on SIGTERM. Its control is rough; its files are exact.
-Arguments: the DBC, the trace map, then any of ``exit=<n>``, ``cut`` (no END line),
+Arguments: the DBC, the trace map, then any of ``exit=<n>``, ``cut`` (no END line), ``other``
+(the digest of another model),
 ``miss``, ``lose``, ``late=<ns>``, ``deaf`` (ignores SIGTERM), ``mute`` (prints nothing), ``warn``,
 ``fifo`` (takes a real-time priority).
 """
@@ -97,12 +98,14 @@ class Controller:
         names = [m.name for m in self.codec.messages]
         axes = [n.removesuffix("_set_point") for n in names if n.endswith("_set_point")]
         self.joints = [Joint(axis) for axis in axes]
-        elements = json.loads(trace_map.read_text())["elements"]
+        known = json.loads(trace_map.read_text())
+        elements = known["elements"]
         self.leaves = {e["id"]: e["leaves"] for e in elements if e["kind"] == "region"}
         self.mission = "Waiting"
         self.states: dict[int, str] = {}
         self.trace_file = Path(os.environ["RAVENCHART_TRACE"])
-        self.trace: list[str] = []
+        digest = "f" * 64 if "other" in options else known["digest"]
+        self.trace = [f"M {digest}\n"]
         self.stop = False
         self.start = time.monotonic()
         self.releases = 0

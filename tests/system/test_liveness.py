@@ -355,7 +355,7 @@ def test_a_sporadic_processor_that_hangs_is_found_and_the_mission_ends(
     program = steps.programs_of(checked)[0]
     reception = program.generated / "cartesian_robot-reception.adb"
     text = reception.read_text()
-    call = "            Robot_Bus.Receiver.Run_Receive;\n"
+    call = "            Robot_Bus.Receiver.Run_Receive (Executed);\n"
     assert text.count(call) == 1
     hang = "            delay until Ada.Real_Time.Time_Last;\n"
     reception.write_text(f"with Ada.Real_Time;\n{text.replace(call, call + hang)}")

@@ -96,4 +96,4 @@ def test_moving_an_activity_is_one_line_and_the_token_still_goes_round(
     seen = _observed(checked, steps.programs_of(checked)[0].build(), tmp_path)
     assert len(seen.of("arrived", "one.token_in")) >= 3
     body = (folder / "generated" / "three_components-processor_2.adb").read_text()
-    assert re.search(r"when Two_Work =>\s+Two.Run_Work;", body)
+    assert re.search(r"when Two_Work =>\s+Two.Run_Work \(Executed\);", body)

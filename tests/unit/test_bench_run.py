@@ -66,6 +66,10 @@ expect_trace:
 )
 
 
+OTHER = (
+    "trace.txt: error: the trace has the digest ffffffffffff, and the model has 000000000000: the "
+    "program that wrote it was generated from another model; generate, build and run again"
+)
 PASSED = "verdict: PASS (timing not judged: the controller had no real-time priorities)"
 BARE = "scenario: S\nsteps: [{wait: 1 s}]\n"
 
@@ -136,6 +140,7 @@ def test_a_lost_bench_is_found_in_the_trace(tmp_path: Path) -> None:
         ("exit=3", "the controller ended with exit code 3"),
         ("cut", "the trace is cut off: its END line is missing"),
         ("lose", "7 trace records were lost"),
+        ("other", OTHER),
         ("miss", "control missed 1 deadline; the scenario does not expect it"),
     ],
 )

@@ -91,18 +91,19 @@ FOREIGN = PUMP.replace(
 @pytest.mark.parametrize(
     ("text", "setting"),
     [
-        (PUMP, "(Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => False)"),
-        (FAST, "(Bit_Rate => 500_000, Data_Rate => 2_000_000, Takes_Fd => True)"),
-        (WIDE, "(Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => True)"),
+        (PUMP, "Data_Rate => 0, Takes_Fd => False"),
+        (FAST, "Data_Rate => Timing_Certificate.Can_Bus_Data_Rate, Takes_Fd => True"),
+        (WIDE, "Data_Rate => 0, Takes_Fd => True"),
         #  a classic controller would destroy the frames that others exchange
-        (FOREIGN, "(Bit_Rate => 500_000, Data_Rate => 0, Takes_Fd => True)"),
+        (FOREIGN, "Data_Rate => 0, Takes_Fd => True"),
     ],
 )
 def test_the_controller_takes_fd_where_such_frames_are_on_its_bus(
     text: str, setting: str, tmp_path: Path
 ) -> None:
     spec = files_of(text, tmp_path)["pump_house-can_bus.ads"]
-    automatic = setting.replace(")", ", Recovery => Ravenchart.Can.Automatic)")
+    rate = "Bit_Rate => Timing_Certificate.Can_Bus_Bit_Rate"
+    automatic = f"({rate}, {setting}, Recovery => Ravenchart.Can.Automatic)"
     assert f"Setting => {automatic}" in " ".join(spec.split())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from analysis.claims import claims_of
@@ -34,7 +35,8 @@ def _system(*replacements: tuple[str, str]) -> System:
 
 
 def _program(system: System) -> dict[str, str]:
-    """What is generated, but for where elements stand in the model."""
+    """What is generated, but for the text of the model: its digest, and where elements stand."""
+    system = replace(system, digest="")
     files = generate(system, claims_of(analyse(system)))
     return {name: text for name, text in files.items() if not name.endswith("trace.json")}
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart import steps
 from ravenchart.__main__ import OK, WRONG, main
 
 PUMP = Path(__file__).parents[2] / "examples" / "pump"
@@ -19,9 +20,14 @@ def rows() -> dict[str, int]:
     return {e["element"]: e["id"] for e in elements["elements"] if e["kind"] == "row"}
 
 
-def trace(folder: Path, text: str) -> str:
+def digest() -> str:
+    """That of the pump's model."""
+    return steps.check(MODEL).system.digest
+
+
+def trace(folder: Path, text: str, model: str | None = None) -> str:
     path = folder / "trace.txt"
-    path.write_text(text, encoding="ascii")
+    path.write_text(f"M {model or digest()}\n{text}", encoding="ascii")
     return str(path)
 
 
@@ -52,7 +58,7 @@ def test_an_execution_above_its_budget_fails_and_is_named(
     [
         ("A 1 5\n", "the trace was cut off"),
         ("END\n", "no activity of"),
-        ("A 1\nEND\n", "trace.txt:1: error: not a trace line"),
+        ("A 1\nEND\n", "trace.txt:2: error: not a trace line"),
     ],
 )
 def test_a_trace_that_says_nothing_is_refused(
@@ -76,3 +82,17 @@ def test_options_that_do_not_go_together_are_refused(
 ) -> None:
     assert main(["analyse", *options]) == WRONG
     assert message in capsys.readouterr().err
+
+
+def test_a_trace_of_another_model_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = "".join(f"A {number} 1000\n" for number in rows().values())
+    path = trace(tmp_path, lines + "END\n", "f" * 64)
+    assert main(["analyse", str(MODEL), "--observed", path]) == WRONG
+    assert f"has the digest ffffffffffff, and the model has {digest()[:12]}" in (
+        capsys.readouterr().err
+    )
+    Path(path).write_text(lines + "END\n", encoding="ascii")
+    assert main(["analyse", str(MODEL), "--observed", path]) == WRONG
+    assert "the trace has no digest" in capsys.readouterr().err

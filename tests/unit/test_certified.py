@@ -1,0 +1,154 @@
+"""What the timing certificate states, and where the code takes it from there."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from analysis.claims import claims_of
+from analysis.timing import analyse
+from gen.generate import generate
+from gen.model import System
+from ravenchart import steps
+from ravenchart.toolchain import ROOT
+from tests.support.certificates import certificate, changed, compiled
+from tests.support.systems import bus, message, system, task
+from tests.support.two_nodes import system_of
+
+FACTS = {
+    "control.ads": {
+        "Task_Priority => Timing_Certificate.Control_Priority",
+        "Period => Timing_Certificate.Control_T",
+        "Deadline => Timing_Certificate.Control_D",
+        "Divisor => Timing_Certificate.Servo_Tell_Divisor",
+        "Phase => Timing_Certificate.Servo_Tell_Phase",
+        "Processor.Given_Priority /= Timing_Certificate.Control_Priority",
+        "Processor.Given_Offset /= 0",
+    },
+    "reception_drive.ads": {
+        "Minimum_Separation => Timing_Certificate.Reception_Drive_T",
+        "Processor.Given_Separation /= Timing_Certificate.Reception_Drive_T",
+    },
+    "host_probe.ads": {
+        "Period => Timing_Certificate.Drive_Probe_T",
+        "Probe_Priority => Timing_Certificate.Drive_Probe_Priority",
+    },
+    "link.ads": {
+        "Id in Timing_Certificate.Link_Supervisor_Order_Id",
+        "Bit_Rate => Timing_Certificate.Link_Bit_Rate",
+        "Driver_Priority => Timing_Certificate.Link_Driver_Rx_Supervisor_Order_Priority",
+        "Controller.Given_Setting.Bit_Rate = Timing_Certificate.Link_Bit_Rate",
+    },
+    "link.adb": {
+        "Id => Timing_Certificate.Link_Servo_Report_Id",
+        "Length => Timing_Certificate.Link_Servo_Report_Length",
+    },
+    "link-receiver.adb": {
+        "Id (Frame) = Timing_Certificate.Link_Supervisor_Order_Id",
+        "Timing_Certificate.Link_Supervisor_Order_Length)",
+        "Executed := Executed + Elements.Link_Receive_Drive_Row",
+    },
+    "servo.ads": {
+        "with Pre => Executed = 0, Post => Executed = Elements.Servo_Tell_Row",
+    },
+    "control.adb": {
+        "Servo.Run_Tell (Executed)",
+        "pragma Assert (Executed = (Elements.Control_Processor + 1 + "
+        "Ravenchart.Element_Id (Row'Pos (Item))))",
+    },
+}  # fmt: skip
+
+
+@cache
+def model() -> System:
+    return system_of()
+
+
+@cache
+def files() -> dict[str, str]:
+    made = generate(model(), claims_of(analyse(model())))
+    return {name: " ".join(text.split()) for name, text in made.items()}
+
+
+@pytest.mark.parametrize("unit", FACTS)
+def test_the_code_takes_its_facts_from_the_certificate(unit: str) -> None:
+    text = files()[f"drive/two_nodes-{unit}"]
+    for fact in FACTS[unit]:
+        assert fact in text, fact
+
+
+def test_the_program_says_which_model_it_is_of() -> None:
+    for node in ("drive", "panel"):
+        text = files()[f"{node}/two_nodes-timing_certificate.ads"]
+        assert f'Model_Digest : constant String := "{model().digest}"' in text
+        put = "Ravenchart.Hosts.Put_Model (Two_Nodes.Timing_Certificate.Model_Digest);"
+        assert put in files()[f"{node}/two_nodes_main.adb"]
+
+
+def test_no_number_of_the_analysis_stands_in_the_code() -> None:
+    """Priorities of tasks, identifiers and rates: the certificate alone has them."""
+    for name, text in files().items():
+        if name.endswith((".ads", ".adb")) and "timing_certificate" not in name:
+            assert not re.search(
+                r"\b(Task_Priority|Driver_Priority|Probe_Priority|Id|Bit_Rate|Divisor|Period)"
+                r" => (System\.|\d)",
+                text,
+            ), name
+
+
+# --- The certificate checks its own facts -------------------------------------------------
+
+
+@cache
+def sample() -> str:
+    tasks = [task("low", 1, 100_000, 10_000_000), task("high", 2, 100_000, 10_000_000)]
+    tasks.append(task("peer", 2, 100_000, 10_000_000))
+    messages = (message("a", 1), message("b", 0x20 << 18, extended=True), message("c", 0x21))
+    return certificate(analyse(system(tasks, (), [bus()], messages)))
+
+
+def test_facts_that_hold_compile(tmp_path: Path) -> None:
+    assert compiled(sample(), tmp_path) == ""
+
+
+@pytest.mark.parametrize(
+    ("number", "to", "words"),
+    [
+        ("Low_Priority", "System.Default_Priority + 2", "must have a higher priority than low"),
+        ("Peer_Priority", "System.Default_Priority + 3", "high must have the priority of peer"),
+        ("Bus_A_Id", "16#21#", "bus.a must win the arbitration against bus.b"),
+        ("Bus_B_Id", "16#880000#", "bus.b must win the arbitration against bus.c"),
+        ("Low_B", "5_000", "can take longer than its claimed response time"),
+        ("High_B", "-1", "claims more than its terms add up to"),
+        ("Bus_Bit_Rate", "1_000_000", "claims more than its terms add up to"),
+    ],
+)
+def test_facts_that_the_sums_contradict_are_refused(
+    number: str, to: str, words: str, tmp_path: Path
+) -> None:
+    text, count = re.subn(
+        rf"^(   {number} : constant :=)\s+[^;]*;", rf"\1 {to};", sample(), flags=re.M
+    )
+    assert count == 1, number
+    assert words in compiled(text, tmp_path)
+
+
+def test_the_longest_call_of_a_device_blocks(tmp_path: Path) -> None:
+    """It is longer than the sections of the runtime, and the sum has it."""
+    model_file = ROOT / "tests" / "feature" / "devices" / "model.yaml"
+    text = certificate(steps.check(model_file).analysis)
+    assert "Fast_B : constant := Board_1_Section;" in text
+    assert "Slow_B : constant := Board_Critical_Section;" in text
+    assert compiled(text, tmp_path, "Devices_Feature") == ""
+    shorter = changed(text, "Board_1_Section", -1)
+    assert "fast claims more than" in compiled(shorter, tmp_path, "Devices_Feature")
+
+
+@pytest.mark.parametrize("by", [-1, 1])
+def test_a_claim_is_exact_both_ways(by: int, tmp_path: Path) -> None:
+    problem = "claims more than its terms" if by > 0 else "can take longer than its claimed"
+    for number in ("Low_R", "Bus_A_R", "Bus_C_W"):
+        assert problem in compiled(changed(sample(), number, by), tmp_path), number
