@@ -47,6 +47,10 @@ def _codec_spec(name: str, _text: str) -> bool:
     return name.endswith("-codecs.ads")
 
 
+def _bus(name: str, text: str) -> bool:
+    return name.endswith((".ads", ".adb")) and ("_Frame" in text or "function Accepts" in text)
+
+
 def _model(name: str, _text: str) -> bool:
     return name.endswith(".yaml")
 
@@ -77,6 +81,8 @@ ENTRIES = (
     Entry("certificate", program_rules.certificate, _certificate),
     Entry("codec", program_rules.codec_in_code, _codecs),
     Entry("codec", program_rules.codec_declared, _codec_spec, "declared"),
+    Entry("frame", program_rules.frame_in_code, _bus),
+    Entry("frame", program_rules.frame_declared, _codec_spec, "declared"),
     Entry("target", model_rules.target, _model, "model"),
     Entry("source", model_rules.source, _model, "model"),
     Entry("trigger", model_rules.trigger, _model, "model"),
