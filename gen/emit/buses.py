@@ -9,6 +9,7 @@ from .ada import (
     TRUE,
     Aggregate,
     Arg,
+    Aspect,
     Call,
     CaseExpr,
     Chain,
@@ -23,6 +24,7 @@ from .ada import (
     Param,
     Pragma,
     Ref,
+    Return,
     Stmt,
     Subprogram,
     Unit,
@@ -38,15 +40,13 @@ from .bus_watch import emit_watch
 from .certified import CERTIFICATE, agrees, fact
 from .codecs import codec_name, words_of
 from .executions import ELEMENT_ID, EXECUTED, executed, run_spec
+from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
 from .naming import ada_case, priority, root_package, type_name
 from .remote_calls import received_as
 from .trace_calls import note, traced
 
 DRIVER_STACK = 65_536
 """Bytes of stack for each task of a CAN driver on a host."""
-
-ANY = "Ravenchart.Can.Any_Frames"
-FD = "Ravenchart.Can.Fd_Frames"
 
 
 def _sent(system: System, bus: Bus) -> tuple[Message, ...]:
@@ -108,14 +108,35 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         ),
     ]
     items += _checks(bus, driver)
+    if received:
+        items.append(
+            Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
+        )
+        items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in received]
+    if not all(m.fd for m in sent):
+        items.append(UseType("Interfaces.Unsigned_64"))
+    if any(m.fd for m in sent):
+        items += [UseType(f"{FD}.Fd_Words"), UseType(f"{FD}.Bit_Rate_Use")]
     for message in sent:
+        items.append(_frame_spec(system, bus, message))
+        items.append(
+            Comment(f"[{message.name}] its frame by the layout table; none of its bits is cut off.")
+        )
         items.append(_send_spec(system, message))
         items.append(Comment(f"[{message.name}] hand one frame to the controller; never blocks."))
-    withs = ("Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}")
-    units = [Unit(header, withs, Package(name, tuple(items), (SPARK,)))]
+    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
+    if sent or received:
+        withs |= {f"{root}.Codecs", LAYOUTS}
     if sent:
-        bodies = tuple(_send_body(system, bus, m) for m in sent)
-        context = {f"{root}.Codecs", f"{root}.Health_Counts", "Ravenchart.Health", ANY, FD}
+        withs |= {ANY, "Interfaces"}
+    if any(m.fd for m in sent):
+        withs |= {FD}
+    units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
+    if sent:
+        made = (_frame_body(system, bus, m) for m in sent)
+        handed = (_send_body(system, m) for m in sent)
+        bodies = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
+        context = {f"{root}.Health_Counts", "Ravenchart.Health"}
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
         units.append(
@@ -165,24 +186,58 @@ def _send_spec(system: System, message: Message) -> Subprogram:
     )
 
 
-def _frame(bus: Bus, message: Message) -> Expr:
-    """The frame that carries an item."""
+def _frame_name(message: Message) -> str:
+    return f"Frame_Of_{ada_case(message.name)}"
+
+
+def _frame_spec(system: System, bus: Bus, message: Message) -> Subprogram:
+    """The frame that carries an item: as the layout table has it, with all that is packed."""
+    result = Ref(f"{_frame_name(message)}'Result")
+    facts = [is_framed(message, result)]
+    if message.fd:
+        facts += [
+            equal(call(f"{ANY}.Words", result), _packed(message)),
+            equal(Ref(f"{result.text}.Fd.Rate"), _rate(bus)),
+        ]
+    else:
+        facts.append(equal(call(f"{ANY}.Payload", result), _packed(message)))
+    return Subprogram(
+        _frame_name(message),
+        _send_spec(system, message).params,
+        f"{ANY}.Any_Frame",
+        aspects=(Aspect("Post", both(*facts)),),
+    )
+
+
+def _packed(message: Message) -> Expr:
+    """All words that carry an item."""
     packed: Expr = call(f"Codecs.{codec_name(message)}.Pack", Ref("Item"))
+    if message.fd and words_of(message) == 1:
+        return Aggregate((Arg("0", packed), Arg("others", number(0))), of_type=f"{FD}.Fd_Words")
+    return packed
+
+
+def _rate(bus: Bus) -> Ref:
+    return Ref(f"{FD}.{'Constant' if bus.data_rate is None else 'Switched'}_Rate")
+
+
+def _frame_body(system: System, bus: Bus, message: Message) -> Subprogram:
     head = {
         "Id": fact(message.element, "Id"),
         "Format": _format(message),
         "Length": fact(message.element, "Length"),
     }
-    if not message.fd:
-        return call("Ravenchart.Can.Data_Frame", **head, Payload=packed)
-    if words_of(message) == 1:
-        packed = Aggregate((Arg("0", packed), Arg("others", number(0))))
-    rate = Ref(f"{FD}.{'Constant' if bus.data_rate is None else 'Switched'}_Rate")
-    return call(f"{FD}.Fd_Data_Frame", **head, Words=packed, Rate=rate)
+    if message.fd:
+        carried = {"Words": _packed(message), "Rate": _rate(bus)}
+    else:
+        carried = {"Payload": _packed(message)}
+    made = call(f"{ANY}.Whole_Frame", **head, **carried)
+    spec = _frame_spec(system, bus, message)
+    return Subprogram(spec.name, spec.params, spec.result, body=(Return(made),))
 
 
-def _send_body(system: System, bus: Bus, message: Message) -> Subprogram:
-    frame = call(f"{ANY}.To_Any", _frame(bus, message))
+def _send_body(system: System, message: Message) -> Subprogram:
+    frame = call(_frame_name(message), Ref("Item"))
     lost: list[Stmt] = [
         Do(
             "Health_Counts.Counters.Record_Fault",
@@ -196,10 +251,13 @@ def _send_body(system: System, bus: Bus, message: Message) -> Subprogram:
         _send_spec(system, message).params,
         declarations=(
             UseType("Ravenchart.Can.Send_Status"),
+            Object("Frame", f"{ANY}.Any_Frame", frame, constant=True),
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do("Controller.Send", arguments(frame, Ref("Status"))),
+            #  and not the frame of another message of the same type
+            Pragma("Assert", (is_framed(message, Ref("Frame")),)),
+            Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
             *note(system, "Sent", message.name, "message"),
             If(((full, tuple(lost)),)),
         ),
@@ -252,7 +310,8 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
         carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
         good = Chain("and then", (Ref("Valid"), carried))
-        deliver = (*note(system, "Arrived", message.name, "message"), *puts)
+        known = Pragma("Assert", (is_framed(message, Ref("Frame")),))
+        deliver = (known, *note(system, "Arrived", message.name, "message"), *puts)
         rows.append((matches, (unpack, If(((good, deliver),)))))
     body: tuple[Decl, ...] = (
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
@@ -268,7 +327,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             body=(If(tuple(rows)), executed(slot)),
         ),
     )
-    context = {f"{root}.Codecs", ANY}
+    context = {f"{root}.Codecs", ANY, LAYOUTS}
     context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}

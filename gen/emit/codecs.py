@@ -62,7 +62,7 @@ from .coding import (
     within_width,
     word_bits,
 )
-from .layout_tables import LAYOUTS, LEMMAS, LayoutTable, place
+from .layout_tables import ANY, FRAME_ROW, LAYOUTS, LEMMAS, LayoutTable, frame_row, place
 from .naming import ada_case, default_value, scalar, type_name
 
 WORDS = "Ravenchart.Can.Fd_Frames.Fd_Words"
@@ -105,8 +105,11 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     for codec in codecs:
         spec.append(Package(codec.name, tuple(codec.spec())))
         body.append(Package(codec.name, tuple(codec.body()), is_body=True))
+    spec.append(FRAME_ROW)
+    for message in system.messages:
+        spec += [Comment(f"[{message.name}] the frame that carries it"), frame_row(message)]
     name = f"{ada_case(system.name)}.Codecs"
-    withs: tuple[str, ...] = ("Interfaces", LAYOUTS)
+    withs: tuple[str, ...] = ("Interfaces", ANY, LAYOUTS)
     lemmas: tuple[str, ...] = ()
     if any(codec.words > 1 for codec in codecs):
         withs, lemmas = (*withs, "Ravenchart.Can.Fd_Frames"), (LEMMAS,)
@@ -188,6 +191,7 @@ class _Codec:
         for s in self.signals:
             items.append(Comment(f"[{self.label}.{s.name}] {place(s)}"))
             items += self.table.row(s)
+        items.append(self.table.fits())
         for s in self.signals:
             raw = word_bits(s, self._word(self.frame))
             items.append(Subprogram(self._raw_name(s), (frame,), container(s), expression=raw))

@@ -1,4 +1,4 @@
-"""The layout table of a message in Ada, and what contracts say by it.
+"""The layout table of a message in Ada, its frame, and what contracts say by them.
 
 A row is what the model says of a signal, number by number; `Ravenchart.Can.Layouts` gives it
 its meaning. Nothing here is shared with `coding`, which makes the bodies of the codecs: an
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..model import System
+from ..model import Message, System
 from ..signals import ByteOrder, Signal
 from ..terms import EnumerationType, IntegerType
 from .ada import (
@@ -22,9 +22,11 @@ from .ada import (
     Expr,
     Object,
     Param,
+    PlainType,
     Ref,
     Subprogram,
     arguments,
+    both,
     call,
     chain,
     number,
@@ -38,6 +40,44 @@ LEMMAS = "Ravenchart.Can.Layout_Lemmas"
 """What the bits of a signal of a longer frame are, by words."""
 
 NUMBER = "Ravenchart.Number"
+
+
+FD = "Ravenchart.Can.Fd_Frames"
+"""Words of longer frames, and their bit rates."""
+
+ANY = "Ravenchart.Can.Any_Frames"
+"""Frames of both families."""
+
+
+FRAME_ROW = PlainType("Row_Of_Frame", f"{LAYOUTS}.Frame_Row", subtype=True)
+"""A short name: those of messages may be long."""
+
+FITS = "Fits_In"
+"""Does a frame hold all signals of a layout?"""
+
+
+def frame_row(message: Message) -> Object:
+    """The frame that carries a message."""
+    columns = {
+        "Family": Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}"),
+        "Id": number(message.identifier),
+        "Format": Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}"),
+        "Length": number(message.length),
+    }
+    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    return Object(_frame_name(message), FRAME_ROW.name, made, constant=True)
+
+
+def is_framed(message: Message, frame: Expr) -> Expr:
+    """Is a frame the one of a message, by the table?"""
+    return call(f"{LAYOUTS}.Is_Framed", frame, Ref(f"Codecs.{_frame_name(message)}"))
+
+
+def is_received(message: Message, codec: str) -> Expr:
+    """Does the filter let a message in, and does its frame hold all its signals?"""
+    row = f"Codecs.{_frame_name(message)}"
+    accepted = call("Accepts", Ref(f"{row}.Id"), Ref(f"{row}.Format"))
+    return both(accepted, call(f"Codecs.{codec}.{FITS}", Ref(row)))
 
 
 class LayoutTable:
@@ -67,6 +107,12 @@ class LayoutTable:
         codes = tuple((f"{prefix}{ada_case(name)}", number(code)) for name, code in pairs)
         item = Param("Item", "in", type_name(self.system, signal.type))
         return Subprogram(_code(signal), (item,), NUMBER, expression=CaseExpr(Ref("Item"), codes))
+
+    def fits(self) -> Subprogram:
+        """Does a frame hold all signals?"""
+        held = [call(f"{LAYOUTS}.Holds", Ref("Row"), Ref(_row(s))) for s in self.signals]
+        row = Param("Row", "in", f"{LAYOUTS}.Frame_Row")
+        return Subprogram(FITS, (row,), "Boolean", expression=both(*held))
 
     def bits_in(self, signal: Signal, frame: str) -> Expr:
         """The bits of a signal, by its row."""
@@ -131,6 +177,10 @@ class LayoutTable:
 
 
 _ORDERS = {ByteOrder.INTEL: "Intel", ByteOrder.MOTOROLA: "Motorola"}
+
+
+def _frame_name(message: Message) -> str:
+    return f"Frame_{ada_case(message.name)}"
 
 
 def _row(signal: Signal) -> str:

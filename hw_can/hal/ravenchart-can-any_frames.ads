@@ -11,6 +11,8 @@ with Ravenchart.Can.Fd_Frames;
 package Ravenchart.Can.Any_Frames
   with SPARK_Mode, Pure
 is
+   use type Fd_Frames.Fd_Words;
+
    type Frame_Family is (Classic, Flexible);
    --  CAN 2.0 or CAN FD (the bit FDF of ISO 11898-1).
 
@@ -69,5 +71,35 @@ is
        else (others => 0))
    with Global => null;
    --  The data of a CAN FD frame.
+
+   function Whole_Frame
+     (Id      : Identifier;
+      Format  : Frame_Format;
+      Length  : Data_Length;
+      Payload : Interfaces.Unsigned_64) return Any_Frame
+   is (To_Any (Data_Frame (Id, Format, Length, Payload)))
+   with
+     Global => null,
+     Pre    => Fits (Id, Format) and then (Payload and not Mask (Length)) = 0,
+     Post   =>
+       Carries (Whole_Frame'Result, Classic, Length)
+       and then Any_Frames.Payload (Whole_Frame'Result) = Payload;
+   --  A classic frame that is long enough for all bits of Payload.
+
+   function Whole_Frame
+     (Id     : Identifier;
+      Format : Frame_Format;
+      Length : Fd_Frames.Fd_Length;
+      Words  : Fd_Frames.Fd_Words;
+      Rate   : Fd_Frames.Bit_Rate_Use) return Any_Frame
+   is (To_Any (Fd_Frames.Fd_Data_Frame (Id, Format, Length, Words, Rate)))
+   with
+     Global => null,
+     Pre    =>
+       Fits (Id, Format) and then Fd_Frames.Ends_Within (Words, Length),
+     Post   =>
+       Carries (Whole_Frame'Result, Flexible, Length)
+       and then Any_Frames.Words (Whole_Frame'Result) = Words;
+   --  A CAN FD frame that is long enough for all bits of Words.
 
 end Ravenchart.Can.Any_Frames;

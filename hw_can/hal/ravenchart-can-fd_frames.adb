@@ -1,6 +1,107 @@
 package body Ravenchart.Can.Fd_Frames
   with SPARK_Mode
 is
+   function Is_Made (F : Fd_Frame; Words : Fd_Words) return Boolean
+   is (for all I in Fd_Index =>
+         Byte (F, I) = (if I < F.Length then Byte (Words, I) else 0))
+   with Ghost;
+
+   function Ends_Here
+     (F : Fd_Frame; Words : Fd_Words; W : Word_Index) return Boolean
+   is (Ends_Within (Words (W), F.Length - 8 * W))
+   with Ghost;
+
+   procedure Lemma_No_Byte
+     (Word : Interfaces.Unsigned_64; Length : Integer; I : Byte_Index)
+   with
+     Ghost,
+     Pre  => Ends_Within (Word, Length) and then I >= Length,
+     Post => (Interfaces.Shift_Right (Word, 8 * I) and 16#FF#) = 0;
+   --  A byte beyond the end of a word is 0.
+
+   procedure Lemma_Same_Byte
+     (F : Fd_Frame; Words : Fd_Words; W : Word_Index; I : Byte_Index)
+   with
+     Ghost,
+     Pre  => Is_Made (F, Words) and then Ends_Here (F, Words, W),
+     Post =>
+       Interfaces.Unsigned_64 (Byte (F, 8 * W + I))
+       = (Interfaces.Shift_Right (Words (W), 8 * I) and 16#FF#);
+   --  A byte of the frame is that of the word, also beyond the length.
+
+   procedure Lemma_Same_Word (F : Fd_Frame; Words : Fd_Words; W : Word_Index)
+   with
+     Ghost,
+     Pre  => Is_Made (F, Words) and then Ends_Here (F, Words, W),
+     Post => Word (F, W) = Words (W);
+   --  Where the words end with the frame, none of their bits is cut off.
+
+   -------------------
+   -- Lemma_No_Byte --
+   -------------------
+
+   procedure Lemma_No_Byte
+     (Word : Interfaces.Unsigned_64; Length : Integer; I : Byte_Index) is
+   begin
+      null;
+   end Lemma_No_Byte;
+
+   procedure Lemma_Same_Words (F : Fd_Frame; Words : Fd_Words)
+   with
+     Ghost,
+     Pre  => Is_Made (F, Words),
+     Post =>
+       (if Ends_Within (Words, F.Length) then Fd_Frames.Words (F) = Words);
+   --  The same of all words.
+
+   ---------------------
+   -- Lemma_Same_Byte --
+   ---------------------
+
+   procedure Lemma_Same_Byte
+     (F : Fd_Frame; Words : Fd_Words; W : Word_Index; I : Byte_Index) is
+   begin
+      pragma Assert ((8 * W + I) / 8 = W);
+      pragma Assert ((8 * W + I) mod 8 = I);
+      if 8 * W + I >= F.Length then
+         Lemma_No_Byte (Words (W), F.Length - 8 * W, I);
+      end if;
+   end Lemma_Same_Byte;
+
+   ---------------------
+   -- Lemma_Same_Word --
+   ---------------------
+
+   procedure Lemma_Same_Word (F : Fd_Frame; Words : Fd_Words; W : Word_Index)
+   is
+   begin
+      Lemma_Same_Byte (F, Words, W, 0);
+      Lemma_Same_Byte (F, Words, W, 1);
+      Lemma_Same_Byte (F, Words, W, 2);
+      Lemma_Same_Byte (F, Words, W, 3);
+      Lemma_Same_Byte (F, Words, W, 4);
+      Lemma_Same_Byte (F, Words, W, 5);
+      Lemma_Same_Byte (F, Words, W, 6);
+      Lemma_Same_Byte (F, Words, W, 7);
+   end Lemma_Same_Word;
+
+   ----------------------
+   -- Lemma_Same_Words --
+   ----------------------
+
+   procedure Lemma_Same_Words (F : Fd_Frame; Words : Fd_Words) is
+   begin
+      if Ends_Within (Words, F.Length) then
+         Lemma_Same_Word (F, Words, 0);
+         Lemma_Same_Word (F, Words, 1);
+         Lemma_Same_Word (F, Words, 2);
+         Lemma_Same_Word (F, Words, 3);
+         Lemma_Same_Word (F, Words, 4);
+         Lemma_Same_Word (F, Words, 5);
+         Lemma_Same_Word (F, Words, 6);
+         Lemma_Same_Word (F, Words, 7);
+      end if;
+   end Lemma_Same_Words;
 
    -------------------
    -- Fd_Data_Frame --
@@ -50,13 +151,16 @@ is
            (for all J in Fd_Index =>
               Kept (J) = (if J <= I then Byte (Words, J) else 0));
       end loop;
-      return
+      return Made : constant Fd_Frame :=
         (Id     => Id,
          Format => Format,
          Rate   => Rate,
          Sender => Active_Sender,
          Length => Length,
-         Bytes  => Kept);
+         Bytes  => Kept)
+      do
+         Lemma_Same_Words (Made, Words);
+      end return;
    end Fd_Data_Frame;
 
    -----------

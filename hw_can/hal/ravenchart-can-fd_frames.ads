@@ -70,6 +70,25 @@ is
    with Global => null;
    --  One byte of the words.
 
+   function Ends_Within
+     (Word : Interfaces.Unsigned_64; Length : Integer) return Boolean
+   is (Length >= 8
+       or else (Word and not Can.Mask (Integer'Max (Length, 0))) = 0)
+   with Global => null;
+   --  Are the bytes of a word from number Length on 0?
+
+   function Ends_Within (Words : Fd_Words; Length : Fd_Length) return Boolean
+   is (Ends_Within (Words (0), Length)
+       and then Ends_Within (Words (1), Length - 8)
+       and then Ends_Within (Words (2), Length - 16)
+       and then Ends_Within (Words (3), Length - 24)
+       and then Ends_Within (Words (4), Length - 32)
+       and then Ends_Within (Words (5), Length - 40)
+       and then Ends_Within (Words (6), Length - 48)
+       and then Ends_Within (Words (7), Length - 56))
+   with Global => null;
+   --  Are the bytes from number Length on 0?
+
    type Bit_Rate_Use is (Constant_Rate, Switched_Rate);
    --  The bit rate switch (BRS): is the data phase sent at the data bit rate?
 
@@ -160,7 +179,10 @@ is
        and then
          (for all I in Fd_Index =>
             Byte (Fd_Data_Frame'Result, I)
-            = (if I < Length then Byte (Words, I) else 0));
+            = (if I < Length then Byte (Words, I) else 0))
+       and then
+         (if Ends_Within (Words, Length)
+          then Fd_Frames.Words (Fd_Data_Frame'Result) = Words);
    --  The frame that carries Words; those beyond Length are not carried.
 
 end Ravenchart.Can.Fd_Frames;

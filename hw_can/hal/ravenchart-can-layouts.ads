@@ -1,12 +1,14 @@
---  Layout tables: where a signal stands in the data of a frame, and how its
---  bits count, in the terms of CAN databases (DBC). Contracts of generated
---  codecs are stated by these tables; the bodies of codecs do not use them.
+--  Layout tables: where a signal stands in the data of a frame, how its bits
+--  count, and which frame carries the data, in the terms of CAN databases
+--  (DBC). Contracts of generated code are stated by these tables; the bodies
+--  of codecs, and what sends frames, do not use them.
 --
 --  Guarantees   the meaning of a row is defined here, once for all models
 --  Tasking      none: tables are constants
 --  Timing       constant
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Fd_Frames;
 
 package Ravenchart.Can.Layouts
@@ -137,5 +139,25 @@ is
      Pre    =>
        Reaches_To (S) <= 512 and then (if S.Signed then S.Width <= 62);
    --  The raw value of a signal of a longer frame.
+
+   type Frame_Row is record
+      Family : Any_Frames.Frame_Family;
+      Id     : Identifier;
+      Format : Frame_Format;
+      Length : Fd_Frames.Fd_Length;
+   end record;
+   --  The frame of a message: its identifier, and its bytes of data.
+
+   function Holds (R : Frame_Row; S : Signal) return Boolean
+   is (Reaches_To (S) <= 8 * R.Length)
+   with Global => null;
+   --  Does the whole signal stand in the data of the frame?
+
+   function Is_Framed (F : Any_Frames.Any_Frame; R : Frame_Row) return Boolean
+   is (Any_Frames.Carries (F, R.Family, R.Length)
+       and then Any_Frames.Id (F) = R.Id
+       and then Any_Frames.Format (F) = R.Format)
+   with Global => null;
+   --  Is it the data frame of the row?
 
 end Ravenchart.Can.Layouts;

@@ -35,7 +35,7 @@ def _spec(name: str, text: str) -> bool:
     return name.endswith(".ads") and "Timing_Certificate." in text
 
 
-def _bus(name: str, text: str) -> bool:
+def _given(name: str, text: str) -> bool:
     return name.endswith((".ads", ".adb")) and "Timing_Certificate." in text
 
 
@@ -53,6 +53,10 @@ def _codecs(name: str, _text: str) -> bool:
 
 def _codec_spec(name: str, _text: str) -> bool:
     return name.endswith("-codecs.ads")
+
+
+def _frames(name: str, text: str) -> bool:
+    return name.endswith((".ads", ".adb")) and ("_Frame" in text or "function Accepts" in text)
 
 
 def _model(name: str, _text: str) -> bool:
@@ -84,12 +88,14 @@ ENTRIES = (
     Entry("certificate", program_rules.certificate, _certificate),
     Entry("fact", fact_rules.task, _spec),
     Entry("fact", fact_rules.table, _spec),
-    Entry("fact", fact_rules.bus, _bus),
+    Entry("fact", fact_rules.bus, _given),
     Entry("fact", fact_rules.calls, _executing),
     Entry("fact", fact_rules.sums, _certificate, "declared"),
     Entry("fact", fact_rules.supposed, _certificate, "declared"),
     Entry("codec", program_rules.codec_in_code, _codecs),
     Entry("codec", program_rules.codec_declared, _codec_spec, "declared"),
+    Entry("frame", program_rules.frame_in_code, _frames),
+    Entry("frame", program_rules.frame_declared, _codec_spec, "declared"),
     Entry("target", model_rules.target, _model, "model"),
     Entry("source", model_rules.source, _model, "model"),
     Entry("trigger", model_rules.trigger, _model, "model"),

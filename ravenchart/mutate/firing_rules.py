@@ -123,6 +123,9 @@ def order(file: str, files: Files) -> Iterator[Found]:
         for first, second in pairwise(row):
             if _ordered(first.of(text), second.of(text)):
                 yield place, "exchange", swapped(text, first, second)
+            if _is_read(text, first.of(text), second.of(text)):
+                behind = Edit(Span(second.end, second.end), f"\n{first.of(text)}")
+                yield place, "late", (*replaced(first, "null;"), behind)
     step = subprogram(text, "Step")
     if step is None or step.is_expression:
         return
@@ -147,6 +150,12 @@ def _ordered(first: str, second: str) -> bool:
     if any(s.startswith(("if ", "case ")) for s in (first, second)):
         return False
     return _uses(second, _assigned(first)) or _uses(first, _assigned(second))
+
+
+def _is_read(text: str, effect: str, entry: str) -> bool:
+    """Does an entry use what the effect before it sets? Then it must not come behind."""
+    called = subprogram(text, entry.removesuffix(";")) if entry.startswith("Enter_") else None
+    return called is not None and _uses(called.inner.of(text), _assigned(effect))
 
 
 def _uses(statement: str, name: str | None) -> bool:

@@ -6,7 +6,8 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
@@ -97,29 +98,36 @@ class Workbench:
 
     def try_mutant(self, mutant: Mutant) -> Verdict:
         """Break, ask the compiler, gnatprove and the tests in turn, restore."""
+        if mutant.part == "model":
+            return self._judged_model(mutant.file, mutant.applied(self.files[mutant.file]))
+        with self._broken(mutant) as broken:
+            refused = self._refused(mutant, broken)
+            seen = "" if refused.by else self.observer.differs(mutant, self.executable)
+            return Verdict("tests", seen) if seen else refused
+
+    def refusal(self, mutant: Mutant) -> Verdict:
+        """Break, ask the compiler and gnatprove alone, restore."""
+        with self._broken(mutant) as broken:
+            return self._refused(mutant, broken)
+
+    @contextmanager
+    def _broken(self, mutant: Mutant) -> Iterator[str]:
         text = self.files[mutant.file]
         broken = mutant.applied(text)
-        if mutant.part == "model":
-            return self._judged_model(mutant.file, broken)
         path = self.source / mutant.file
         path.write_text(broken)
         try:
-            return self._judged(mutant, broken)
+            yield broken
         finally:
             path.write_text(text)
 
     def run_broken(self, mutant: Mutant) -> str:
         """How the program differs with a break that the compiler lets pass; "" if it does not."""
-        text = self.files[mutant.file]
-        path = self.source / mutant.file
-        path.write_text(mutant.applied(text))
-        try:
+        with self._broken(mutant):
             self._compile()
             return self.observer.differs(mutant, self.executable)
-        finally:
-            path.write_text(text)
 
-    def _judged(self, mutant: Mutant, broken: str) -> Verdict:
+    def _refused(self, mutant: Mutant, broken: str) -> Verdict:
         try:
             self._compile()
         except ToolFailed as failed:
@@ -132,8 +140,7 @@ class Workbench:
                 self.prove(self.units_of(mutant), patience=PATIENCE)
         except ToolFailed as failed:
             return Verdict("gnatprove", _first(str(failed)))
-        seen = self.observer.differs(mutant, self.executable)
-        return Verdict("tests", seen) if seen else Verdict(None)
+        return Verdict(None)
 
     def _judged_model(self, file: str, broken: str) -> Verdict:
         folder = self.folder / "broken"
@@ -152,7 +159,8 @@ class Workbench:
         """Is all that the mutant can falsify in the subprograms of its focus? Each has a
         contract, and callers know no more."""
         body = subprogram(self.files[mutant.file], mutant.place)
-        return mutant.part == "code" and body is not None and "-codecs" not in mutant.file
+        in_body = mutant.file.endswith(".adb") and "-codecs" not in mutant.file
+        return mutant.part == "code" and body is not None and in_body
 
     def _focus(self, mutant: Mutant) -> list[str]:
         """The subprograms that are asked first."""
@@ -193,8 +201,13 @@ class Workbench:
         if mutant.kind == "ceiling":
             tasks = [_body(n) for n, t in sorted(self.files.items()) if "_Processors\n" in t]
             return [*tasks, f"{self.main}.adb"]
+        if mutant.kind == "frame" and mutant.place not in self._bodies(mutant.file):
+            return [n for n, t in sorted(self.files.items()) if _carries(n, t)]
         body = _body(mutant.file)
         return [body if body in self.files else mutant.file]
+
+    def _bodies(self, file: str) -> set[str]:
+        return {one.name for one in subprograms(self.files[file])} if file.endswith("b") else set()
 
     # --- tools
 
@@ -243,6 +256,11 @@ class Workbench:
         )
         if done.returncode != 0:
             raise ToolFailed(done.stdout)
+
+
+def _carries(name: str, text: str) -> bool:
+    """Does it send frames, or receive them?"""
+    return name.endswith(".adb") and "Layouts.Is_Framed" in text
 
 
 def _firing(text: str) -> list[str]:

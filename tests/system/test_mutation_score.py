@@ -7,6 +7,7 @@ the test is skipped, and says so.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 
@@ -52,6 +53,22 @@ def test_one_break_of_each_kind_is_caught(subject: Subject) -> None:
     caught = {o.mutant.kind: o.verdict.by for o in outcomes}
     assert caught["certificate"] == "compiler"
     assert {caught["target"], caught["source"], caught["time-out"]} == {"gnatprove"}
+
+
+@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
+def test_an_effect_behind_the_entry_is_caught_by_tests_alone(tmp_path: Path) -> None:
+    """As README and docs/architecture.md say: after it `place` is 32, and 29 when it comes late."""
+    transitions = """\
+go: {from: A, to: B, on: Go, effect: [{set: place, to: 24}]}
+back: {from: B, to: A, on: Stop, guard: place > 30}
+"""
+    model = tmp_path / "model.yaml"
+    model.write_text(chart_text(STATES, transitions))
+    ordered = Subject("ordered", model, Simulated)
+    late = [m for m in mutants(ordered, None, 1, ("order",)) if m.rule == "late"]
+    assert {m.place for m in late} == {"Fire"}
+    (outcome,) = tried(ordered, late, 1, ())
+    assert outcome.verdict.by == "tests"
 
 
 @pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")

@@ -73,9 +73,10 @@ def test_a_body_is_read_with_its_statements_and_arms() -> None:
     assert [s.of(ADA) for s in statements(ADA, rows[0].body)] == ["Exit_A;", "Enter_B;"]
 
 
-def test_every_kind_of_code_but_codecs_has_mutants_in_the_rich_chart(rich: Files) -> None:
+def test_every_kind_but_codecs_and_frames_has_mutants_in_the_rich_chart(rich: Files) -> None:
     of_models_alone = {"period"}
-    assert set(KINDS) - {m.kind for m in mutants_of(rich)} == {"codec"} | of_models_alone
+    of_buses = {"codec", "frame"}
+    assert set(KINDS) - {m.kind for m in mutants_of(rich)} == of_buses | of_models_alone
 
 
 def test_codecs_have_mutants_in_the_robot() -> None:
@@ -83,6 +84,18 @@ def test_codecs_have_mutants_in_the_robot() -> None:
     files = generate(checked.system, steps.claims(checked))
     rules = {(m.kind, m.rule) for m in mutants_of(files) if m.kind == "codec"}
     assert rules == {("codec", "bit"), ("codec", "offset"), ("codec", "width")}
+
+
+def test_frames_have_mutants_in_the_robot() -> None:
+    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    files = generate(checked.system, steps.claims(checked))
+    found = [m for m in mutants_of(files) if m.kind == "frame"]
+    sizes = {"identifier", "format", "short", "long"}
+    assert {m.rule for m in found if m.place == "Frame_Of_X_Set_Point"} == sizes
+    assert {m.rule for m in found if m.place == "Frame_X_Set_Point"} == {*sizes, "family"}
+    assert {m.rule for m in found if m.place == "Run_Receive"} == {*sizes, "family"}
+    assert {m.rule for m in found if m.place == "Send_X_Set_Point"} == {"message"}
+    assert {m.rule for m in found if m.place == "Accepts"} == {"identifier"}
 
 
 def test_each_mutant_is_another_text_and_the_same_every_time(rich: Files) -> None:

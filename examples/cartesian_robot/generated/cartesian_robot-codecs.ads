@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Layouts;
 
 package Cartesian_Robot.Codecs
@@ -93,6 +94,14 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => (-20_000));
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Kind)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_X)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Y)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Z));
 
       function Raw_Of_Kind
         (Word : Interfaces.Unsigned_64)
@@ -196,6 +205,13 @@ is
          Signed => False,
          Offset => (-20_000));
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Condition)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_X)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Y));
+
       function Raw_Of_Condition
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_8 is
@@ -278,6 +294,12 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => (-400_000));
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Mode)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Speed));
 
       function Raw_Of_Mode
         (Word : Interfaces.Unsigned_64)
@@ -363,6 +385,14 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Count)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Speed)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Limit)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Condition));
+
       function Raw_Of_Count
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_32 is
@@ -446,4 +476,62 @@ is
       with Ghost;
       --  What is packed is what is unpacked.
    end Type_Drive_Feedback;
+
+   subtype Row_Of_Frame is Ravenchart.Can.Layouts.Frame_Row;
+
+   --  [robot_command] the frame that carries it
+   Frame_Robot_Command : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 128,
+      Format => Ravenchart.Can.Standard,
+      Length => 8);
+
+   --  [robot_status] the frame that carries it
+   Frame_Robot_Status : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 384,
+      Format => Ravenchart.Can.Standard,
+      Length => 6);
+
+   --  [x_set_point] the frame that carries it
+   Frame_X_Set_Point : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 272,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
+
+   --  [y_set_point] the frame that carries it
+   Frame_Y_Set_Point : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 273,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
+
+   --  [z_set_point] the frame that carries it
+   Frame_Z_Set_Point : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 274,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
+
+   --  [x_feedback] the frame that carries it
+   Frame_X_Feedback : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 288,
+      Format => Ravenchart.Can.Standard,
+      Length => 6);
+
+   --  [y_feedback] the frame that carries it
+   Frame_Y_Feedback : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 289,
+      Format => Ravenchart.Can.Standard,
+      Length => 6);
+
+   --  [z_feedback] the frame that carries it
+   Frame_Z_Feedback : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 290,
+      Format => Ravenchart.Can.Standard,
+      Length => 6);
 end Cartesian_Robot.Codecs;

@@ -17,6 +17,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -26,24 +27,29 @@ is
          0);
       case Item is
          when Joint_X_Ports =>
-            Joint_X.Run_Ports;
+            Joint_X.Run_Ports (Executed);
          when Joint_X_Monitoring =>
-            Joint_X.Run_Monitoring;
+            Joint_X.Run_Monitoring (Executed);
          when Joint_X_Position_Control =>
-            Joint_X.Run_Position_Control;
+            Joint_X.Run_Position_Control (Executed);
          when Joint_Y_Ports =>
-            Joint_Y.Run_Ports;
+            Joint_Y.Run_Ports (Executed);
          when Joint_Y_Monitoring =>
-            Joint_Y.Run_Monitoring;
+            Joint_Y.Run_Monitoring (Executed);
          when Joint_Y_Position_Control =>
-            Joint_Y.Run_Position_Control;
+            Joint_Y.Run_Position_Control (Executed);
          when Joint_Z_Ports =>
-            Joint_Z.Run_Ports;
+            Joint_Z.Run_Ports (Executed);
          when Joint_Z_Monitoring =>
-            Joint_Z.Run_Monitoring;
+            Joint_Z.Run_Monitoring (Executed);
          when Joint_Z_Position_Control =>
-            Joint_Z.Run_Position_Control;
+            Joint_Z.Run_Position_Control (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Control_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

@@ -34,22 +34,100 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Joint_X_Ports => (Divisor => 1, Phase => 0),
-         Joint_X_Monitoring => (Divisor => 1, Phase => 0),
-         Joint_X_Position_Control => (Divisor => 1, Phase => 0),
-         Joint_Y_Ports => (Divisor => 1, Phase => 0),
-         Joint_Y_Monitoring => (Divisor => 1, Phase => 0),
-         Joint_Y_Position_Control => (Divisor => 1, Phase => 0),
-         Joint_Z_Ports => (Divisor => 1, Phase => 0),
-         Joint_Z_Monitoring => (Divisor => 1, Phase => 0),
-         Joint_Z_Position_Control => (Divisor => 1, Phase => 0)),
+        (Joint_X_Ports =>
+           (Divisor => Timing_Certificate.Joint_X_Ports_Divisor,
+            Phase => Timing_Certificate.Joint_X_Ports_Phase),
+         Joint_X_Monitoring =>
+           (Divisor => Timing_Certificate.Joint_X_Monitoring_Divisor,
+            Phase => Timing_Certificate.Joint_X_Monitoring_Phase),
+         Joint_X_Position_Control =>
+           (Divisor => Timing_Certificate.Joint_X_Position_Control_Divisor,
+            Phase => Timing_Certificate.Joint_X_Position_Control_Phase),
+         Joint_Y_Ports =>
+           (Divisor => Timing_Certificate.Joint_Y_Ports_Divisor,
+            Phase => Timing_Certificate.Joint_Y_Ports_Phase),
+         Joint_Y_Monitoring =>
+           (Divisor => Timing_Certificate.Joint_Y_Monitoring_Divisor,
+            Phase => Timing_Certificate.Joint_Y_Monitoring_Phase),
+         Joint_Y_Position_Control =>
+           (Divisor => Timing_Certificate.Joint_Y_Position_Control_Divisor,
+            Phase => Timing_Certificate.Joint_Y_Position_Control_Phase),
+         Joint_Z_Ports =>
+           (Divisor => Timing_Certificate.Joint_Z_Ports_Divisor,
+            Phase => Timing_Certificate.Joint_Z_Ports_Phase),
+         Joint_Z_Monitoring =>
+           (Divisor => Timing_Certificate.Joint_Z_Monitoring_Divisor,
+            Phase => Timing_Certificate.Joint_Z_Monitoring_Phase),
+         Joint_Z_Position_Control =>
+           (Divisor => Timing_Certificate.Joint_Z_Position_Control_Divisor,
+            Phase => Timing_Certificate.Joint_Z_Position_Control_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
-      Task_Priority => System.Default_Priority + 2,
+      Task_Priority => Timing_Certificate.Control_Priority,
       Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
+      "control " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Control_T,
+      "control " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Control_D,
+      "control " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "control " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Joint_X_Ports).Divisor
+      = Timing_Certificate.Joint_X_Ports_Divisor
+      and then Processor.Given_Table (Joint_X_Ports).Phase
+        = Timing_Certificate.Joint_X_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_X_Monitoring).Divisor
+      = Timing_Certificate.Joint_X_Monitoring_Divisor
+      and then Processor.Given_Table (Joint_X_Monitoring).Phase
+        = Timing_Certificate.Joint_X_Monitoring_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_X_Position_Control).Divisor
+      = Timing_Certificate.Joint_X_Position_Control_Divisor
+      and then Processor.Given_Table (Joint_X_Position_Control).Phase
+        = Timing_Certificate.Joint_X_Position_Control_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Y_Ports).Divisor
+      = Timing_Certificate.Joint_Y_Ports_Divisor
+      and then Processor.Given_Table (Joint_Y_Ports).Phase
+        = Timing_Certificate.Joint_Y_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Y_Monitoring).Divisor
+      = Timing_Certificate.Joint_Y_Monitoring_Divisor
+      and then Processor.Given_Table (Joint_Y_Monitoring).Phase
+        = Timing_Certificate.Joint_Y_Monitoring_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Y_Position_Control).Divisor
+      = Timing_Certificate.Joint_Y_Position_Control_Divisor
+      and then Processor.Given_Table (Joint_Y_Position_Control).Phase
+        = Timing_Certificate.Joint_Y_Position_Control_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Z_Ports).Divisor
+      = Timing_Certificate.Joint_Z_Ports_Divisor
+      and then Processor.Given_Table (Joint_Z_Ports).Phase
+        = Timing_Certificate.Joint_Z_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Z_Monitoring).Divisor
+      = Timing_Certificate.Joint_Z_Monitoring_Divisor
+      and then Processor.Given_Table (Joint_Z_Monitoring).Phase
+        = Timing_Certificate.Joint_Z_Monitoring_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Z_Position_Control).Divisor
+      = Timing_Certificate.Joint_Z_Position_Control_Divisor
+      and then Processor.Given_Table (Joint_Z_Position_Control).Phase
+        = Timing_Certificate.Joint_Z_Position_Control_Phase);
 end Cartesian_Robot.Control;

@@ -2,7 +2,6 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Joint_X;
 with Cartesian_Robot.Joint_Y;
@@ -235,7 +234,7 @@ is
       Robot_Bus.Send_Robot_Status (Item);
    end Send_Status;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Command_Item : Cartesian_Robot.Robot_Order;
@@ -351,6 +350,7 @@ is
                  (Ravenchart.Health.Stale_Input));
             Offer (Robot_Coordinator.Joint_Lost);
       end case;
+      Executed := Executed + Elements.Coordinator_Ports_Row;
    end Run_Ports;
 
    procedure Step_Mission (Ins : Robot_Coordinator.Mission.Inputs) is
@@ -396,7 +396,7 @@ is
       end if;
    end Step_Mission;
 
-   procedure Run_Mission is
+   procedure Run_Mission (Executed : in out Ravenchart.Element_Id) is
       Ins : Robot_Coordinator.Mission.Inputs;
    begin
       Command_Board.Read (Ins.Command);
@@ -406,9 +406,10 @@ is
       Robot_Coordinator.Mission.Tick (Mission_Region);
       Step_Mission (Ins);
       Mission_Board.Write (Mission_Region.Leaf);
+      Executed := Executed + Elements.Coordinator_Mission_Row;
    end Run_Mission;
 
-   procedure Run_Summarise is
+   procedure Run_Summarise (Executed : in out Ravenchart.Element_Id) is
       Report_X_Value : Robot_Coordinator.Report_X_View;
       Report_Y_Value : Robot_Coordinator.Report_Y_View;
       Mission_Value : Robot_Coordinator.Mission_States.Leaf;
@@ -423,5 +424,6 @@ is
          Mission => Mission_Value,
          Status => Status_Value);
       Send_Status (Status_Value);
+      Executed := Executed + Elements.Coordinator_Summarise_Row;
    end Run_Summarise;
 end Cartesian_Robot.Coordinator;

@@ -3,10 +3,13 @@
 --  model's elements; trace.json says where they stand.
 
 with Cartesian_Robot.Robot_Coordinator;
+with Cartesian_Robot.Elements;
 
 package Cartesian_Robot.Coordinator
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Command (Item : Cartesian_Robot.Robot_Order);
    --  [coordinator.command.mailbox] by its senders; never blocks.
 
@@ -23,12 +26,21 @@ is
    --  [coordinator.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Coordinator_Ports_Row;
    --  [coordinator.ports] one execution, by its processor alone.
 
-   procedure Run_Mission;
+   procedure Run_Mission (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Coordinator_Mission_Row;
    --  [coordinator.Mission] one execution, by its processor alone.
 
-   procedure Run_Summarise;
+   procedure Run_Summarise (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Coordinator_Summarise_Row;
    --  [coordinator.summarise] one execution, by its processor alone.
 end Cartesian_Robot.Coordinator;

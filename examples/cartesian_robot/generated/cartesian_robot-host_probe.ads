@@ -3,14 +3,23 @@
 --  model's elements; trace.json says where they stand.
 
 with Ravenchart.Host_Probes;
-with System;
+with Cartesian_Robot.Timing_Certificate;
 
 package Cartesian_Robot.Host_Probe
 with SPARK_Mode
 is
    package Probe is new Ravenchart.Host_Probes
      (Name => "controller.probe",
-      Period => 1_000_000,
-      Probe_Priority => System.Default_Priority + 7,
+      Period => Timing_Certificate.Controller_Probe_T,
+      Probe_Priority => Timing_Certificate.Controller_Probe_Priority,
       Stack_Bytes => 16_384);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Probe.Given_Period /= Timing_Certificate.Controller_Probe_T,
+      "controller.probe " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Probe.Given_Priority /= Timing_Certificate.Controller_Probe_Priority,
+      "controller.probe " & "has another priority than its certificate");
 end Cartesian_Robot.Host_Probe;

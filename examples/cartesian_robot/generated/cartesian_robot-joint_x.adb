@@ -3,7 +3,6 @@
 --  model's elements; trace.json says where they stand.
 
 with Cartesian_Robot.Coordinator;
-with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Joint.Activities;
 with Cartesian_Robot.Joint.Flows;
@@ -234,7 +233,7 @@ is
       Coordinator.Put_Report_X (Item);
    end Send_Report;
 
-   procedure Run_Trajectory_Step is
+   procedure Run_Trajectory_Step (Executed : in out Ravenchart.Element_Id) is
       Goal_Value : Cartesian_Robot.Goal;
       Measured_Value : Cartesian_Robot.Measurement;
       Top_Speed_Value : Cartesian_Robot.Top_Speed;
@@ -248,9 +247,10 @@ is
          Top_Speed => Top_Speed_Value,
          Profile => Profile_Own);
       Profile_Board.Write (Profile_Own);
+      Executed := Executed + Elements.Joint_X_Trajectory_Step_Row;
    end Run_Trajectory_Step;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Order_Item : Cartesian_Robot.Joint_Order;
@@ -310,6 +310,7 @@ is
                  (Ravenchart.Health.Stale_Input));
             Offer (Joint.Feedback_Lost);
       end case;
+      Executed := Executed + Elements.Joint_X_Ports_Row;
    end Run_Ports;
 
    procedure Step_Monitoring (Ins : Joint.Monitoring.Inputs) is
@@ -339,7 +340,7 @@ is
       end if;
    end Step_Monitoring;
 
-   procedure Run_Monitoring is
+   procedure Run_Monitoring (Executed : in out Ravenchart.Element_Id) is
       Ins : Joint.Monitoring.Inputs;
    begin
       Homed_Board.Read (Ins.Homed);
@@ -349,9 +350,10 @@ is
       Joint.Monitoring.Tick (Monitoring_Region);
       Step_Monitoring (Ins);
       Monitoring_Board.Write (Monitoring_Region.Leaf);
+      Executed := Executed + Elements.Joint_X_Monitoring_Row;
    end Run_Monitoring;
 
-   procedure Run_Position_Control is
+   procedure Run_Position_Control (Executed : in out Ravenchart.Element_Id) is
       Profile_Value : Cartesian_Robot.Profile;
       Feedback_Value : Joint.Feedback_View;
       Homed_Value : Boolean;
@@ -372,6 +374,7 @@ is
          Drive => Drive_Value);
       Measured_Board.Write (Measured_Own);
       Send_Drive (Drive_Value);
+      Executed := Executed + Elements.Joint_X_Position_Control_Row;
    end Run_Position_Control;
 
    procedure Step_Motion (Ins : Joint.Motion.Inputs) is
@@ -406,7 +409,7 @@ is
       end if;
    end Step_Motion;
 
-   procedure Run_Motion is
+   procedure Run_Motion (Executed : in out Ravenchart.Element_Id) is
       Ins : Joint.Motion.Inputs;
    begin
       Order_Board.Read (Ins.Order);
@@ -419,9 +422,10 @@ is
       Motion_Board.Write (Motion_Region.Leaf);
       Goal_Board.Write (Motion_Region.Data.Goal);
       Homed_Board.Write (Motion_Region.Data.Homed);
+      Executed := Executed + Elements.Joint_X_Motion_Row;
    end Run_Motion;
 
-   procedure Run_Supervise is
+   procedure Run_Supervise (Executed : in out Ravenchart.Element_Id) is
       Measured_Value : Cartesian_Robot.Measurement;
       Homed_Value : Boolean;
       Motion_Value : Joint.Motion_States.Leaf;
@@ -440,5 +444,6 @@ is
       if Send_Report_Asked then
          Send_Report (Report_Value);
       end if;
+      Executed := Executed + Elements.Joint_X_Supervise_Row;
    end Run_Supervise;
 end Cartesian_Robot.Joint_X;

@@ -3,10 +3,13 @@
 --  model's elements; trace.json says where they stand.
 
 with Cartesian_Robot.Joint;
+with Cartesian_Robot.Elements;
 
 package Cartesian_Robot.Joint_X
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order);
    --  [joint_x.order.mailbox] by its senders; never blocks.
 
@@ -17,21 +20,35 @@ is
    --  [joint_x.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Trajectory_Step;
+   procedure Run_Trajectory_Step (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_X_Trajectory_Step_Row;
    --  [joint_x.trajectory_step] one execution, by its processor alone.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Joint_X_Ports_Row;
    --  [joint_x.ports] one execution, by its processor alone.
 
-   procedure Run_Monitoring;
+   procedure Run_Monitoring (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_X_Monitoring_Row;
    --  [joint_x.Monitoring] one execution, by its processor alone.
 
-   procedure Run_Position_Control;
+   procedure Run_Position_Control (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_X_Position_Control_Row;
    --  [joint_x.position_control] one execution, by its processor alone.
 
-   procedure Run_Motion;
+   procedure Run_Motion (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Joint_X_Motion_Row;
    --  [joint_x.Motion] one execution, by its processor alone.
 
-   procedure Run_Supervise;
+   procedure Run_Supervise (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_X_Supervise_Row;
    --  [joint_x.supervise] one execution, by its processor alone.
 end Cartesian_Robot.Joint_X;

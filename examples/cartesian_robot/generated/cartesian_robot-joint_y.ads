@@ -3,10 +3,13 @@
 --  model's elements; trace.json says where they stand.
 
 with Cartesian_Robot.Joint;
+with Cartesian_Robot.Elements;
 
 package Cartesian_Robot.Joint_Y
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Order (Item : Cartesian_Robot.Joint_Order);
    --  [joint_y.order.mailbox] by its senders; never blocks.
 
@@ -17,21 +20,35 @@ is
    --  [joint_y.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Trajectory_Step;
+   procedure Run_Trajectory_Step (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_Y_Trajectory_Step_Row;
    --  [joint_y.trajectory_step] one execution, by its processor alone.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Joint_Y_Ports_Row;
    --  [joint_y.ports] one execution, by its processor alone.
 
-   procedure Run_Monitoring;
+   procedure Run_Monitoring (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_Y_Monitoring_Row;
    --  [joint_y.Monitoring] one execution, by its processor alone.
 
-   procedure Run_Position_Control;
+   procedure Run_Position_Control (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_Y_Position_Control_Row;
    --  [joint_y.position_control] one execution, by its processor alone.
 
-   procedure Run_Motion;
+   procedure Run_Motion (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Joint_Y_Motion_Row;
    --  [joint_y.Motion] one execution, by its processor alone.
 
-   procedure Run_Supervise;
+   procedure Run_Supervise (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Joint_Y_Supervise_Row;
    --  [joint_y.supervise] one execution, by its processor alone.
 end Cartesian_Robot.Joint_Y;

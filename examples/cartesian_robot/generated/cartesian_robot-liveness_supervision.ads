@@ -32,11 +32,21 @@ is
       Name => "controller.supervisor",
       Period => Timing_Certificate.Controller_Supervisor_T,
       Patience => 1_500_000_000,
-      Task_Priority => System.Default_Priority + 6,
+      Task_Priority => Timing_Certificate.Controller_Supervisor_Priority,
       Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Look => Look,
       On_Silence => On_Silence,
       Feed_Watchdog => Ravenchart.Failures.Feed_Watchdog,
       Give_Up => Ravenchart.Failures.Give_Up);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Supervisor.Given_Period /= Timing_Certificate.Controller_Supervisor_T,
+      "controller.supervisor " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Supervisor.Given_Priority
+      /= Timing_Certificate.Controller_Supervisor_Priority,
+      "controller.supervisor " & "has another priority than its certificate");
 end Cartesian_Robot.Liveness_Supervision;

@@ -4,12 +4,12 @@
 
 with Cartesian_Robot.Codecs;
 with Cartesian_Robot.Coordinator;
-with Cartesian_Robot.Elements;
 with Cartesian_Robot.Joint_X;
 with Cartesian_Robot.Joint_Y;
 with Cartesian_Robot.Joint_Z;
 with Cartesian_Robot.Trace;
 with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Layouts;
 with Ravenchart.Traces;
 
 package body Cartesian_Robot.Robot_Bus.Receiver
@@ -24,7 +24,7 @@ is
       Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
-   procedure Run_Receive is
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
       Valid : Boolean;
@@ -33,7 +33,8 @@ is
       Y_Feedback_Item : Cartesian_Robot.Drive_Feedback;
       Z_Feedback_Item : Cartesian_Robot.Drive_Feedback;
    begin
-      if Ravenchart.Can.Any_Frames.Id (Frame) = 128
+      if Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Robot_Bus_Robot_Command_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -45,15 +46,20 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 8)
+                 Timing_Certificate.Robot_Bus_Robot_Command_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed
+                 (Frame,
+                  Codecs.Frame_Robot_Command));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Robot_Command_Message,
                0);
             Coordinator.Put_Command (Robot_Command_Item);
          end if;
-      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 288
+      elsif Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Robot_Bus_X_Feedback_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -65,15 +71,20 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 6)
+                 Timing_Certificate.Robot_Bus_X_Feedback_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed
+                 (Frame,
+                  Codecs.Frame_X_Feedback));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.X_Feedback_Message,
                0);
             Joint_X.Put_Feedback (X_Feedback_Item);
          end if;
-      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 289
+      elsif Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Robot_Bus_Y_Feedback_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -85,15 +96,20 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 6)
+                 Timing_Certificate.Robot_Bus_Y_Feedback_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed
+                 (Frame,
+                  Codecs.Frame_Y_Feedback));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Y_Feedback_Message,
                0);
             Joint_Y.Put_Feedback (Y_Feedback_Item);
          end if;
-      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 290
+      elsif Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Robot_Bus_Z_Feedback_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -105,8 +121,12 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 6)
+                 Timing_Certificate.Robot_Bus_Z_Feedback_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed
+                 (Frame,
+                  Codecs.Frame_Z_Feedback));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Z_Feedback_Message,
@@ -114,5 +134,6 @@ is
             Joint_Z.Put_Feedback (Z_Feedback_Item);
          end if;
       end if;
+      Executed := Executed + Elements.Robot_Bus_Receive_Row;
    end Run_Receive;
 end Cartesian_Robot.Robot_Bus.Receiver;

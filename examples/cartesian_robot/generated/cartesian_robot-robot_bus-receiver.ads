@@ -2,12 +2,19 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Cartesian_Robot.Elements;
+
 package Cartesian_Robot.Robot_Bus.Receiver
 with SPARK_Mode
 is
    procedure Wait;
    --  [robot_bus.receive.release] suspend until a frame is there.
 
-   procedure Run_Receive;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Robot_Bus_Receive_Row;
    --  [robot_bus.receive] decode it and hand it to its receivers.
 end Cartesian_Robot.Robot_Bus.Receiver;

@@ -2,29 +2,36 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Cartesian_Robot.Codecs;
 with Cartesian_Robot.Elements;
 with Cartesian_Robot.Health_Counts;
 with Cartesian_Robot.Trace;
-with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
 package body Cartesian_Robot.Robot_Bus
 with SPARK_Mode
 is
+   function Frame_Of_Robot_Status
+     (Item : Cartesian_Robot.Robot_Report)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Robot_Bus_Robot_Status_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Robot_Bus_Robot_Status_Length,
+           Payload => Codecs.Type_Robot_Report.Pack (Item));
+   end Frame_Of_Robot_Status;
+
    procedure Send_Robot_Status (Item : Cartesian_Robot.Robot_Report) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Robot_Status (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 384,
-               Format => Ravenchart.Can.Standard,
-               Length => 6,
-               Payload => Codecs.Type_Robot_Report.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Robot_Status));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Robot_Status_Message,
@@ -40,18 +47,27 @@ is
       end if;
    end Send_Robot_Status;
 
+   function Frame_Of_X_Set_Point
+     (Item : Cartesian_Robot.Drive_Set_Point)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Robot_Bus_X_Set_Point_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Robot_Bus_X_Set_Point_Length,
+           Payload => Codecs.Type_Drive_Set_Point.Pack (Item));
+   end Frame_Of_X_Set_Point;
+
    procedure Send_X_Set_Point (Item : Cartesian_Robot.Drive_Set_Point) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_X_Set_Point (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 272,
-               Format => Ravenchart.Can.Standard,
-               Length => 3,
-               Payload => Codecs.Type_Drive_Set_Point.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_X_Set_Point));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.X_Set_Point_Message,
@@ -67,18 +83,27 @@ is
       end if;
    end Send_X_Set_Point;
 
+   function Frame_Of_Y_Set_Point
+     (Item : Cartesian_Robot.Drive_Set_Point)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Robot_Bus_Y_Set_Point_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Robot_Bus_Y_Set_Point_Length,
+           Payload => Codecs.Type_Drive_Set_Point.Pack (Item));
+   end Frame_Of_Y_Set_Point;
+
    procedure Send_Y_Set_Point (Item : Cartesian_Robot.Drive_Set_Point) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Y_Set_Point (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 273,
-               Format => Ravenchart.Can.Standard,
-               Length => 3,
-               Payload => Codecs.Type_Drive_Set_Point.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Y_Set_Point));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Y_Set_Point_Message,
@@ -94,18 +119,27 @@ is
       end if;
    end Send_Y_Set_Point;
 
+   function Frame_Of_Z_Set_Point
+     (Item : Cartesian_Robot.Drive_Set_Point)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Robot_Bus_Z_Set_Point_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Robot_Bus_Z_Set_Point_Length,
+           Payload => Codecs.Type_Drive_Set_Point.Pack (Item));
+   end Frame_Of_Z_Set_Point;
+
    procedure Send_Z_Set_Point (Item : Cartesian_Robot.Drive_Set_Point) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Z_Set_Point (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 274,
-               Format => Ravenchart.Can.Standard,
-               Length => 3,
-               Payload => Codecs.Type_Drive_Set_Point.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Z_Set_Point));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Z_Set_Point_Message,

@@ -2,8 +2,13 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Cartesian_Robot.Codecs;
+with Cartesian_Robot.Timing_Certificate;
+with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Controllers;
+with Ravenchart.Can.Layouts;
 with System;
 
 package Cartesian_Robot.Robot_Bus
@@ -14,32 +19,125 @@ is
       Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
-        when Ravenchart.Can.Standard => Id in 128 | 288 | 289 | 290,
+        when Ravenchart.Can.Standard =>
+           Id
+           in Timing_Certificate.Robot_Bus_Robot_Command_Id
+             | Timing_Certificate.Robot_Bus_X_Feedback_Id
+             | Timing_Certificate.Robot_Bus_Y_Feedback_Id
+             | Timing_Certificate.Robot_Bus_Z_Feedback_Id,
         when Ravenchart.Can.Extended => False);
    --  [robot_bus] the identifiers that this node receives
 
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 5,
       Receive_Ceiling => System.Default_Priority + 5,
-      Driver_Priority => System.Default_Priority + 5,
+      Driver_Priority =>
+        Timing_Certificate.Robot_Bus_Driver_Rx_Robot_Command_Priority,
       Transmit_Depth => 32,
       Receive_Depth => 32,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
       Setting =>
-        (Bit_Rate => 500_000,
+        (Bit_Rate => Timing_Certificate.Robot_Bus_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
          Recovery => Ravenchart.Can.Automatic));
 
+   use type Ravenchart.Can.Bits_Per_Second;
+
+   pragma Compile_Time_Error
+     (Controller.Given_Priority
+      /= Timing_Certificate.Robot_Bus_Driver_Rx_Robot_Command_Priority,
+      "robot_bus "
+      & "has another priority of its driver than its certificate");
+   pragma Assert
+     (Controller.Given_Setting.Bit_Rate
+      = Timing_Certificate.Robot_Bus_Bit_Rate
+      and then Controller.Given_Setting.Data_Rate = 0);
+
+   --  [robot_bus] all that is received passes, and its frame holds its
+   --  signals
+   pragma Assert
+     (Accepts
+        (Codecs.Frame_Robot_Command.Id,
+         Codecs.Frame_Robot_Command.Format)
+      and then Codecs.Type_Robot_Order.Fits_In (Codecs.Frame_Robot_Command));
+   pragma Assert
+     (Accepts (Codecs.Frame_X_Feedback.Id, Codecs.Frame_X_Feedback.Format)
+      and then Codecs.Type_Drive_Feedback.Fits_In (Codecs.Frame_X_Feedback));
+   pragma Assert
+     (Accepts (Codecs.Frame_Y_Feedback.Id, Codecs.Frame_Y_Feedback.Format)
+      and then Codecs.Type_Drive_Feedback.Fits_In (Codecs.Frame_Y_Feedback));
+   pragma Assert
+     (Accepts (Codecs.Frame_Z_Feedback.Id, Codecs.Frame_Z_Feedback.Format)
+      and then Codecs.Type_Drive_Feedback.Fits_In (Codecs.Frame_Z_Feedback));
+
+   use type Interfaces.Unsigned_64;
+
+   function Frame_Of_Robot_Status
+     (Item : Cartesian_Robot.Robot_Report)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Robot_Status'Result,
+          Codecs.Frame_Robot_Status)
+       and then Ravenchart.Can.Any_Frames.Payload
+           (Frame_Of_Robot_Status'Result)
+         = Codecs.Type_Robot_Report.Pack (Item);
+   --  [robot_status] its frame by the layout table; none of its bits is cut
+   --  off.
+
    procedure Send_Robot_Status (Item : Cartesian_Robot.Robot_Report);
    --  [robot_status] hand one frame to the controller; never blocks.
+
+   function Frame_Of_X_Set_Point
+     (Item : Cartesian_Robot.Drive_Set_Point)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_X_Set_Point'Result,
+          Codecs.Frame_X_Set_Point)
+       and then Ravenchart.Can.Any_Frames.Payload
+           (Frame_Of_X_Set_Point'Result)
+         = Codecs.Type_Drive_Set_Point.Pack (Item);
+   --  [x_set_point] its frame by the layout table; none of its bits is cut
+   --  off.
 
    procedure Send_X_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
    --  [x_set_point] hand one frame to the controller; never blocks.
 
+   function Frame_Of_Y_Set_Point
+     (Item : Cartesian_Robot.Drive_Set_Point)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Y_Set_Point'Result,
+          Codecs.Frame_Y_Set_Point)
+       and then Ravenchart.Can.Any_Frames.Payload
+           (Frame_Of_Y_Set_Point'Result)
+         = Codecs.Type_Drive_Set_Point.Pack (Item);
+   --  [y_set_point] its frame by the layout table; none of its bits is cut
+   --  off.
+
    procedure Send_Y_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
    --  [y_set_point] hand one frame to the controller; never blocks.
+
+   function Frame_Of_Z_Set_Point
+     (Item : Cartesian_Robot.Drive_Set_Point)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Z_Set_Point'Result,
+          Codecs.Frame_Z_Set_Point)
+       and then Ravenchart.Can.Any_Frames.Payload
+           (Frame_Of_Z_Set_Point'Result)
+         = Codecs.Type_Drive_Set_Point.Pack (Item);
+   --  [z_set_point] its frame by the layout table; none of its bits is cut
+   --  off.
 
    procedure Send_Z_Set_Point (Item : Cartesian_Robot.Drive_Set_Point);
    --  [z_set_point] hand one frame to the controller; never blocks.

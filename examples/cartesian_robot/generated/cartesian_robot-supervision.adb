@@ -18,6 +18,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -27,24 +28,29 @@ is
          0);
       case Item is
          when Coordinator_Ports =>
-            Coordinator.Run_Ports;
+            Coordinator.Run_Ports (Executed);
          when Coordinator_Mission =>
-            Coordinator.Run_Mission;
+            Coordinator.Run_Mission (Executed);
          when Joint_X_Motion =>
-            Joint_X.Run_Motion;
+            Joint_X.Run_Motion (Executed);
          when Joint_Y_Motion =>
-            Joint_Y.Run_Motion;
+            Joint_Y.Run_Motion (Executed);
          when Joint_Z_Motion =>
-            Joint_Z.Run_Motion;
+            Joint_Z.Run_Motion (Executed);
          when Joint_X_Supervise =>
-            Joint_X.Run_Supervise;
+            Joint_X.Run_Supervise (Executed);
          when Joint_Y_Supervise =>
-            Joint_Y.Run_Supervise;
+            Joint_Y.Run_Supervise (Executed);
          when Joint_Z_Supervise =>
-            Joint_Z.Run_Supervise;
+            Joint_Z.Run_Supervise (Executed);
          when Coordinator_Summarise =>
-            Coordinator.Run_Summarise;
+            Coordinator.Run_Summarise (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Supervision_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

@@ -34,22 +34,100 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Coordinator_Ports => (Divisor => 1, Phase => 0),
-         Coordinator_Mission => (Divisor => 1, Phase => 0),
-         Joint_X_Motion => (Divisor => 1, Phase => 0),
-         Joint_Y_Motion => (Divisor => 1, Phase => 0),
-         Joint_Z_Motion => (Divisor => 1, Phase => 0),
-         Joint_X_Supervise => (Divisor => 1, Phase => 0),
-         Joint_Y_Supervise => (Divisor => 1, Phase => 0),
-         Joint_Z_Supervise => (Divisor => 1, Phase => 0),
-         Coordinator_Summarise => (Divisor => 1, Phase => 0)),
+        (Coordinator_Ports =>
+           (Divisor => Timing_Certificate.Coordinator_Ports_Divisor,
+            Phase => Timing_Certificate.Coordinator_Ports_Phase),
+         Coordinator_Mission =>
+           (Divisor => Timing_Certificate.Coordinator_Mission_Divisor,
+            Phase => Timing_Certificate.Coordinator_Mission_Phase),
+         Joint_X_Motion =>
+           (Divisor => Timing_Certificate.Joint_X_Motion_Divisor,
+            Phase => Timing_Certificate.Joint_X_Motion_Phase),
+         Joint_Y_Motion =>
+           (Divisor => Timing_Certificate.Joint_Y_Motion_Divisor,
+            Phase => Timing_Certificate.Joint_Y_Motion_Phase),
+         Joint_Z_Motion =>
+           (Divisor => Timing_Certificate.Joint_Z_Motion_Divisor,
+            Phase => Timing_Certificate.Joint_Z_Motion_Phase),
+         Joint_X_Supervise =>
+           (Divisor => Timing_Certificate.Joint_X_Supervise_Divisor,
+            Phase => Timing_Certificate.Joint_X_Supervise_Phase),
+         Joint_Y_Supervise =>
+           (Divisor => Timing_Certificate.Joint_Y_Supervise_Divisor,
+            Phase => Timing_Certificate.Joint_Y_Supervise_Phase),
+         Joint_Z_Supervise =>
+           (Divisor => Timing_Certificate.Joint_Z_Supervise_Divisor,
+            Phase => Timing_Certificate.Joint_Z_Supervise_Phase),
+         Coordinator_Summarise =>
+           (Divisor => Timing_Certificate.Coordinator_Summarise_Divisor,
+            Phase => Timing_Certificate.Coordinator_Summarise_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Supervision_T,
       Offset => 0,
       Deadline => Timing_Certificate.Supervision_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Supervision_Priority,
       Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Supervision_Priority,
+      "supervision " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Supervision_T,
+      "supervision " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Supervision_D,
+      "supervision " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "supervision " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Coordinator_Ports).Divisor
+      = Timing_Certificate.Coordinator_Ports_Divisor
+      and then Processor.Given_Table (Coordinator_Ports).Phase
+        = Timing_Certificate.Coordinator_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Coordinator_Mission).Divisor
+      = Timing_Certificate.Coordinator_Mission_Divisor
+      and then Processor.Given_Table (Coordinator_Mission).Phase
+        = Timing_Certificate.Coordinator_Mission_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_X_Motion).Divisor
+      = Timing_Certificate.Joint_X_Motion_Divisor
+      and then Processor.Given_Table (Joint_X_Motion).Phase
+        = Timing_Certificate.Joint_X_Motion_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Y_Motion).Divisor
+      = Timing_Certificate.Joint_Y_Motion_Divisor
+      and then Processor.Given_Table (Joint_Y_Motion).Phase
+        = Timing_Certificate.Joint_Y_Motion_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Z_Motion).Divisor
+      = Timing_Certificate.Joint_Z_Motion_Divisor
+      and then Processor.Given_Table (Joint_Z_Motion).Phase
+        = Timing_Certificate.Joint_Z_Motion_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_X_Supervise).Divisor
+      = Timing_Certificate.Joint_X_Supervise_Divisor
+      and then Processor.Given_Table (Joint_X_Supervise).Phase
+        = Timing_Certificate.Joint_X_Supervise_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Y_Supervise).Divisor
+      = Timing_Certificate.Joint_Y_Supervise_Divisor
+      and then Processor.Given_Table (Joint_Y_Supervise).Phase
+        = Timing_Certificate.Joint_Y_Supervise_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Z_Supervise).Divisor
+      = Timing_Certificate.Joint_Z_Supervise_Divisor
+      and then Processor.Given_Table (Joint_Z_Supervise).Phase
+        = Timing_Certificate.Joint_Z_Supervise_Phase);
+   pragma Assert
+     (Processor.Given_Table (Coordinator_Summarise).Divisor
+      = Timing_Certificate.Coordinator_Summarise_Divisor
+      and then Processor.Given_Table (Coordinator_Summarise).Phase
+        = Timing_Certificate.Coordinator_Summarise_Phase);
 end Cartesian_Robot.Supervision;

@@ -2,16 +2,22 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Cartesian_Robot.Timing_Certificate
 with SPARK_Mode, Pure
 is
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "8804b55a234683bfde98308944445e41ee0f953adc077575d7e266043bac01d3";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 555_000;
@@ -41,9 +47,10 @@ is
    Controller_Context_Switch : constant := 5_000;
    Controller_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 4, released by arrivals, no closer than T; it
-   --  may wait for T to be over as well. B: control may be inside
+   --  [reception] released by arrivals, no closer than T; it may wait for T
+   --  to be over as well. B: control may be inside
    --  joint_x.feedback.mailbox.
+   Reception_Priority : constant := System.Default_Priority + 4;
    Robot_Bus_Receive_Budget : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
@@ -53,13 +60,47 @@ is
      Robot_Bus_Receive_Budget + 4 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
 
-   --  [trajectory] priority 3, released every T. B: control may be inside
+   --  [trajectory] released every T. B: control may be inside
    --  joint_x.feedback.mailbox.
+   Trajectory_Priority : constant := System.Default_Priority + 3;
    Joint_X_Trajectory_Step_Budget : constant := 100_000;
    Joint_Y_Trajectory_Step_Budget : constant := 100_000;
    Joint_Z_Trajectory_Step_Budget : constant := 100_000;
    Trajectory_T : constant := 5_000_000;
    Trajectory_D : constant := 5_000_000;
+   Joint_X_Trajectory_Step_Divisor : constant := 1;
+   Joint_X_Trajectory_Step_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_X_Trajectory_Step_Divisor /= 1,
+      "joint_x.trajectory_step "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_X_Trajectory_Step_Phase + 1) > Joint_X_Trajectory_Step_Divisor,
+      "joint_x.trajectory_step " & "has a phase beyond its divisor");
+
+   Joint_Y_Trajectory_Step_Divisor : constant := 1;
+   Joint_Y_Trajectory_Step_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Y_Trajectory_Step_Divisor /= 1,
+      "joint_y.trajectory_step "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Y_Trajectory_Step_Phase + 1) > Joint_Y_Trajectory_Step_Divisor,
+      "joint_y.trajectory_step " & "has a phase beyond its divisor");
+
+   Joint_Z_Trajectory_Step_Divisor : constant := 1;
+   Joint_Z_Trajectory_Step_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Z_Trajectory_Step_Divisor /= 1,
+      "joint_z.trajectory_step "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Z_Trajectory_Step_Phase + 1) > Joint_Z_Trajectory_Step_Divisor,
+      "joint_z.trajectory_step " & "has a phase beyond its divisor");
+
    Trajectory_J : constant := 0;
    Trajectory_A : constant := Trajectory_J + (Trajectory_T - 1);
    Trajectory_C : constant :=
@@ -69,8 +110,9 @@ is
      + 2 * Controller_Context_Switch;
    Trajectory_B : constant := Controller_Critical_Section;
 
-   --  [control] priority 2, released every T. B: supervision may be inside
+   --  [control] released every T. B: supervision may be inside
    --  joint_x.order.mailbox.
+   Control_Priority : constant := System.Default_Priority + 2;
    Joint_X_Ports_Budget : constant := 100_000;
    Joint_X_Monitoring_Budget : constant := 100_000;
    Joint_X_Position_Control_Budget : constant := 150_000;
@@ -82,6 +124,105 @@ is
    Joint_Z_Position_Control_Budget : constant := 150_000;
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
+   Joint_X_Ports_Divisor : constant := 1;
+   Joint_X_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_X_Ports_Divisor /= 1,
+      "joint_x.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_X_Ports_Phase + 1) > Joint_X_Ports_Divisor,
+      "joint_x.ports " & "has a phase beyond its divisor");
+
+   Joint_X_Monitoring_Divisor : constant := 1;
+   Joint_X_Monitoring_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_X_Monitoring_Divisor /= 1,
+      "joint_x.Monitoring "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_X_Monitoring_Phase + 1) > Joint_X_Monitoring_Divisor,
+      "joint_x.Monitoring " & "has a phase beyond its divisor");
+
+   Joint_X_Position_Control_Divisor : constant := 1;
+   Joint_X_Position_Control_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_X_Position_Control_Divisor /= 1,
+      "joint_x.position_control "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_X_Position_Control_Phase + 1)
+      > Joint_X_Position_Control_Divisor,
+      "joint_x.position_control " & "has a phase beyond its divisor");
+
+   Joint_Y_Ports_Divisor : constant := 1;
+   Joint_Y_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Y_Ports_Divisor /= 1,
+      "joint_y.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Y_Ports_Phase + 1) > Joint_Y_Ports_Divisor,
+      "joint_y.ports " & "has a phase beyond its divisor");
+
+   Joint_Y_Monitoring_Divisor : constant := 1;
+   Joint_Y_Monitoring_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Y_Monitoring_Divisor /= 1,
+      "joint_y.Monitoring "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Y_Monitoring_Phase + 1) > Joint_Y_Monitoring_Divisor,
+      "joint_y.Monitoring " & "has a phase beyond its divisor");
+
+   Joint_Y_Position_Control_Divisor : constant := 1;
+   Joint_Y_Position_Control_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Y_Position_Control_Divisor /= 1,
+      "joint_y.position_control "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Y_Position_Control_Phase + 1)
+      > Joint_Y_Position_Control_Divisor,
+      "joint_y.position_control " & "has a phase beyond its divisor");
+
+   Joint_Z_Ports_Divisor : constant := 1;
+   Joint_Z_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Z_Ports_Divisor /= 1,
+      "joint_z.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Z_Ports_Phase + 1) > Joint_Z_Ports_Divisor,
+      "joint_z.ports " & "has a phase beyond its divisor");
+
+   Joint_Z_Monitoring_Divisor : constant := 1;
+   Joint_Z_Monitoring_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Z_Monitoring_Divisor /= 1,
+      "joint_z.Monitoring "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Z_Monitoring_Phase + 1) > Joint_Z_Monitoring_Divisor,
+      "joint_z.Monitoring " & "has a phase beyond its divisor");
+
+   Joint_Z_Position_Control_Divisor : constant := 1;
+   Joint_Z_Position_Control_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Z_Position_Control_Divisor /= 1,
+      "joint_z.position_control "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Z_Position_Control_Phase + 1)
+      > Joint_Z_Position_Control_Divisor,
+      "joint_z.position_control " & "has a phase beyond its divisor");
+
    Control_J : constant := 0;
    Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
@@ -97,8 +238,9 @@ is
      + 2 * Controller_Context_Switch;
    Control_B : constant := Controller_Critical_Section;
 
-   --  [supervision] priority 1, released every T. B: main may be inside
+   --  [supervision] released every T. B: main may be inside
    --  coordinator.Mission.queue.
+   Supervision_Priority : constant := System.Default_Priority + 1;
    Coordinator_Ports_Budget : constant := 100_000;
    Coordinator_Mission_Budget : constant := 200_000;
    Joint_X_Motion_Budget : constant := 150_000;
@@ -110,6 +252,102 @@ is
    Coordinator_Summarise_Budget : constant := 100_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
+   Coordinator_Ports_Divisor : constant := 1;
+   Coordinator_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Coordinator_Ports_Divisor /= 1,
+      "coordinator.ports "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Coordinator_Ports_Phase + 1) > Coordinator_Ports_Divisor,
+      "coordinator.ports " & "has a phase beyond its divisor");
+
+   Coordinator_Mission_Divisor : constant := 1;
+   Coordinator_Mission_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Coordinator_Mission_Divisor /= 1,
+      "coordinator.Mission "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Coordinator_Mission_Phase + 1) > Coordinator_Mission_Divisor,
+      "coordinator.Mission " & "has a phase beyond its divisor");
+
+   Joint_X_Motion_Divisor : constant := 1;
+   Joint_X_Motion_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_X_Motion_Divisor /= 1,
+      "joint_x.Motion " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_X_Motion_Phase + 1) > Joint_X_Motion_Divisor,
+      "joint_x.Motion " & "has a phase beyond its divisor");
+
+   Joint_Y_Motion_Divisor : constant := 1;
+   Joint_Y_Motion_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Y_Motion_Divisor /= 1,
+      "joint_y.Motion " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Y_Motion_Phase + 1) > Joint_Y_Motion_Divisor,
+      "joint_y.Motion " & "has a phase beyond its divisor");
+
+   Joint_Z_Motion_Divisor : constant := 1;
+   Joint_Z_Motion_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Z_Motion_Divisor /= 1,
+      "joint_z.Motion " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Z_Motion_Phase + 1) > Joint_Z_Motion_Divisor,
+      "joint_z.Motion " & "has a phase beyond its divisor");
+
+   Joint_X_Supervise_Divisor : constant := 1;
+   Joint_X_Supervise_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_X_Supervise_Divisor /= 1,
+      "joint_x.supervise "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_X_Supervise_Phase + 1) > Joint_X_Supervise_Divisor,
+      "joint_x.supervise " & "has a phase beyond its divisor");
+
+   Joint_Y_Supervise_Divisor : constant := 1;
+   Joint_Y_Supervise_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Y_Supervise_Divisor /= 1,
+      "joint_y.supervise "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Y_Supervise_Phase + 1) > Joint_Y_Supervise_Divisor,
+      "joint_y.supervise " & "has a phase beyond its divisor");
+
+   Joint_Z_Supervise_Divisor : constant := 1;
+   Joint_Z_Supervise_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Joint_Z_Supervise_Divisor /= 1,
+      "joint_z.supervise "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Joint_Z_Supervise_Phase + 1) > Joint_Z_Supervise_Divisor,
+      "joint_z.supervise " & "has a phase beyond its divisor");
+
+   Coordinator_Summarise_Divisor : constant := 1;
+   Coordinator_Summarise_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Coordinator_Summarise_Divisor /= 1,
+      "coordinator.summarise "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Coordinator_Summarise_Phase + 1) > Coordinator_Summarise_Divisor,
+      "coordinator.summarise " & "has a phase beyond its divisor");
+
    Supervision_J : constant := 0;
    Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
@@ -125,9 +363,11 @@ is
      + 2 * Controller_Context_Switch;
    Supervision_B : constant := Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.robot_command] priority 5, the driver's work,
-   --  released by robot_bus.robot_command, which is J late. B: supervision
-   --  may be inside coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.robot_command] the driver's work, released by
+   --  robot_bus.robot_command, which is J late. B: supervision may be
+   --  inside coordinator.Mission.queue.
+   Robot_Bus_Driver_Rx_Robot_Command_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Robot_Command_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
@@ -142,9 +382,11 @@ is
    Robot_Bus_Driver_Rx_Robot_Command_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.robot_status] priority 5, the driver's work,
-   --  released by supervision, which is J late. B: supervision may be
-   --  inside coordinator.Mission.queue.
+   --  [robot_bus.driver_tx.robot_status] the driver's work, released by
+   --  supervision, which is J late. B: supervision may be inside
+   --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Tx_Robot_Status_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Robot_Status_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
@@ -157,9 +399,11 @@ is
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.x_set_point] priority 5, the driver's work,
-   --  released by control, which is J late. B: supervision may be inside
+   --  [robot_bus.driver_tx.x_set_point] the driver's work, released by
+   --  control, which is J late. B: supervision may be inside
    --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Tx_X_Set_Point_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
@@ -172,9 +416,11 @@ is
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.y_set_point] priority 5, the driver's work,
-   --  released by control, which is J late. B: supervision may be inside
+   --  [robot_bus.driver_tx.y_set_point] the driver's work, released by
+   --  control, which is J late. B: supervision may be inside
    --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Tx_Y_Set_Point_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
@@ -187,9 +433,11 @@ is
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_tx.z_set_point] priority 5, the driver's work,
-   --  released by control, which is J late. B: supervision may be inside
+   --  [robot_bus.driver_tx.z_set_point] the driver's work, released by
+   --  control, which is J late. B: supervision may be inside
    --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Tx_Z_Set_Point_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant := 40_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
@@ -202,9 +450,11 @@ is
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.x_feedback] priority 5, the driver's work,
-   --  released by robot_bus.x_feedback, which is J late. B: supervision may
-   --  be inside coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.x_feedback] the driver's work, released by
+   --  robot_bus.x_feedback, which is J late. B: supervision may be inside
+   --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Rx_X_Feedback_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_X_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
@@ -217,9 +467,11 @@ is
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.y_feedback] priority 5, the driver's work,
-   --  released by robot_bus.y_feedback, which is J late. B: supervision may
-   --  be inside coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.y_feedback] the driver's work, released by
+   --  robot_bus.y_feedback, which is J late. B: supervision may be inside
+   --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Rx_Y_Feedback_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
@@ -232,9 +484,11 @@ is
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [robot_bus.driver_rx.z_feedback] priority 5, the driver's work,
-   --  released by robot_bus.z_feedback, which is J late. B: supervision may
-   --  be inside coordinator.Mission.queue.
+   --  [robot_bus.driver_rx.z_feedback] the driver's work, released by
+   --  robot_bus.z_feedback, which is J late. B: supervision may be inside
+   --  coordinator.Mission.queue.
+   Robot_Bus_Driver_Rx_Z_Feedback_Priority : constant :=
+     System.Default_Priority + 5;
    Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant := 40_000;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
@@ -247,8 +501,9 @@ is
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
 
-   --  [controller.supervisor] priority 6, released every T. B: supervision
-   --  may be inside coordinator.Mission.queue.
+   --  [controller.supervisor] released every T. B: supervision may be
+   --  inside coordinator.Mission.queue.
+   Controller_Supervisor_Priority : constant := System.Default_Priority + 6;
    Controller_Supervisor_Budget : constant := 50_000;
    Controller_Supervisor_T : constant := 10_000_000;
    Controller_Supervisor_D : constant := 10_000_000;
@@ -259,8 +514,9 @@ is
      Controller_Supervisor_Budget + 2 * Controller_Context_Switch;
    Controller_Supervisor_B : constant := Controller_Critical_Section;
 
-   --  [controller.probe] priority 7, released every T. B: main may be
-   --  inside controller.probe.board.
+   --  [controller.probe] released every T. B: main may be inside
+   --  controller.probe.board.
+   Controller_Probe_Priority : constant := System.Default_Priority + 7;
    Controller_Probe_Budget : constant := 20_000;
    Controller_Probe_T : constant := 1_000_000;
    Controller_Probe_D : constant := 1_000_000;
@@ -271,6 +527,64 @@ is
      Controller_Probe_Budget + 2 * Controller_Context_Switch;
    Controller_Probe_B : constant := Controller_Critical_Section;
 
+   pragma Compile_Time_Error
+     ((Controller_Supervisor_Priority + 1) > Controller_Probe_Priority,
+      "controller.probe "
+      & "must have a higher priority than controller.supervisor");
+   pragma Compile_Time_Error
+     ((Robot_Bus_Driver_Rx_Robot_Command_Priority + 1)
+      > Controller_Supervisor_Priority,
+      "controller.supervisor "
+      & "must have a higher priority than robot_bus.driver_rx.robot_command");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_Robot_Command_Priority
+      /= Robot_Bus_Driver_Tx_Robot_Status_Priority,
+      "robot_bus.driver_rx.robot_command "
+      & "must have the priority of robot_bus.driver_tx.robot_status");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_Robot_Status_Priority
+      /= Robot_Bus_Driver_Tx_X_Set_Point_Priority,
+      "robot_bus.driver_tx.robot_status "
+      & "must have the priority of robot_bus.driver_tx.x_set_point");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_X_Set_Point_Priority
+      /= Robot_Bus_Driver_Tx_Y_Set_Point_Priority,
+      "robot_bus.driver_tx.x_set_point "
+      & "must have the priority of robot_bus.driver_tx.y_set_point");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_Y_Set_Point_Priority
+      /= Robot_Bus_Driver_Tx_Z_Set_Point_Priority,
+      "robot_bus.driver_tx.y_set_point "
+      & "must have the priority of robot_bus.driver_tx.z_set_point");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_Z_Set_Point_Priority
+      /= Robot_Bus_Driver_Rx_X_Feedback_Priority,
+      "robot_bus.driver_tx.z_set_point "
+      & "must have the priority of robot_bus.driver_rx.x_feedback");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_X_Feedback_Priority
+      /= Robot_Bus_Driver_Rx_Y_Feedback_Priority,
+      "robot_bus.driver_rx.x_feedback "
+      & "must have the priority of robot_bus.driver_rx.y_feedback");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_Y_Feedback_Priority
+      /= Robot_Bus_Driver_Rx_Z_Feedback_Priority,
+      "robot_bus.driver_rx.y_feedback "
+      & "must have the priority of robot_bus.driver_rx.z_feedback");
+   pragma Compile_Time_Error
+     ((Reception_Priority + 1) > Robot_Bus_Driver_Rx_Z_Feedback_Priority,
+      "robot_bus.driver_rx.z_feedback "
+      & "must have a higher priority than reception");
+   pragma Compile_Time_Error
+     ((Trajectory_Priority + 1) > Reception_Priority,
+      "reception " & "must have a higher priority than trajectory");
+   pragma Compile_Time_Error
+     ((Control_Priority + 1) > Trajectory_Priority,
+      "trajectory " & "must have a higher priority than control");
+   pragma Compile_Time_Error
+     ((Supervision_Priority + 1) > Control_Priority,
+      "control " & "must have a higher priority than supervision");
+
    --  [robot_bus] bits in a second, and one bit in nanoseconds, rounded up.
    --  Of a message, Stuffed: bits that stuffing can lengthen by a quarter;
    --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
@@ -279,11 +593,14 @@ is
    Robot_Bus_Bit : constant :=
      (1_000_000_000 + (Robot_Bus_Bit_Rate - 1)) / Robot_Bus_Bit_Rate;
 
-   --  [robot_bus.robot_command] 11-bit identifier 0x80, 8 bytes from
+   --  [robot_bus.robot_command] 11-bit identifier Id, Length bytes from
    --  somebody outside
+   Robot_Bus_Robot_Command_Id : constant := 16#80#;
+   Robot_Bus_Robot_Command_Length : constant := 8;
    Robot_Bus_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Robot_Command_D : constant := 100_000_000;
-   Robot_Bus_Robot_Command_Stuffed : constant := 34 + 8 * 8;
+   Robot_Bus_Robot_Command_Stuffed : constant :=
+     34 + 8 * Robot_Bus_Robot_Command_Length;
    Robot_Bus_Robot_Command_Bits : constant :=
      Robot_Bus_Robot_Command_Stuffed
      + 13
@@ -295,11 +612,14 @@ is
    Robot_Bus_Robot_Command_A : constant :=
      Robot_Bus_Robot_Command_J + (Robot_Bus_Robot_Command_T - 1);
 
-   --  [robot_bus.x_set_point] 11-bit identifier 0x110, 3 bytes from
+   --  [robot_bus.x_set_point] 11-bit identifier Id, Length bytes from
    --  joint_x.drive
+   Robot_Bus_X_Set_Point_Id : constant := 16#110#;
+   Robot_Bus_X_Set_Point_Length : constant := 3;
    Robot_Bus_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_X_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_X_Set_Point_Stuffed : constant := 34 + 8 * 3;
+   Robot_Bus_X_Set_Point_Stuffed : constant :=
+     34 + 8 * Robot_Bus_X_Set_Point_Length;
    Robot_Bus_X_Set_Point_Bits : constant :=
      Robot_Bus_X_Set_Point_Stuffed
      + 13
@@ -311,11 +631,14 @@ is
    Robot_Bus_X_Set_Point_A : constant :=
      Robot_Bus_X_Set_Point_J + (Robot_Bus_X_Set_Point_T - 1);
 
-   --  [robot_bus.y_set_point] 11-bit identifier 0x111, 3 bytes from
+   --  [robot_bus.y_set_point] 11-bit identifier Id, Length bytes from
    --  joint_y.drive
+   Robot_Bus_Y_Set_Point_Id : constant := 16#111#;
+   Robot_Bus_Y_Set_Point_Length : constant := 3;
    Robot_Bus_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Y_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Y_Set_Point_Stuffed : constant := 34 + 8 * 3;
+   Robot_Bus_Y_Set_Point_Stuffed : constant :=
+     34 + 8 * Robot_Bus_Y_Set_Point_Length;
    Robot_Bus_Y_Set_Point_Bits : constant :=
      Robot_Bus_Y_Set_Point_Stuffed
      + 13
@@ -327,11 +650,14 @@ is
    Robot_Bus_Y_Set_Point_A : constant :=
      Robot_Bus_Y_Set_Point_J + (Robot_Bus_Y_Set_Point_T - 1);
 
-   --  [robot_bus.z_set_point] 11-bit identifier 0x112, 3 bytes from
+   --  [robot_bus.z_set_point] 11-bit identifier Id, Length bytes from
    --  joint_z.drive
+   Robot_Bus_Z_Set_Point_Id : constant := 16#112#;
+   Robot_Bus_Z_Set_Point_Length : constant := 3;
    Robot_Bus_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Z_Set_Point_D : constant := 10_000_000;
-   Robot_Bus_Z_Set_Point_Stuffed : constant := 34 + 8 * 3;
+   Robot_Bus_Z_Set_Point_Stuffed : constant :=
+     34 + 8 * Robot_Bus_Z_Set_Point_Length;
    Robot_Bus_Z_Set_Point_Bits : constant :=
      Robot_Bus_Z_Set_Point_Stuffed
      + 13
@@ -343,11 +669,14 @@ is
    Robot_Bus_Z_Set_Point_A : constant :=
      Robot_Bus_Z_Set_Point_J + (Robot_Bus_Z_Set_Point_T - 1);
 
-   --  [robot_bus.x_feedback] 11-bit identifier 0x120, 6 bytes from somebody
-   --  outside
+   --  [robot_bus.x_feedback] 11-bit identifier Id, Length bytes from
+   --  somebody outside
+   Robot_Bus_X_Feedback_Id : constant := 16#120#;
+   Robot_Bus_X_Feedback_Length : constant := 6;
    Robot_Bus_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_X_Feedback_D : constant := 5_000_000;
-   Robot_Bus_X_Feedback_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_X_Feedback_Stuffed : constant :=
+     34 + 8 * Robot_Bus_X_Feedback_Length;
    Robot_Bus_X_Feedback_Bits : constant :=
      Robot_Bus_X_Feedback_Stuffed
      + 13
@@ -359,11 +688,14 @@ is
    Robot_Bus_X_Feedback_A : constant :=
      Robot_Bus_X_Feedback_J + (Robot_Bus_X_Feedback_T - 1);
 
-   --  [robot_bus.y_feedback] 11-bit identifier 0x121, 6 bytes from somebody
-   --  outside
+   --  [robot_bus.y_feedback] 11-bit identifier Id, Length bytes from
+   --  somebody outside
+   Robot_Bus_Y_Feedback_Id : constant := 16#121#;
+   Robot_Bus_Y_Feedback_Length : constant := 6;
    Robot_Bus_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Y_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Y_Feedback_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_Y_Feedback_Stuffed : constant :=
+     34 + 8 * Robot_Bus_Y_Feedback_Length;
    Robot_Bus_Y_Feedback_Bits : constant :=
      Robot_Bus_Y_Feedback_Stuffed
      + 13
@@ -375,11 +707,14 @@ is
    Robot_Bus_Y_Feedback_A : constant :=
      Robot_Bus_Y_Feedback_J + (Robot_Bus_Y_Feedback_T - 1);
 
-   --  [robot_bus.z_feedback] 11-bit identifier 0x122, 6 bytes from somebody
-   --  outside
+   --  [robot_bus.z_feedback] 11-bit identifier Id, Length bytes from
+   --  somebody outside
+   Robot_Bus_Z_Feedback_Id : constant := 16#122#;
+   Robot_Bus_Z_Feedback_Length : constant := 6;
    Robot_Bus_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Z_Feedback_D : constant := 5_000_000;
-   Robot_Bus_Z_Feedback_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_Z_Feedback_Stuffed : constant :=
+     34 + 8 * Robot_Bus_Z_Feedback_Length;
    Robot_Bus_Z_Feedback_Bits : constant :=
      Robot_Bus_Z_Feedback_Stuffed
      + 13
@@ -391,11 +726,14 @@ is
    Robot_Bus_Z_Feedback_A : constant :=
      Robot_Bus_Z_Feedback_J + (Robot_Bus_Z_Feedback_T - 1);
 
-   --  [robot_bus.robot_status] 11-bit identifier 0x180, 6 bytes from
+   --  [robot_bus.robot_status] 11-bit identifier Id, Length bytes from
    --  coordinator.status
+   Robot_Bus_Robot_Status_Id : constant := 16#180#;
+   Robot_Bus_Robot_Status_Length : constant := 6;
    Robot_Bus_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Robot_Status_D : constant := 20_000_000;
-   Robot_Bus_Robot_Status_Stuffed : constant := 34 + 8 * 6;
+   Robot_Bus_Robot_Status_Stuffed : constant :=
+     34 + 8 * Robot_Bus_Robot_Status_Length;
    Robot_Bus_Robot_Status_Bits : constant :=
      Robot_Bus_Robot_Status_Stuffed
      + 13
@@ -407,6 +745,42 @@ is
      Robot_Bus_Driver_Tx_Robot_Status_R;
    Robot_Bus_Robot_Status_A : constant :=
      Robot_Bus_Robot_Status_J + (Robot_Bus_Robot_Status_T - 1);
+
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_Robot_Command_Id) + 1)
+      > (2**19 * Robot_Bus_X_Set_Point_Id),
+      "robot_bus.robot_command "
+      & "must win the arbitration against robot_bus.x_set_point");
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_X_Set_Point_Id) + 1)
+      > (2**19 * Robot_Bus_Y_Set_Point_Id),
+      "robot_bus.x_set_point "
+      & "must win the arbitration against robot_bus.y_set_point");
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_Y_Set_Point_Id) + 1)
+      > (2**19 * Robot_Bus_Z_Set_Point_Id),
+      "robot_bus.y_set_point "
+      & "must win the arbitration against robot_bus.z_set_point");
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_Z_Set_Point_Id) + 1)
+      > (2**19 * Robot_Bus_X_Feedback_Id),
+      "robot_bus.z_set_point "
+      & "must win the arbitration against robot_bus.x_feedback");
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_X_Feedback_Id) + 1)
+      > (2**19 * Robot_Bus_Y_Feedback_Id),
+      "robot_bus.x_feedback "
+      & "must win the arbitration against robot_bus.y_feedback");
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_Y_Feedback_Id) + 1)
+      > (2**19 * Robot_Bus_Z_Feedback_Id),
+      "robot_bus.y_feedback "
+      & "must win the arbitration against robot_bus.z_feedback");
+   pragma Compile_Time_Error
+     (((2**19 * Robot_Bus_Z_Feedback_Id) + 1)
+      > (2**19 * Robot_Bus_Robot_Status_Id),
+      "robot_bus.z_feedback "
+      & "must win the arbitration against robot_bus.robot_status");
 
    --  [reception] what can delay it: jobs of the same or higher priority
    Reception_W : constant := Reception_R - Reception_J;
@@ -448,6 +822,9 @@ is
    pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Reception_W > Reception_Needs,
+      "reception " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
@@ -499,6 +876,9 @@ is
      (Trajectory_Needs > Trajectory_W,
       "trajectory " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Trajectory_W > Trajectory_Needs,
+      "trajectory " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Trajectory_J + Trajectory_W) > Trajectory_T,
       "trajectory " & "can be released again before it completes");
    pragma Compile_Time_Error
@@ -549,6 +929,9 @@ is
    pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Control_W > Control_Needs,
+      "control " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
@@ -603,6 +986,9 @@ is
    pragma Compile_Time_Error
      (Joint_X_Ports_Needs > Joint_X_Ports_W,
       "joint_x.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_X_Ports_W > Joint_X_Ports_Needs,
+      "joint_x.ports " & "claims more than its terms add up to");
 
    --  [joint_x.position_control] done, from the event that releases its
    --  processor
@@ -658,6 +1044,9 @@ is
      (Joint_X_Position_Control_Needs > Joint_X_Position_Control_W,
       "joint_x.position_control "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_X_Position_Control_W > Joint_X_Position_Control_Needs,
+      "joint_x.position_control " & "claims more than its terms add up to");
 
    --  [joint_y.ports] done, from the event that releases its processor
    Joint_Y_Ports_Done : constant := 1_415_000;
@@ -707,6 +1096,9 @@ is
    pragma Compile_Time_Error
      (Joint_Y_Ports_Needs > Joint_Y_Ports_W,
       "joint_y.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_Y_Ports_W > Joint_Y_Ports_Needs,
+      "joint_y.ports " & "claims more than its terms add up to");
 
    --  [joint_y.position_control] done, from the event that releases its
    --  processor
@@ -765,6 +1157,9 @@ is
      (Joint_Y_Position_Control_Needs > Joint_Y_Position_Control_W,
       "joint_y.position_control "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_Y_Position_Control_W > Joint_Y_Position_Control_Needs,
+      "joint_y.position_control " & "claims more than its terms add up to");
 
    --  [joint_z.ports] done, from the event that releases its processor
    Joint_Z_Ports_Done : constant := 1_765_000;
@@ -817,6 +1212,9 @@ is
    pragma Compile_Time_Error
      (Joint_Z_Ports_Needs > Joint_Z_Ports_W,
       "joint_z.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_Z_Ports_W > Joint_Z_Ports_Needs,
+      "joint_z.ports " & "claims more than its terms add up to");
 
    --  [joint_z.position_control] done, from the event that releases its
    --  processor
@@ -878,6 +1276,9 @@ is
      (Joint_Z_Position_Control_Needs > Joint_Z_Position_Control_W,
       "joint_z.position_control "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_Z_Position_Control_W > Joint_Z_Position_Control_Needs,
+      "joint_z.position_control " & "claims more than its terms add up to");
 
    --  [supervision] what can delay it: jobs of the same or higher priority
    Supervision_W : constant := Supervision_R - Supervision_J;
@@ -922,6 +1323,9 @@ is
    pragma Compile_Time_Error
      (Supervision_Needs > Supervision_W,
       "supervision " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Supervision_W > Supervision_Needs,
+      "supervision " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Supervision_J + Supervision_W) > Supervision_T,
       "supervision " & "can be released again before it completes");
@@ -979,6 +1383,9 @@ is
      (Coordinator_Ports_Needs > Coordinator_Ports_W,
       "coordinator.ports "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Coordinator_Ports_W > Coordinator_Ports_Needs,
+      "coordinator.ports " & "claims more than its terms add up to");
 
    --  [joint_x.supervise] done, from the event that releases its processor
    Joint_X_Supervise_Done : constant := 2_965_000;
@@ -1033,6 +1440,9 @@ is
      (Joint_X_Supervise_Needs > Joint_X_Supervise_W,
       "joint_x.supervise "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Joint_X_Supervise_W > Joint_X_Supervise_Needs,
+      "joint_x.supervise " & "claims more than its terms add up to");
 
    --  [coordinator.summarise] done, from the event that releases its
    --  processor
@@ -1094,6 +1504,9 @@ is
      (Coordinator_Summarise_Needs > Coordinator_Summarise_W,
       "coordinator.summarise "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Coordinator_Summarise_W > Coordinator_Summarise_Needs,
+      "coordinator.summarise " & "claims more than its terms add up to");
 
    --  [robot_bus.driver_rx.robot_command] what can delay it: jobs of the
    --  same or higher priority
@@ -1147,6 +1560,11 @@ is
       > Robot_Bus_Driver_Rx_Robot_Command_W,
       "robot_bus.driver_rx.robot_command "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_Robot_Command_W
+      > Robot_Bus_Driver_Rx_Robot_Command_Needs,
+      "robot_bus.driver_rx.robot_command "
+      & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Robot_Bus_Driver_Rx_Robot_Command_J
        + Robot_Bus_Driver_Rx_Robot_Command_W)
@@ -1216,6 +1634,11 @@ is
       "robot_bus.driver_tx.robot_status "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_Robot_Status_W
+      > Robot_Bus_Driver_Tx_Robot_Status_Needs,
+      "robot_bus.driver_tx.robot_status "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Driver_Tx_Robot_Status_J
        + Robot_Bus_Driver_Tx_Robot_Status_W)
       > Robot_Bus_Driver_Tx_Robot_Status_T,
@@ -1284,6 +1707,11 @@ is
       "robot_bus.driver_tx.x_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_X_Set_Point_W
+      > Robot_Bus_Driver_Tx_X_Set_Point_Needs,
+      "robot_bus.driver_tx.x_set_point "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Driver_Tx_X_Set_Point_J + Robot_Bus_Driver_Tx_X_Set_Point_W)
       > Robot_Bus_Driver_Tx_X_Set_Point_T,
       "robot_bus.driver_tx.x_set_point "
@@ -1348,6 +1776,11 @@ is
       > Robot_Bus_Driver_Tx_Y_Set_Point_W,
       "robot_bus.driver_tx.y_set_point "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_Y_Set_Point_W
+      > Robot_Bus_Driver_Tx_Y_Set_Point_Needs,
+      "robot_bus.driver_tx.y_set_point "
+      & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Robot_Bus_Driver_Tx_Y_Set_Point_J + Robot_Bus_Driver_Tx_Y_Set_Point_W)
       > Robot_Bus_Driver_Tx_Y_Set_Point_T,
@@ -1414,6 +1847,11 @@ is
       "robot_bus.driver_tx.z_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Driver_Tx_Z_Set_Point_W
+      > Robot_Bus_Driver_Tx_Z_Set_Point_Needs,
+      "robot_bus.driver_tx.z_set_point "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Driver_Tx_Z_Set_Point_J + Robot_Bus_Driver_Tx_Z_Set_Point_W)
       > Robot_Bus_Driver_Tx_Z_Set_Point_T,
       "robot_bus.driver_tx.z_set_point "
@@ -1478,6 +1916,11 @@ is
       > Robot_Bus_Driver_Rx_X_Feedback_W,
       "robot_bus.driver_rx.x_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_X_Feedback_W
+      > Robot_Bus_Driver_Rx_X_Feedback_Needs,
+      "robot_bus.driver_rx.x_feedback "
+      & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Robot_Bus_Driver_Rx_X_Feedback_J + Robot_Bus_Driver_Rx_X_Feedback_W)
       > Robot_Bus_Driver_Rx_X_Feedback_T,
@@ -1544,6 +1987,11 @@ is
       "robot_bus.driver_rx.y_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_Y_Feedback_W
+      > Robot_Bus_Driver_Rx_Y_Feedback_Needs,
+      "robot_bus.driver_rx.y_feedback "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Driver_Rx_Y_Feedback_J + Robot_Bus_Driver_Rx_Y_Feedback_W)
       > Robot_Bus_Driver_Rx_Y_Feedback_T,
       "robot_bus.driver_rx.y_feedback "
@@ -1609,6 +2057,11 @@ is
       "robot_bus.driver_rx.z_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Driver_Rx_Z_Feedback_W
+      > Robot_Bus_Driver_Rx_Z_Feedback_Needs,
+      "robot_bus.driver_rx.z_feedback "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Driver_Rx_Z_Feedback_J + Robot_Bus_Driver_Rx_Z_Feedback_W)
       > Robot_Bus_Driver_Rx_Z_Feedback_T,
       "robot_bus.driver_rx.z_feedback "
@@ -1641,6 +2094,9 @@ is
       "controller.supervisor "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Controller_Supervisor_W > Controller_Supervisor_Needs,
+      "controller.supervisor " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Controller_Supervisor_J + Controller_Supervisor_W)
       > Controller_Supervisor_T,
       "controller.supervisor " & "can be released again before it completes");
@@ -1662,6 +2118,9 @@ is
    pragma Compile_Time_Error
      (Controller_Probe_Needs > Controller_Probe_W,
       "controller.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Controller_Probe_W > Controller_Probe_Needs,
+      "controller.probe " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Controller_Probe_J + Controller_Probe_W) > Controller_Probe_T,
       "controller.probe " & "can be released again before it completes");
@@ -1707,6 +2166,9 @@ is
       "robot_bus.robot_command "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_Busy > Robot_Bus_Robot_Command_Busy_Needs,
+      "robot_bus.robot_command " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Robot_Command_Busy + Robot_Bus_Robot_Command_J)
       > Robot_Bus_Robot_Command_T,
       "robot_bus.robot_command " & "can come again before it is sent");
@@ -1723,12 +2185,21 @@ is
       "robot_bus.robot_command "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_W > Robot_Bus_Robot_Command_Needs,
+      "robot_bus.robot_command " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Robot_Command_J
        + Robot_Bus_Robot_Command_W
        + Robot_Bus_Robot_Command_C)
       > Robot_Bus_Robot_Command_R,
       "robot_bus.robot_command "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Command_R
+      > (Robot_Bus_Robot_Command_J
+         + Robot_Bus_Robot_Command_W
+         + Robot_Bus_Robot_Command_C),
+      "robot_bus.robot_command " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_Robot_Command_R > Robot_Bus_Robot_Command_D,
       "robot_bus.robot_command " & "can miss its deadline");
@@ -1772,6 +2243,9 @@ is
       "robot_bus.x_set_point "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_X_Set_Point_Busy > Robot_Bus_X_Set_Point_Busy_Needs,
+      "robot_bus.x_set_point " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_X_Set_Point_Busy + Robot_Bus_X_Set_Point_J)
       > Robot_Bus_X_Set_Point_T,
       "robot_bus.x_set_point " & "can come again before it is sent");
@@ -1812,12 +2286,21 @@ is
       "robot_bus.x_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_X_Set_Point_W > Robot_Bus_X_Set_Point_Needs,
+      "robot_bus.x_set_point " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_X_Set_Point_J
        + Robot_Bus_X_Set_Point_W
        + Robot_Bus_X_Set_Point_C)
       > Robot_Bus_X_Set_Point_R,
       "robot_bus.x_set_point "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Set_Point_R
+      > (Robot_Bus_X_Set_Point_J
+         + Robot_Bus_X_Set_Point_W
+         + Robot_Bus_X_Set_Point_C),
+      "robot_bus.x_set_point " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_X_Set_Point_R > Robot_Bus_X_Set_Point_D,
       "robot_bus.x_set_point " & "can miss its deadline");
@@ -1861,6 +2344,9 @@ is
       "robot_bus.y_set_point "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Y_Set_Point_Busy > Robot_Bus_Y_Set_Point_Busy_Needs,
+      "robot_bus.y_set_point " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Y_Set_Point_Busy + Robot_Bus_Y_Set_Point_J)
       > Robot_Bus_Y_Set_Point_T,
       "robot_bus.y_set_point " & "can come again before it is sent");
@@ -1901,12 +2387,21 @@ is
       "robot_bus.y_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Y_Set_Point_W > Robot_Bus_Y_Set_Point_Needs,
+      "robot_bus.y_set_point " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Y_Set_Point_J
        + Robot_Bus_Y_Set_Point_W
        + Robot_Bus_Y_Set_Point_C)
       > Robot_Bus_Y_Set_Point_R,
       "robot_bus.y_set_point "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Set_Point_R
+      > (Robot_Bus_Y_Set_Point_J
+         + Robot_Bus_Y_Set_Point_W
+         + Robot_Bus_Y_Set_Point_C),
+      "robot_bus.y_set_point " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Set_Point_R > Robot_Bus_Y_Set_Point_D,
       "robot_bus.y_set_point " & "can miss its deadline");
@@ -1950,6 +2445,9 @@ is
       "robot_bus.z_set_point "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Z_Set_Point_Busy > Robot_Bus_Z_Set_Point_Busy_Needs,
+      "robot_bus.z_set_point " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Z_Set_Point_Busy + Robot_Bus_Z_Set_Point_J)
       > Robot_Bus_Z_Set_Point_T,
       "robot_bus.z_set_point " & "can come again before it is sent");
@@ -1990,12 +2488,21 @@ is
       "robot_bus.z_set_point "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Z_Set_Point_W > Robot_Bus_Z_Set_Point_Needs,
+      "robot_bus.z_set_point " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Z_Set_Point_J
        + Robot_Bus_Z_Set_Point_W
        + Robot_Bus_Z_Set_Point_C)
       > Robot_Bus_Z_Set_Point_R,
       "robot_bus.z_set_point "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Set_Point_R
+      > (Robot_Bus_Z_Set_Point_J
+         + Robot_Bus_Z_Set_Point_W
+         + Robot_Bus_Z_Set_Point_C),
+      "robot_bus.z_set_point " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Set_Point_R > Robot_Bus_Z_Set_Point_D,
       "robot_bus.z_set_point " & "can miss its deadline");
@@ -2037,6 +2544,9 @@ is
       "robot_bus.x_feedback "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Busy > Robot_Bus_X_Feedback_Busy_Needs,
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_X_Feedback_Busy + Robot_Bus_X_Feedback_J)
       > Robot_Bus_X_Feedback_T,
       "robot_bus.x_feedback " & "can come again before it is sent");
@@ -2075,12 +2585,21 @@ is
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_W > Robot_Bus_X_Feedback_Needs,
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_X_Feedback_J
        + Robot_Bus_X_Feedback_W
        + Robot_Bus_X_Feedback_C)
       > Robot_Bus_X_Feedback_R,
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_R
+      > (Robot_Bus_X_Feedback_J
+         + Robot_Bus_X_Feedback_W
+         + Robot_Bus_X_Feedback_C),
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_X_Feedback_R > Robot_Bus_X_Feedback_D,
       "robot_bus.x_feedback " & "can miss its deadline");
@@ -2125,6 +2644,9 @@ is
       "robot_bus.y_feedback "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Busy > Robot_Bus_Y_Feedback_Busy_Needs,
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Y_Feedback_Busy + Robot_Bus_Y_Feedback_J)
       > Robot_Bus_Y_Feedback_T,
       "robot_bus.y_feedback " & "can come again before it is sent");
@@ -2166,12 +2688,21 @@ is
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_W > Robot_Bus_Y_Feedback_Needs,
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Y_Feedback_J
        + Robot_Bus_Y_Feedback_W
        + Robot_Bus_Y_Feedback_C)
       > Robot_Bus_Y_Feedback_R,
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_R
+      > (Robot_Bus_Y_Feedback_J
+         + Robot_Bus_Y_Feedback_W
+         + Robot_Bus_Y_Feedback_C),
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_Y_Feedback_R > Robot_Bus_Y_Feedback_D,
       "robot_bus.y_feedback " & "can miss its deadline");
@@ -2219,6 +2750,9 @@ is
       "robot_bus.z_feedback "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Busy > Robot_Bus_Z_Feedback_Busy_Needs,
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Z_Feedback_Busy + Robot_Bus_Z_Feedback_J)
       > Robot_Bus_Z_Feedback_T,
       "robot_bus.z_feedback " & "can come again before it is sent");
@@ -2263,12 +2797,21 @@ is
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_W > Robot_Bus_Z_Feedback_Needs,
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Z_Feedback_J
        + Robot_Bus_Z_Feedback_W
        + Robot_Bus_Z_Feedback_C)
       > Robot_Bus_Z_Feedback_R,
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_R
+      > (Robot_Bus_Z_Feedback_J
+         + Robot_Bus_Z_Feedback_W
+         + Robot_Bus_Z_Feedback_C),
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_Z_Feedback_R > Robot_Bus_Z_Feedback_D,
       "robot_bus.z_feedback " & "can miss its deadline");
@@ -2312,6 +2855,9 @@ is
       "robot_bus.robot_status "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Robot_Status_Busy > Robot_Bus_Robot_Status_Busy_Needs,
+      "robot_bus.robot_status " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Robot_Status_Busy + Robot_Bus_Robot_Status_J)
       > Robot_Bus_Robot_Status_T,
       "robot_bus.robot_status " & "can come again before it is sent");
@@ -2352,12 +2898,21 @@ is
       "robot_bus.robot_status "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Robot_Bus_Robot_Status_W > Robot_Bus_Robot_Status_Needs,
+      "robot_bus.robot_status " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Robot_Status_J
        + Robot_Bus_Robot_Status_W
        + Robot_Bus_Robot_Status_C)
       > Robot_Bus_Robot_Status_R,
       "robot_bus.robot_status "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Robot_Status_R
+      > (Robot_Bus_Robot_Status_J
+         + Robot_Bus_Robot_Status_W
+         + Robot_Bus_Robot_Status_C),
+      "robot_bus.robot_status " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Robot_Bus_Robot_Status_R > Robot_Bus_Robot_Status_D,
       "robot_bus.robot_status " & "can miss its deadline");
@@ -2399,6 +2954,9 @@ is
       "robot_bus.x_feedback "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn_Busy > Robot_Bus_X_Feedback_Turn_Busy_Needs,
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_X_Feedback_Turn_Busy + Robot_Bus_X_Feedback_Turn_J)
       > (2 * Robot_Bus_X_Feedback_T),
       "robot_bus.x_feedback " & "can come again before it is sent");
@@ -2432,6 +2990,9 @@ is
      (Robot_Bus_X_Feedback_Turn_Needs_1 > Robot_Bus_X_Feedback_Turn_W_1,
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn_W_1 > Robot_Bus_X_Feedback_Turn_Needs_1,
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_X_Feedback_Turn_W_2 : constant := 6_000_000;
    Robot_Bus_X_Feedback_Turn_Needs_2 : constant :=
@@ -2463,6 +3024,9 @@ is
      (Robot_Bus_X_Feedback_Turn_Needs_2 > Robot_Bus_X_Feedback_Turn_W_2,
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn_W_2 > Robot_Bus_X_Feedback_Turn_Needs_2,
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_X_Feedback_Turn : constant := 6_735_000;
 
@@ -2478,6 +3042,14 @@ is
       > Robot_Bus_X_Feedback_Turn,
       "robot_bus.x_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_X_Feedback_Turn
+      > (Robot_Bus_X_Feedback_Turn_J + Robot_Bus_X_Feedback_Turn_W_1)
+      and then Robot_Bus_X_Feedback_Turn
+        > (Robot_Bus_X_Feedback_Turn_J
+           + Robot_Bus_X_Feedback_Turn_W_2
+           + ((-1) * Robot_Bus_X_Feedback_T)),
+      "robot_bus.x_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_X_Feedback_Handed : constant :=
      Robot_Bus_X_Feedback_Turn + (2 * Reception_R);
@@ -2518,6 +3090,9 @@ is
       "robot_bus.y_feedback "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn_Busy > Robot_Bus_Y_Feedback_Turn_Busy_Needs,
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Y_Feedback_Turn_Busy + Robot_Bus_Y_Feedback_Turn_J)
       > (2 * Robot_Bus_Y_Feedback_T),
       "robot_bus.y_feedback " & "can come again before it is sent");
@@ -2551,6 +3126,9 @@ is
      (Robot_Bus_Y_Feedback_Turn_Needs_1 > Robot_Bus_Y_Feedback_Turn_W_1,
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn_W_1 > Robot_Bus_Y_Feedback_Turn_Needs_1,
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_Y_Feedback_Turn_W_2 : constant := 6_000_000;
    Robot_Bus_Y_Feedback_Turn_Needs_2 : constant :=
@@ -2582,6 +3160,9 @@ is
      (Robot_Bus_Y_Feedback_Turn_Needs_2 > Robot_Bus_Y_Feedback_Turn_W_2,
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn_W_2 > Robot_Bus_Y_Feedback_Turn_Needs_2,
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_Y_Feedback_Turn : constant := 6_965_000;
 
@@ -2597,6 +3178,14 @@ is
       > Robot_Bus_Y_Feedback_Turn,
       "robot_bus.y_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Y_Feedback_Turn
+      > (Robot_Bus_Y_Feedback_Turn_J + Robot_Bus_Y_Feedback_Turn_W_1)
+      and then Robot_Bus_Y_Feedback_Turn
+        > (Robot_Bus_Y_Feedback_Turn_J
+           + Robot_Bus_Y_Feedback_Turn_W_2
+           + ((-1) * Robot_Bus_Y_Feedback_T)),
+      "robot_bus.y_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_Y_Feedback_Handed : constant :=
      Robot_Bus_Y_Feedback_Turn + (2 * Reception_R);
@@ -2637,6 +3226,9 @@ is
       "robot_bus.z_feedback "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn_Busy > Robot_Bus_Z_Feedback_Turn_Busy_Needs,
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Robot_Bus_Z_Feedback_Turn_Busy + Robot_Bus_Z_Feedback_Turn_J)
       > (2 * Robot_Bus_Z_Feedback_T),
       "robot_bus.z_feedback " & "can come again before it is sent");
@@ -2670,6 +3262,9 @@ is
      (Robot_Bus_Z_Feedback_Turn_Needs_1 > Robot_Bus_Z_Feedback_Turn_W_1,
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn_W_1 > Robot_Bus_Z_Feedback_Turn_Needs_1,
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_Z_Feedback_Turn_W_2 : constant := 6_000_000;
    Robot_Bus_Z_Feedback_Turn_Needs_2 : constant :=
@@ -2701,6 +3296,9 @@ is
      (Robot_Bus_Z_Feedback_Turn_Needs_2 > Robot_Bus_Z_Feedback_Turn_W_2,
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn_W_2 > Robot_Bus_Z_Feedback_Turn_Needs_2,
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_Z_Feedback_Turn : constant := 5_195_000;
 
@@ -2716,6 +3314,14 @@ is
       > Robot_Bus_Z_Feedback_Turn,
       "robot_bus.z_feedback "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Robot_Bus_Z_Feedback_Turn
+      > (Robot_Bus_Z_Feedback_Turn_J + Robot_Bus_Z_Feedback_Turn_W_1)
+      and then Robot_Bus_Z_Feedback_Turn
+        > (Robot_Bus_Z_Feedback_Turn_J
+           + Robot_Bus_Z_Feedback_Turn_W_2
+           + ((-1) * Robot_Bus_Z_Feedback_T)),
+      "robot_bus.z_feedback " & "claims more than its terms add up to");
 
    Robot_Bus_Z_Feedback_Handed : constant :=
      Robot_Bus_Z_Feedback_Turn + (2 * Reception_R);
@@ -2729,6 +3335,9 @@ is
    pragma Compile_Time_Error
      (Chain_X_Loop_Reaction_Needs > Chain_X_Loop_Reaction,
       "chain x_loop " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_X_Loop_Reaction > Chain_X_Loop_Reaction_Needs,
+      "chain x_loop " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_X_Loop_Reaction > Chain_X_Loop_Reaction_Limit,
       "chain x_loop " & "can exceed the limit of its reaction");
@@ -2746,6 +3355,9 @@ is
      (Chain_X_Loop_Age_Needs > Chain_X_Loop_Age,
       "chain x_loop " & "can have a longer age than claimed");
    pragma Compile_Time_Error
+     (Chain_X_Loop_Age > Chain_X_Loop_Age_Needs,
+      "chain x_loop " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      (Chain_X_Loop_Age > Chain_X_Loop_Age_Limit,
       "chain x_loop " & "can exceed the limit of its age");
    pragma Assert (Chain_X_Loop_Age_Needs <= Chain_X_Loop_Age_Limit);
@@ -2759,6 +3371,9 @@ is
    pragma Compile_Time_Error
      (Chain_Y_Loop_Reaction_Needs > Chain_Y_Loop_Reaction,
       "chain y_loop " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_Y_Loop_Reaction > Chain_Y_Loop_Reaction_Needs,
+      "chain y_loop " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_Y_Loop_Reaction > Chain_Y_Loop_Reaction_Limit,
       "chain y_loop " & "can exceed the limit of its reaction");
@@ -2776,6 +3391,9 @@ is
      (Chain_Y_Loop_Age_Needs > Chain_Y_Loop_Age,
       "chain y_loop " & "can have a longer age than claimed");
    pragma Compile_Time_Error
+     (Chain_Y_Loop_Age > Chain_Y_Loop_Age_Needs,
+      "chain y_loop " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      (Chain_Y_Loop_Age > Chain_Y_Loop_Age_Limit,
       "chain y_loop " & "can exceed the limit of its age");
    pragma Assert (Chain_Y_Loop_Age_Needs <= Chain_Y_Loop_Age_Limit);
@@ -2789,6 +3407,9 @@ is
    pragma Compile_Time_Error
      (Chain_Z_Loop_Reaction_Needs > Chain_Z_Loop_Reaction,
       "chain z_loop " & "can have a longer reaction than claimed");
+   pragma Compile_Time_Error
+     (Chain_Z_Loop_Reaction > Chain_Z_Loop_Reaction_Needs,
+      "chain z_loop " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_Z_Loop_Reaction > Chain_Z_Loop_Reaction_Limit,
       "chain z_loop " & "can exceed the limit of its reaction");
@@ -2805,6 +3426,9 @@ is
    pragma Compile_Time_Error
      (Chain_Z_Loop_Age_Needs > Chain_Z_Loop_Age,
       "chain z_loop " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Z_Loop_Age > Chain_Z_Loop_Age_Needs,
+      "chain z_loop " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_Z_Loop_Age > Chain_Z_Loop_Age_Limit,
       "chain z_loop " & "can exceed the limit of its age");
@@ -2827,6 +3451,9 @@ is
      (Chain_Status_Reaction_Needs > Chain_Status_Reaction,
       "chain status " & "can have a longer reaction than claimed");
    pragma Compile_Time_Error
+     (Chain_Status_Reaction > Chain_Status_Reaction_Needs,
+      "chain status " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      (Chain_Status_Reaction > Chain_Status_Reaction_Limit,
       "chain status " & "can exceed the limit of its reaction");
    pragma Assert
@@ -2846,6 +3473,9 @@ is
    pragma Compile_Time_Error
      (Chain_Status_Age_Needs > Chain_Status_Age,
       "chain status " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Status_Age > Chain_Status_Age_Needs,
+      "chain status " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_Status_Age > Chain_Status_Age_Limit,
       "chain status " & "can exceed the limit of its age");

@@ -17,6 +17,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -26,12 +27,17 @@ is
          0);
       case Item is
          when Joint_X_Trajectory_Step =>
-            Joint_X.Run_Trajectory_Step;
+            Joint_X.Run_Trajectory_Step (Executed);
          when Joint_Y_Trajectory_Step =>
-            Joint_Y.Run_Trajectory_Step;
+            Joint_Y.Run_Trajectory_Step (Executed);
          when Joint_Z_Trajectory_Step =>
-            Joint_Z.Run_Trajectory_Step;
+            Joint_Z.Run_Trajectory_Step (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Trajectory_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

@@ -28,16 +28,52 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Joint_X_Trajectory_Step => (Divisor => 1, Phase => 0),
-         Joint_Y_Trajectory_Step => (Divisor => 1, Phase => 0),
-         Joint_Z_Trajectory_Step => (Divisor => 1, Phase => 0)),
+        (Joint_X_Trajectory_Step =>
+           (Divisor => Timing_Certificate.Joint_X_Trajectory_Step_Divisor,
+            Phase => Timing_Certificate.Joint_X_Trajectory_Step_Phase),
+         Joint_Y_Trajectory_Step =>
+           (Divisor => Timing_Certificate.Joint_Y_Trajectory_Step_Divisor,
+            Phase => Timing_Certificate.Joint_Y_Trajectory_Step_Phase),
+         Joint_Z_Trajectory_Step =>
+           (Divisor => Timing_Certificate.Joint_Z_Trajectory_Step_Divisor,
+            Phase => Timing_Certificate.Joint_Z_Trajectory_Step_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Trajectory_T,
       Offset => 0,
       Deadline => Timing_Certificate.Trajectory_D,
-      Task_Priority => System.Default_Priority + 3,
+      Task_Priority => Timing_Certificate.Trajectory_Priority,
       Ceiling => System.Default_Priority + 6,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Trajectory_Priority,
+      "trajectory " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Trajectory_T,
+      "trajectory " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Trajectory_D,
+      "trajectory " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "trajectory " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Joint_X_Trajectory_Step).Divisor
+      = Timing_Certificate.Joint_X_Trajectory_Step_Divisor
+      and then Processor.Given_Table (Joint_X_Trajectory_Step).Phase
+        = Timing_Certificate.Joint_X_Trajectory_Step_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Y_Trajectory_Step).Divisor
+      = Timing_Certificate.Joint_Y_Trajectory_Step_Divisor
+      and then Processor.Given_Table (Joint_Y_Trajectory_Step).Phase
+        = Timing_Certificate.Joint_Y_Trajectory_Step_Phase);
+   pragma Assert
+     (Processor.Given_Table (Joint_Z_Trajectory_Step).Divisor
+      = Timing_Certificate.Joint_Z_Trajectory_Step_Divisor
+      and then Processor.Given_Table (Joint_Z_Trajectory_Step).Phase
+        = Timing_Certificate.Joint_Z_Trajectory_Step_Phase);
 end Cartesian_Robot.Trajectory;

@@ -6,6 +6,7 @@ with Ada.Real_Time;
 with Cartesian_Robot.Coordinator;
 with Cartesian_Robot.Reports;
 with Cartesian_Robot.Robot_Coordinator;
+with Cartesian_Robot.Timing_Certificate;
 with Ravenchart.Hosts;
 with System;
 
@@ -19,6 +20,8 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model
+     (Cartesian_Robot.Timing_Certificate.Model_Digest);
    loop
       Cartesian_Robot.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;

@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Layouts;
 
 package Crossing_System.Codecs
@@ -56,6 +57,11 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
+
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_8 is
@@ -98,6 +104,11 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => 0);
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
@@ -142,6 +153,11 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
+
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_8 is
@@ -184,6 +200,11 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => 0);
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
@@ -228,6 +249,11 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
+
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_8 is
@@ -259,4 +285,41 @@ is
       with Ghost;
       --  What is packed is what is unpacked.
    end Type_Boolean;
+
+   subtype Row_Of_Frame is Ravenchart.Can.Layouts.Frame_Row;
+
+   --  [order] the frame that carries it
+   Frame_Order : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 256,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
+
+   --  [button] the frame that carries it
+   Frame_Button : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 272,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
+
+   --  [car_lamp] the frame that carries it
+   Frame_Car_Lamp : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 288,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
+
+   --  [walk_lamp] the frame that carries it
+   Frame_Walk_Lamp : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 289,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
+
+   --  [sign] the frame that carries it
+   Frame_Sign : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 290,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
 end Crossing_System.Codecs;

@@ -20,6 +20,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -29,12 +30,17 @@ is
          0);
       case Item is
          when School_Ports =>
-            School.Run_Ports;
+            School.Run_Ports (Executed);
          when School_Lights =>
-            School.Run_Lights;
+            School.Run_Lights (Executed);
          when School_Show =>
-            School.Run_Show;
+            School.Run_Show (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Control_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

@@ -30,16 +30,52 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (School_Ports => (Divisor => 1, Phase => 0),
-         School_Lights => (Divisor => 1, Phase => 0),
-         School_Show => (Divisor => 1, Phase => 0)),
+        (School_Ports =>
+           (Divisor => Timing_Certificate.School_Ports_Divisor,
+            Phase => Timing_Certificate.School_Ports_Phase),
+         School_Lights =>
+           (Divisor => Timing_Certificate.School_Lights_Divisor,
+            Phase => Timing_Certificate.School_Lights_Phase),
+         School_Show =>
+           (Divisor => Timing_Certificate.School_Show_Divisor,
+            Phase => Timing_Certificate.School_Show_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Control_Priority,
       Ceiling => System.Default_Priority + 1,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
+      "control " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Control_T,
+      "control " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Control_D,
+      "control " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "control " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (School_Ports).Divisor
+      = Timing_Certificate.School_Ports_Divisor
+      and then Processor.Given_Table (School_Ports).Phase
+        = Timing_Certificate.School_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (School_Lights).Divisor
+      = Timing_Certificate.School_Lights_Divisor
+      and then Processor.Given_Table (School_Lights).Phase
+        = Timing_Certificate.School_Lights_Phase);
+   pragma Assert
+     (Processor.Given_Table (School_Show).Divisor
+      = Timing_Certificate.School_Show_Divisor
+      and then Processor.Given_Table (School_Show).Phase
+        = Timing_Certificate.School_Show_Phase);
 end Crossing_System.Control;

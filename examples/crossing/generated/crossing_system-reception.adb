@@ -19,6 +19,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -28,8 +29,13 @@ is
          0);
       case Item is
          when Street_Receive =>
-            Street.Receiver.Run_Receive;
+            Street.Receiver.Run_Receive (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Reception_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

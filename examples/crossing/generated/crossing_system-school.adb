@@ -4,7 +4,6 @@
 
 with Crossing_System.Crossing.Flows;
 with Crossing_System.Crossing.Lights;
-with Crossing_System.Elements;
 with Crossing_System.Health_Counts;
 with Crossing_System.Street;
 with Crossing_System.Trace;
@@ -183,7 +182,7 @@ is
       Street.Send_Sign (Item);
    end Send_Sign;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Button_Item : Crossing_System.Press;
@@ -243,6 +242,7 @@ is
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
+      Executed := Executed + Elements.School_Ports_Row;
    end Run_Ports;
 
    procedure Step_Lights is
@@ -294,7 +294,7 @@ is
       end if;
    end Step_Lights;
 
-   procedure Run_Lights is
+   procedure Run_Lights (Executed : in out Ravenchart.Element_Id) is
    begin
       Crossing.Lights.Tick (Lights_Region);
       Step_Lights;
@@ -303,9 +303,10 @@ is
       Walkers_See_Board.Write (Lights_Region.Data.Walkers_See);
       Requested_Board.Write (Lights_Region.Data.Requested);
       Road_Free_Board.Write (Lights_Region.Data.Road_Free);
+      Executed := Executed + Elements.School_Lights_Row;
    end Run_Lights;
 
-   procedure Run_Show is
+   procedure Run_Show (Executed : in out Ravenchart.Element_Id) is
       Cars_See_Value : Crossing_System.Car_Light;
       Walkers_See_Value : Crossing_System.Walk_Light;
       Requested_Value : Boolean;
@@ -342,5 +343,6 @@ is
       if Send_Sign_Asked then
          Send_Sign (Sign_Value);
       end if;
+      Executed := Executed + Elements.School_Show_Row;
    end Run_Show;
 end Crossing_System.School;

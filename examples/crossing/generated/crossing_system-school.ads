@@ -2,7 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart;
 with Crossing_System.Crossing;
+with Crossing_System.Elements;
 
 package Crossing_System.School
 with SPARK_Mode
@@ -11,6 +13,8 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
+
+   use type Ravenchart.Element_Id;
 
    procedure Put_Button (Item : Crossing_System.Press);
    --  [school.button.mailbox] by its senders; never blocks.
@@ -22,12 +26,15 @@ is
    --  [school.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.School_Ports_Row;
    --  [school.ports] one execution, by its processor alone.
 
-   procedure Run_Lights;
+   procedure Run_Lights (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.School_Lights_Row;
    --  [school.Lights] one execution, by its processor alone.
 
-   procedure Run_Show;
+   procedure Run_Show (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.School_Show_Row;
    --  [school.show] one execution, by its processor alone.
 end Crossing_System.School;

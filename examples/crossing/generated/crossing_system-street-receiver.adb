@@ -3,10 +3,10 @@
 --  model's elements; trace.json says where they stand.
 
 with Crossing_System.Codecs;
-with Crossing_System.Elements;
 with Crossing_System.School;
 with Crossing_System.Trace;
 with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Layouts;
 with Ravenchart.Traces;
 
 package body Crossing_System.Street.Receiver
@@ -26,14 +26,15 @@ is
       Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
-   procedure Run_Receive is
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
       Valid : Boolean;
       Order_Item : Crossing_System.Order;
       Button_Item : Crossing_System.Press;
    begin
-      if Ravenchart.Can.Any_Frames.Id (Frame) = 256
+      if Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Street_Order_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -45,15 +46,18 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 1)
+                 Timing_Certificate.Street_Order_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Order));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Order_Message,
                0);
             School.Put_Order (Order_Item);
          end if;
-      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 272
+      elsif Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Street_Button_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -65,8 +69,10 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 1)
+                 Timing_Certificate.Street_Button_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Button));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Button_Message,
@@ -74,5 +80,6 @@ is
             School.Put_Button (Button_Item);
          end if;
       end if;
+      Executed := Executed + Elements.Street_Receive_Row;
    end Run_Receive;
 end Crossing_System.Street.Receiver;

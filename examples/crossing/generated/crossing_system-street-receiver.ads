@@ -2,6 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart;
+with Crossing_System.Elements;
+
 package Crossing_System.Street.Receiver
 with SPARK_Mode
 is
@@ -13,6 +16,9 @@ is
    procedure Wait;
    --  [street.receive.release] suspend until a frame is there.
 
-   procedure Run_Receive;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Street_Receive_Row;
    --  [street.receive] decode it and hand it to its receivers.
 end Crossing_System.Street.Receiver;

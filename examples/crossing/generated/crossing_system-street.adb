@@ -2,11 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Crossing_System.Codecs;
 with Crossing_System.Elements;
 with Crossing_System.Health_Counts;
 with Crossing_System.Trace;
-with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -18,18 +16,27 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   function Frame_Of_Car_Lamp
+     (Item : Crossing_System.Car_Light)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Street_Car_Lamp_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Street_Car_Lamp_Length,
+           Payload => Codecs.Type_Car_Light.Pack (Item));
+   end Frame_Of_Car_Lamp;
+
    procedure Send_Car_Lamp (Item : Crossing_System.Car_Light) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Car_Lamp (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 288,
-               Format => Ravenchart.Can.Standard,
-               Length => 1,
-               Payload => Codecs.Type_Car_Light.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Car_Lamp));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Car_Lamp_Message,
@@ -45,18 +52,27 @@ is
       end if;
    end Send_Car_Lamp;
 
+   function Frame_Of_Walk_Lamp
+     (Item : Crossing_System.Walk_Light)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Street_Walk_Lamp_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Street_Walk_Lamp_Length,
+           Payload => Codecs.Type_Walk_Light.Pack (Item));
+   end Frame_Of_Walk_Lamp;
+
    procedure Send_Walk_Lamp (Item : Crossing_System.Walk_Light) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Walk_Lamp (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 289,
-               Format => Ravenchart.Can.Standard,
-               Length => 1,
-               Payload => Codecs.Type_Walk_Light.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Walk_Lamp));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Walk_Lamp_Message,
@@ -72,18 +88,27 @@ is
       end if;
    end Send_Walk_Lamp;
 
+   function Frame_Of_Sign
+     (Item : Boolean)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Street_Sign_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Street_Sign_Length,
+           Payload => Codecs.Type_Boolean.Pack (Item));
+   end Frame_Of_Sign;
+
    procedure Send_Sign (Item : Boolean) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Sign (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 290,
-               Format => Ravenchart.Can.Standard,
-               Length => 1,
-               Payload => Codecs.Type_Boolean.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Sign));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Sign_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault

@@ -2,8 +2,13 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Crossing_System.Codecs;
+with Crossing_System.Timing_Certificate;
+with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Controllers;
+with Ravenchart.Can.Layouts;
 with System;
 
 package Crossing_System.Street
@@ -19,29 +24,91 @@ is
       Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
-        when Ravenchart.Can.Standard => Id in 256 | 272,
+        when Ravenchart.Can.Standard =>
+           Id
+           in Timing_Certificate.Street_Order_Id
+             | Timing_Certificate.Street_Button_Id,
         when Ravenchart.Can.Extended => False);
    --  [street] the identifiers that this node receives
 
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 3,
       Receive_Ceiling => System.Default_Priority + 3,
-      Driver_Priority => System.Default_Priority + 3,
+      Driver_Priority => Timing_Certificate.Street_Driver_Rx_Order_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
       Setting =>
-        (Bit_Rate => 125_000,
+        (Bit_Rate => Timing_Certificate.Street_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
          Recovery => Ravenchart.Can.Automatic));
 
+   use type Ravenchart.Can.Bits_Per_Second;
+
+   pragma Compile_Time_Error
+     (Controller.Given_Priority
+      /= Timing_Certificate.Street_Driver_Rx_Order_Priority,
+      "street " & "has another priority of its driver than its certificate");
+   pragma Assert
+     (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Street_Bit_Rate
+      and then Controller.Given_Setting.Data_Rate = 0);
+
+   --  [street] all that is received passes, and its frame holds its signals
+   pragma Assert
+     (Accepts (Codecs.Frame_Order.Id, Codecs.Frame_Order.Format)
+      and then Codecs.Type_Order.Fits_In (Codecs.Frame_Order));
+   pragma Assert
+     (Accepts (Codecs.Frame_Button.Id, Codecs.Frame_Button.Format)
+      and then Codecs.Type_Press.Fits_In (Codecs.Frame_Button));
+
+   use type Interfaces.Unsigned_64;
+
+   function Frame_Of_Car_Lamp
+     (Item : Crossing_System.Car_Light)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Car_Lamp'Result,
+          Codecs.Frame_Car_Lamp)
+       and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Car_Lamp'Result)
+         = Codecs.Type_Car_Light.Pack (Item);
+   --  [car_lamp] its frame by the layout table; none of its bits is cut
+   --  off.
+
    procedure Send_Car_Lamp (Item : Crossing_System.Car_Light);
    --  [car_lamp] hand one frame to the controller; never blocks.
 
+   function Frame_Of_Walk_Lamp
+     (Item : Crossing_System.Walk_Light)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Walk_Lamp'Result,
+          Codecs.Frame_Walk_Lamp)
+       and then Ravenchart.Can.Any_Frames.Payload
+           (Frame_Of_Walk_Lamp'Result)
+         = Codecs.Type_Walk_Light.Pack (Item);
+   --  [walk_lamp] its frame by the layout table; none of its bits is cut
+   --  off.
+
    procedure Send_Walk_Lamp (Item : Crossing_System.Walk_Light);
    --  [walk_lamp] hand one frame to the controller; never blocks.
+
+   function Frame_Of_Sign
+     (Item : Boolean)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Sign'Result,
+          Codecs.Frame_Sign)
+       and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Sign'Result)
+         = Codecs.Type_Boolean.Pack (Item);
+   --  [sign] its frame by the layout table; none of its bits is cut off.
 
    procedure Send_Sign (Item : Boolean);
    --  [sign] hand one frame to the controller; never blocks.

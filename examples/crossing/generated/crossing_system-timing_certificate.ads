@@ -2,6 +2,8 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Crossing_System.Timing_Certificate
 with SPARK_Mode, Pure
 is
@@ -10,13 +12,17 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "550297c9ad319044d77670a4bc57183a53a3bf568f7160286b4ed43fc1e0527d";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 265_000;
@@ -36,9 +42,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 2, released by arrivals, no closer than T; it
-   --  may wait for T to be over as well. B: control may be inside
-   --  school.button.mailbox.
+   --  [reception] released by arrivals, no closer than T; it may wait for T
+   --  to be over as well. B: control may be inside school.button.mailbox.
+   Reception_Priority : constant := System.Default_Priority + 2;
    Street_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
@@ -48,12 +54,43 @@ is
      Street_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [control] priority 1, released every T. B: main may be inside health.
+   --  [control] released every T. B: main may be inside health.
+   Control_Priority : constant := System.Default_Priority + 1;
    School_Ports_Budget : constant := 100_000;
    School_Lights_Budget : constant := 200_000;
    School_Show_Budget : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
+   School_Ports_Divisor : constant := 1;
+   School_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (School_Ports_Divisor /= 1,
+      "school.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((School_Ports_Phase + 1) > School_Ports_Divisor,
+      "school.ports " & "has a phase beyond its divisor");
+
+   School_Lights_Divisor : constant := 1;
+   School_Lights_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (School_Lights_Divisor /= 1,
+      "school.Lights " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((School_Lights_Phase + 1) > School_Lights_Divisor,
+      "school.Lights " & "has a phase beyond its divisor");
+
+   School_Show_Divisor : constant := 1;
+   School_Show_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (School_Show_Divisor /= 1,
+      "school.show " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((School_Show_Phase + 1) > School_Show_Divisor,
+      "school.show " & "has a phase beyond its divisor");
+
    Control_J : constant := 0;
    Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
@@ -63,9 +100,10 @@ is
      + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
-   --  [street.driver_rx.order] priority 3, the driver's work, released by
-   --  street.order, which is J late. B: control may be inside
-   --  street.transmit.
+   --  [street.driver_rx.order] the driver's work, released by street.order,
+   --  which is J late. B: control may be inside street.transmit.
+   Street_Driver_Rx_Order_Priority : constant :=
+     System.Default_Priority + 3;
    Street_Driver_Rx_Order_Budget : constant := 20_000;
    Street_Driver_Rx_Order_T : constant := 1_000_000_000;
    Street_Driver_Rx_Order_D : constant := 1_000_000_000;
@@ -76,9 +114,11 @@ is
      Street_Driver_Rx_Order_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Order_B : constant := Board_Critical_Section;
 
-   --  [street.driver_rx.button] priority 3, the driver's work, released by
+   --  [street.driver_rx.button] the driver's work, released by
    --  street.button, which is J late. B: control may be inside
    --  street.transmit.
+   Street_Driver_Rx_Button_Priority : constant :=
+     System.Default_Priority + 3;
    Street_Driver_Rx_Button_Budget : constant := 20_000;
    Street_Driver_Rx_Button_T : constant := 50_000_000;
    Street_Driver_Rx_Button_D : constant := 50_000_000;
@@ -89,9 +129,10 @@ is
      Street_Driver_Rx_Button_Budget + 2 * Board_Context_Switch;
    Street_Driver_Rx_Button_B : constant := Board_Critical_Section;
 
-   --  [street.driver_tx.car_lamp] priority 3, the driver's work, released
-   --  by control, which is J late. B: control may be inside
-   --  street.transmit.
+   --  [street.driver_tx.car_lamp] the driver's work, released by control,
+   --  which is J late. B: control may be inside street.transmit.
+   Street_Driver_Tx_Car_Lamp_Priority : constant :=
+     System.Default_Priority + 3;
    Street_Driver_Tx_Car_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Car_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_D : constant := 100_000_000;
@@ -102,9 +143,10 @@ is
      Street_Driver_Tx_Car_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Car_Lamp_B : constant := Board_Critical_Section;
 
-   --  [street.driver_tx.walk_lamp] priority 3, the driver's work, released
-   --  by control, which is J late. B: control may be inside
-   --  street.transmit.
+   --  [street.driver_tx.walk_lamp] the driver's work, released by control,
+   --  which is J late. B: control may be inside street.transmit.
+   Street_Driver_Tx_Walk_Lamp_Priority : constant :=
+     System.Default_Priority + 3;
    Street_Driver_Tx_Walk_Lamp_Budget : constant := 20_000;
    Street_Driver_Tx_Walk_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_D : constant := 100_000_000;
@@ -115,8 +157,9 @@ is
      Street_Driver_Tx_Walk_Lamp_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Walk_Lamp_B : constant := Board_Critical_Section;
 
-   --  [street.driver_tx.sign] priority 3, the driver's work, released by
-   --  control, which is J late. B: control may be inside street.transmit.
+   --  [street.driver_tx.sign] the driver's work, released by control, which
+   --  is J late. B: control may be inside street.transmit.
+   Street_Driver_Tx_Sign_Priority : constant := System.Default_Priority + 3;
    Street_Driver_Tx_Sign_Budget : constant := 20_000;
    Street_Driver_Tx_Sign_T : constant := 100_000_000;
    Street_Driver_Tx_Sign_D : constant := 100_000_000;
@@ -127,6 +170,31 @@ is
      Street_Driver_Tx_Sign_Budget + 2 * Board_Context_Switch;
    Street_Driver_Tx_Sign_B : constant := Board_Critical_Section;
 
+   pragma Compile_Time_Error
+     (Street_Driver_Rx_Order_Priority /= Street_Driver_Rx_Button_Priority,
+      "street.driver_rx.order "
+      & "must have the priority of street.driver_rx.button");
+   pragma Compile_Time_Error
+     (Street_Driver_Rx_Button_Priority /= Street_Driver_Tx_Car_Lamp_Priority,
+      "street.driver_rx.button "
+      & "must have the priority of street.driver_tx.car_lamp");
+   pragma Compile_Time_Error
+     (Street_Driver_Tx_Car_Lamp_Priority
+      /= Street_Driver_Tx_Walk_Lamp_Priority,
+      "street.driver_tx.car_lamp "
+      & "must have the priority of street.driver_tx.walk_lamp");
+   pragma Compile_Time_Error
+     (Street_Driver_Tx_Walk_Lamp_Priority /= Street_Driver_Tx_Sign_Priority,
+      "street.driver_tx.walk_lamp "
+      & "must have the priority of street.driver_tx.sign");
+   pragma Compile_Time_Error
+     ((Reception_Priority + 1) > Street_Driver_Tx_Sign_Priority,
+      "street.driver_tx.sign "
+      & "must have a higher priority than reception");
+   pragma Compile_Time_Error
+     ((Control_Priority + 1) > Reception_Priority,
+      "reception " & "must have a higher priority than control");
+
    --  [street] bits in a second, and one bit in nanoseconds, rounded up. Of
    --  a message, Stuffed: bits that stuffing can lengthen by a quarter;
    --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
@@ -135,10 +203,13 @@ is
    Street_Bit : constant :=
      (1_000_000_000 + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
 
-   --  [street.order] 11-bit identifier 0x100, 1 bytes from somebody outside
+   --  [street.order] 11-bit identifier Id, Length bytes from somebody
+   --  outside
+   Street_Order_Id : constant := 16#100#;
+   Street_Order_Length : constant := 1;
    Street_Order_T : constant := 1_000_000_000;
    Street_Order_D : constant := 1_000_000_000;
-   Street_Order_Stuffed : constant := 34 + 8 * 1;
+   Street_Order_Stuffed : constant := 34 + 8 * Street_Order_Length;
    Street_Order_Bits : constant :=
      Street_Order_Stuffed + 13 + ((Street_Order_Stuffed - 1) / 4);
    Street_Order_C : constant :=
@@ -146,11 +217,13 @@ is
    Street_Order_J : constant := 0;
    Street_Order_A : constant := Street_Order_J + (Street_Order_T - 1);
 
-   --  [street.button] 11-bit identifier 0x110, 1 bytes from somebody
+   --  [street.button] 11-bit identifier Id, Length bytes from somebody
    --  outside
+   Street_Button_Id : constant := 16#110#;
+   Street_Button_Length : constant := 1;
    Street_Button_T : constant := 50_000_000;
    Street_Button_D : constant := 50_000_000;
-   Street_Button_Stuffed : constant := 34 + 8 * 1;
+   Street_Button_Stuffed : constant := 34 + 8 * Street_Button_Length;
    Street_Button_Bits : constant :=
      Street_Button_Stuffed + 13 + ((Street_Button_Stuffed - 1) / 4);
    Street_Button_C : constant :=
@@ -159,11 +232,13 @@ is
    Street_Button_J : constant := 0;
    Street_Button_A : constant := Street_Button_J + (Street_Button_T - 1);
 
-   --  [street.car_lamp] 11-bit identifier 0x120, 1 bytes from
+   --  [street.car_lamp] 11-bit identifier Id, Length bytes from
    --  school.car_lamp
+   Street_Car_Lamp_Id : constant := 16#120#;
+   Street_Car_Lamp_Length : constant := 1;
    Street_Car_Lamp_T : constant := 100_000_000;
    Street_Car_Lamp_D : constant := 100_000_000;
-   Street_Car_Lamp_Stuffed : constant := 34 + 8 * 1;
+   Street_Car_Lamp_Stuffed : constant := 34 + 8 * Street_Car_Lamp_Length;
    Street_Car_Lamp_Bits : constant :=
      Street_Car_Lamp_Stuffed + 13 + ((Street_Car_Lamp_Stuffed - 1) / 4);
    Street_Car_Lamp_C : constant :=
@@ -173,11 +248,13 @@ is
    Street_Car_Lamp_A : constant :=
      Street_Car_Lamp_J + (Street_Car_Lamp_T - 1);
 
-   --  [street.walk_lamp] 11-bit identifier 0x121, 1 bytes from
+   --  [street.walk_lamp] 11-bit identifier Id, Length bytes from
    --  school.walk_lamp
+   Street_Walk_Lamp_Id : constant := 16#121#;
+   Street_Walk_Lamp_Length : constant := 1;
    Street_Walk_Lamp_T : constant := 100_000_000;
    Street_Walk_Lamp_D : constant := 100_000_000;
-   Street_Walk_Lamp_Stuffed : constant := 34 + 8 * 1;
+   Street_Walk_Lamp_Stuffed : constant := 34 + 8 * Street_Walk_Lamp_Length;
    Street_Walk_Lamp_Bits : constant :=
      Street_Walk_Lamp_Stuffed + 13 + ((Street_Walk_Lamp_Stuffed - 1) / 4);
    Street_Walk_Lamp_C : constant :=
@@ -187,16 +264,32 @@ is
    Street_Walk_Lamp_A : constant :=
      Street_Walk_Lamp_J + (Street_Walk_Lamp_T - 1);
 
-   --  [street.sign] 11-bit identifier 0x122, 1 bytes from school.sign
+   --  [street.sign] 11-bit identifier Id, Length bytes from school.sign
+   Street_Sign_Id : constant := 16#122#;
+   Street_Sign_Length : constant := 1;
    Street_Sign_T : constant := 100_000_000;
    Street_Sign_D : constant := 100_000_000;
-   Street_Sign_Stuffed : constant := 34 + 8 * 1;
+   Street_Sign_Stuffed : constant := 34 + 8 * Street_Sign_Length;
    Street_Sign_Bits : constant :=
      Street_Sign_Stuffed + 13 + ((Street_Sign_Stuffed - 1) / 4);
    Street_Sign_C : constant :=
      ((Street_Sign_Bits * 10**9) + (Street_Bit_Rate - 1)) / Street_Bit_Rate;
    Street_Sign_J : constant := Street_Driver_Tx_Sign_R;
    Street_Sign_A : constant := Street_Sign_J + (Street_Sign_T - 1);
+
+   pragma Compile_Time_Error
+     (((2**19 * Street_Order_Id) + 1) > (2**19 * Street_Button_Id),
+      "street.order " & "must win the arbitration against street.button");
+   pragma Compile_Time_Error
+     (((2**19 * Street_Button_Id) + 1) > (2**19 * Street_Car_Lamp_Id),
+      "street.button " & "must win the arbitration against street.car_lamp");
+   pragma Compile_Time_Error
+     (((2**19 * Street_Car_Lamp_Id) + 1) > (2**19 * Street_Walk_Lamp_Id),
+      "street.car_lamp "
+      & "must win the arbitration against street.walk_lamp");
+   pragma Compile_Time_Error
+     (((2**19 * Street_Walk_Lamp_Id) + 1) > (2**19 * Street_Sign_Id),
+      "street.walk_lamp " & "must win the arbitration against street.sign");
 
    --  [reception] what can delay it: jobs of the same or higher priority
    Reception_W : constant := Reception_R - Reception_J;
@@ -223,6 +316,9 @@ is
    pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Reception_W > Reception_Needs,
+      "reception " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
@@ -257,6 +353,9 @@ is
    pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Control_W > Control_Needs,
+      "control " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
@@ -294,6 +393,9 @@ is
      (Street_Driver_Rx_Order_Needs > Street_Driver_Rx_Order_W,
       "street.driver_rx.order "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Driver_Rx_Order_W > Street_Driver_Rx_Order_Needs,
+      "street.driver_rx.order " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Street_Driver_Rx_Order_J + Street_Driver_Rx_Order_W)
       > Street_Driver_Rx_Order_T,
@@ -334,6 +436,9 @@ is
       "street.driver_rx.button "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Driver_Rx_Button_W > Street_Driver_Rx_Button_Needs,
+      "street.driver_rx.button " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Driver_Rx_Button_J + Street_Driver_Rx_Button_W)
       > Street_Driver_Rx_Button_T,
       "street.driver_rx.button "
@@ -373,6 +478,9 @@ is
      (Street_Driver_Tx_Car_Lamp_Needs > Street_Driver_Tx_Car_Lamp_W,
       "street.driver_tx.car_lamp "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Driver_Tx_Car_Lamp_W > Street_Driver_Tx_Car_Lamp_Needs,
+      "street.driver_tx.car_lamp " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Street_Driver_Tx_Car_Lamp_J + Street_Driver_Tx_Car_Lamp_W)
       > Street_Driver_Tx_Car_Lamp_T,
@@ -415,6 +523,9 @@ is
       "street.driver_tx.walk_lamp "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Driver_Tx_Walk_Lamp_W > Street_Driver_Tx_Walk_Lamp_Needs,
+      "street.driver_tx.walk_lamp " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Driver_Tx_Walk_Lamp_J + Street_Driver_Tx_Walk_Lamp_W)
       > Street_Driver_Tx_Walk_Lamp_T,
       "street.driver_tx.walk_lamp "
@@ -456,6 +567,9 @@ is
       "street.driver_tx.sign "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Driver_Tx_Sign_W > Street_Driver_Tx_Sign_Needs,
+      "street.driver_tx.sign " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Driver_Tx_Sign_J + Street_Driver_Tx_Sign_W)
       > Street_Driver_Tx_Sign_T,
       "street.driver_tx.sign " & "can be released again before it completes");
@@ -480,6 +594,9 @@ is
      (Street_Order_Busy_Needs > Street_Order_Busy,
       "street.order " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Street_Order_Busy > Street_Order_Busy_Needs,
+      "street.order " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Order_Busy + Street_Order_J) > Street_Order_T,
       "street.order " & "can come again before it is sent");
 
@@ -493,8 +610,14 @@ is
      (Street_Order_Needs > Street_Order_W,
       "street.order " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Order_W > Street_Order_Needs,
+      "street.order " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Order_J + Street_Order_W + Street_Order_C) > Street_Order_R,
       "street.order " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Order_R > (Street_Order_J + Street_Order_W + Street_Order_C),
+      "street.order " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Street_Order_R > Street_Order_D,
       "street.order " & "can miss its deadline");
@@ -517,6 +640,9 @@ is
      (Street_Button_Busy_Needs > Street_Button_Busy,
       "street.button " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Street_Button_Busy > Street_Button_Busy_Needs,
+      "street.button " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Button_Busy + Street_Button_J) > Street_Button_T,
       "street.button " & "can come again before it is sent");
 
@@ -533,9 +659,16 @@ is
      (Street_Button_Needs > Street_Button_W,
       "street.button " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Button_W > Street_Button_Needs,
+      "street.button " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Button_J + Street_Button_W + Street_Button_C)
       > Street_Button_R,
       "street.button " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Button_R
+      > (Street_Button_J + Street_Button_W + Street_Button_C),
+      "street.button " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Street_Button_R > Street_Button_D,
       "street.button " & "can miss its deadline");
@@ -563,6 +696,9 @@ is
      (Street_Car_Lamp_Busy_Needs > Street_Car_Lamp_Busy,
       "street.car_lamp " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Street_Car_Lamp_Busy > Street_Car_Lamp_Busy_Needs,
+      "street.car_lamp " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Car_Lamp_Busy + Street_Car_Lamp_J) > Street_Car_Lamp_T,
       "street.car_lamp " & "can come again before it is sent");
 
@@ -587,9 +723,16 @@ is
      (Street_Car_Lamp_Needs > Street_Car_Lamp_W,
       "street.car_lamp " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Car_Lamp_W > Street_Car_Lamp_Needs,
+      "street.car_lamp " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Car_Lamp_J + Street_Car_Lamp_W + Street_Car_Lamp_C)
       > Street_Car_Lamp_R,
       "street.car_lamp " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Car_Lamp_R
+      > (Street_Car_Lamp_J + Street_Car_Lamp_W + Street_Car_Lamp_C),
+      "street.car_lamp " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Street_Car_Lamp_R > Street_Car_Lamp_D,
       "street.car_lamp " & "can miss its deadline");
@@ -619,6 +762,9 @@ is
       "street.walk_lamp "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Street_Walk_Lamp_Busy > Street_Walk_Lamp_Busy_Needs,
+      "street.walk_lamp " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Walk_Lamp_Busy + Street_Walk_Lamp_J) > Street_Walk_Lamp_T,
       "street.walk_lamp " & "can come again before it is sent");
 
@@ -643,9 +789,16 @@ is
      (Street_Walk_Lamp_Needs > Street_Walk_Lamp_W,
       "street.walk_lamp " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Walk_Lamp_W > Street_Walk_Lamp_Needs,
+      "street.walk_lamp " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Walk_Lamp_J + Street_Walk_Lamp_W + Street_Walk_Lamp_C)
       > Street_Walk_Lamp_R,
       "street.walk_lamp " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Walk_Lamp_R
+      > (Street_Walk_Lamp_J + Street_Walk_Lamp_W + Street_Walk_Lamp_C),
+      "street.walk_lamp " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Street_Walk_Lamp_R > Street_Walk_Lamp_D,
       "street.walk_lamp " & "can miss its deadline");
@@ -672,6 +825,9 @@ is
      (Street_Sign_Busy_Needs > Street_Sign_Busy,
       "street.sign " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Street_Sign_Busy > Street_Sign_Busy_Needs,
+      "street.sign " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Sign_Busy + Street_Sign_J) > Street_Sign_T,
       "street.sign " & "can come again before it is sent");
 
@@ -696,8 +852,14 @@ is
      (Street_Sign_Needs > Street_Sign_W,
       "street.sign " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Street_Sign_W > Street_Sign_Needs,
+      "street.sign " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Street_Sign_J + Street_Sign_W + Street_Sign_C) > Street_Sign_R,
       "street.sign " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Street_Sign_R > (Street_Sign_J + Street_Sign_W + Street_Sign_C),
+      "street.sign " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Street_Sign_R > Street_Sign_D,
       "street.sign " & "can miss its deadline");

@@ -4,6 +4,7 @@
 
 with Ada.Real_Time;
 with Crossing_System.Reports;
+with Crossing_System.Timing_Certificate;
 with Ravenchart.Hosts;
 with System;
 
@@ -17,6 +18,8 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model
+     (Crossing_System.Timing_Certificate.Model_Digest);
    loop
       Crossing_System.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;

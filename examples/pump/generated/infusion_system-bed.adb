@@ -2,7 +2,6 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Infusion_System.Elements;
 with Infusion_System.Health_Counts;
 with Infusion_System.Pump.Flows;
 with Infusion_System.Pump.Infusion;
@@ -294,7 +293,7 @@ is
       Ward.Send_Display (Item);
    end Send_Display;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Line_Item : Infusion_System.Line;
@@ -356,6 +355,7 @@ is
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
+      Executed := Executed + Elements.Bed_Ports_Row;
    end Run_Ports;
 
    procedure Step_Keys is
@@ -394,10 +394,11 @@ is
       end if;
    end Step_Keys;
 
-   procedure Run_Keys is
+   procedure Run_Keys (Executed : in out Ravenchart.Element_Id) is
    begin
       Step_Keys;
       Keys_Board.Write (Keys_Region.Leaf);
+      Executed := Executed + Elements.Bed_Keys_Row;
    end Run_Keys;
 
    procedure Step_Infusion (Ins : Pump.Infusion.Inputs) is
@@ -459,7 +460,7 @@ is
       end if;
    end Step_Infusion;
 
-   procedure Run_Infusion is
+   procedure Run_Infusion (Executed : in out Ravenchart.Element_Id) is
       Ins : Pump.Infusion.Inputs;
       Visit : Ravenchart.Event_Count;
    begin
@@ -479,9 +480,10 @@ is
       Speed_Board.Write (Infusion_Region.Data.Speed);
       Lamp_Board.Write (Infusion_Region.Data.Lamp);
       Buzzer_Board.Write (Infusion_Region.Data.Buzzer);
+      Executed := Executed + Elements.Bed_Infusion_Row;
    end Run_Infusion;
 
-   procedure Run_Turn is
+   procedure Run_Turn (Executed : in out Ravenchart.Element_Id) is
       Infusion_Now : Pump.Infusion_States.Configuration;
       use type Pump.Infusion_States.Motor_Leaf;
       use type Pump.Infusion_States.Leaf;
@@ -498,9 +500,10 @@ is
             Turn_Done_Board.Write (Visit);
          end if;
       end if;
+      Executed := Executed + Elements.Bed_Turn_Row;
    end Run_Turn;
 
-   procedure Run_Fill is
+   procedure Run_Fill (Executed : in out Ravenchart.Element_Id) is
       Infusion_Now : Pump.Infusion_States.Configuration;
       use type Pump.Infusion_States.Leaf;
       Visit : Ravenchart.Event_Count;
@@ -514,9 +517,10 @@ is
             Fill_Done_Board.Write (Visit);
          end if;
       end if;
+      Executed := Executed + Elements.Bed_Fill_Row;
    end Run_Fill;
 
-   procedure Run_Drive is
+   procedure Run_Drive (Executed : in out Ravenchart.Element_Id) is
       Speed_Value : Infusion_System.Portion;
       Motor_Value : Infusion_System.Portion;
       Send_Motor_Asked : Boolean;
@@ -529,9 +533,10 @@ is
       if Send_Motor_Asked then
          Send_Motor (Motor_Value);
       end if;
+      Executed := Executed + Elements.Bed_Drive_Row;
    end Run_Drive;
 
-   procedure Run_Show is
+   procedure Run_Show (Executed : in out Ravenchart.Element_Id) is
       Given_Value : Infusion_System.Volume;
       Lamp_Value : Infusion_System.Lamp;
       Buzzer_Value : Boolean;
@@ -550,5 +555,6 @@ is
       if Send_Display_Asked then
          Send_Display (Display_Value);
       end if;
+      Executed := Executed + Elements.Bed_Show_Row;
    end Run_Show;
 end Infusion_System.Bed;

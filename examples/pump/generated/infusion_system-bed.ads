@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Infusion_System.Pump;
+with Infusion_System.Elements;
 
 package Infusion_System.Bed
 with SPARK_Mode
@@ -11,6 +12,8 @@ is
    pragma Warnings (Off, "*can never be *");
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
+
+   use type Ravenchart.Element_Id;
 
    procedure Put_Line (Item : Infusion_System.Line);
    --  [bed.line.mailbox] by its senders; never blocks.
@@ -21,24 +24,31 @@ is
    procedure Offer (Item : Pump.Event);
    --  [bed.events] offer Item to every region that names it; never blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Ports_Row;
    --  [bed.ports] one execution, by its processor alone.
 
-   procedure Run_Keys;
+   procedure Run_Keys (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Keys_Row;
    --  [bed.Keys] one execution, by its processor alone.
 
-   procedure Run_Infusion;
+   procedure Run_Infusion (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Infusion_Row;
    --  [bed.Infusion] one execution, by its processor alone.
 
-   procedure Run_Turn;
+   procedure Run_Turn (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Turn_Row;
    --  [bed.turn] one execution, by its processor alone.
 
-   procedure Run_Fill;
+   procedure Run_Fill (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Fill_Row;
    --  [bed.fill] one execution, by its processor alone.
 
-   procedure Run_Drive;
+   procedure Run_Drive (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Drive_Row;
    --  [bed.drive] one execution, by its processor alone.
 
-   procedure Run_Show;
+   procedure Run_Show (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Bed_Show_Row;
    --  [bed.show] one execution, by its processor alone.
 end Infusion_System.Bed;

@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Layouts;
 
 package Infusion_System.Codecs
@@ -64,6 +65,11 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
+
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_8 is
@@ -106,6 +112,11 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => 0);
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
@@ -158,6 +169,12 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => 0);
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Key)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Amount));
 
       function Raw_Of_Key
         (Word : Interfaces.Unsigned_64)
@@ -235,6 +252,13 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Given)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Lamp)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Buzzer));
+
       function Raw_Of_Given
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_32 is
@@ -300,4 +324,34 @@ is
       with Ghost;
       --  What is packed is what is unpacked.
    end Type_View;
+
+   subtype Row_Of_Frame is Ravenchart.Can.Layouts.Frame_Row;
+
+   --  [line] the frame that carries it
+   Frame_Line : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 256,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
+
+   --  [motor] the frame that carries it
+   Frame_Motor : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 257,
+      Format => Ravenchart.Can.Standard,
+      Length => 2);
+
+   --  [panel] the frame that carries it
+   Frame_Panel : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 272,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
+
+   --  [display] the frame that carries it
+   Frame_Display : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 273,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
 end Infusion_System.Codecs;

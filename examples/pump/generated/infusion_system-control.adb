@@ -20,6 +20,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -29,20 +30,25 @@ is
          0);
       case Item is
          when Bed_Ports =>
-            Bed.Run_Ports;
+            Bed.Run_Ports (Executed);
          when Bed_Keys =>
-            Bed.Run_Keys;
+            Bed.Run_Keys (Executed);
          when Bed_Infusion =>
-            Bed.Run_Infusion;
+            Bed.Run_Infusion (Executed);
          when Bed_Turn =>
-            Bed.Run_Turn;
+            Bed.Run_Turn (Executed);
          when Bed_Fill =>
-            Bed.Run_Fill;
+            Bed.Run_Fill (Executed);
          when Bed_Drive =>
-            Bed.Run_Drive;
+            Bed.Run_Drive (Executed);
          when Bed_Show =>
-            Bed.Run_Show;
+            Bed.Run_Show (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Control_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

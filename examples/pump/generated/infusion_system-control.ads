@@ -37,20 +37,84 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Bed_Ports => (Divisor => 1, Phase => 0),
-         Bed_Keys => (Divisor => 1, Phase => 0),
-         Bed_Infusion => (Divisor => 1, Phase => 0),
-         Bed_Turn => (Divisor => 2, Phase => 0),
-         Bed_Fill => (Divisor => 2, Phase => 0),
-         Bed_Drive => (Divisor => 1, Phase => 0),
-         Bed_Show => (Divisor => 4, Phase => 0)),
+        (Bed_Ports =>
+           (Divisor => Timing_Certificate.Bed_Ports_Divisor,
+            Phase => Timing_Certificate.Bed_Ports_Phase),
+         Bed_Keys =>
+           (Divisor => Timing_Certificate.Bed_Keys_Divisor,
+            Phase => Timing_Certificate.Bed_Keys_Phase),
+         Bed_Infusion =>
+           (Divisor => Timing_Certificate.Bed_Infusion_Divisor,
+            Phase => Timing_Certificate.Bed_Infusion_Phase),
+         Bed_Turn =>
+           (Divisor => Timing_Certificate.Bed_Turn_Divisor,
+            Phase => Timing_Certificate.Bed_Turn_Phase),
+         Bed_Fill =>
+           (Divisor => Timing_Certificate.Bed_Fill_Divisor,
+            Phase => Timing_Certificate.Bed_Fill_Phase),
+         Bed_Drive =>
+           (Divisor => Timing_Certificate.Bed_Drive_Divisor,
+            Phase => Timing_Certificate.Bed_Drive_Phase),
+         Bed_Show =>
+           (Divisor => Timing_Certificate.Bed_Show_Divisor,
+            Phase => Timing_Certificate.Bed_Show_Phase)),
       Cycle => 4,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Control_Priority,
       Ceiling => System.Default_Priority + 1,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
+      "control " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Control_T,
+      "control " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Control_D,
+      "control " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "control " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Bed_Ports).Divisor
+      = Timing_Certificate.Bed_Ports_Divisor
+      and then Processor.Given_Table (Bed_Ports).Phase
+        = Timing_Certificate.Bed_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Bed_Keys).Divisor
+      = Timing_Certificate.Bed_Keys_Divisor
+      and then Processor.Given_Table (Bed_Keys).Phase
+        = Timing_Certificate.Bed_Keys_Phase);
+   pragma Assert
+     (Processor.Given_Table (Bed_Infusion).Divisor
+      = Timing_Certificate.Bed_Infusion_Divisor
+      and then Processor.Given_Table (Bed_Infusion).Phase
+        = Timing_Certificate.Bed_Infusion_Phase);
+   pragma Assert
+     (Processor.Given_Table (Bed_Turn).Divisor
+      = Timing_Certificate.Bed_Turn_Divisor
+      and then Processor.Given_Table (Bed_Turn).Phase
+        = Timing_Certificate.Bed_Turn_Phase);
+   pragma Assert
+     (Processor.Given_Table (Bed_Fill).Divisor
+      = Timing_Certificate.Bed_Fill_Divisor
+      and then Processor.Given_Table (Bed_Fill).Phase
+        = Timing_Certificate.Bed_Fill_Phase);
+   pragma Assert
+     (Processor.Given_Table (Bed_Drive).Divisor
+      = Timing_Certificate.Bed_Drive_Divisor
+      and then Processor.Given_Table (Bed_Drive).Phase
+        = Timing_Certificate.Bed_Drive_Phase);
+   pragma Assert
+     (Processor.Given_Table (Bed_Show).Divisor
+      = Timing_Certificate.Bed_Show_Divisor
+      and then Processor.Given_Table (Bed_Show).Phase
+        = Timing_Certificate.Bed_Show_Phase);
 end Infusion_System.Control;

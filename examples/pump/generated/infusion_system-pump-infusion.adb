@@ -1905,8 +1905,9 @@ is
                         and then (Fired.Items (I) = C.Motor
                            or else Fired.Items (I) = C.Sensor)))
                and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor))
-               and then (if C.Sensor /= None and then C.Motor = None
+               and then (if C.Motor /= None
+                     then Has (Fired, C.Motor)
+                  elsif C.Sensor /= None
                      then Has (Fired, C.Sensor)));
             if C.Top /= None and then In_Source (C.Top, Self.Place) then
                Fire_Whole (C.Top);
@@ -1918,12 +1919,11 @@ is
                       or else Fired.Items (I) = C.Sensor
                       or else Fired.Items (I) = C.Top))
                and then Is_Ordered (Fired)
-               and then (if C.Motor /= None then Has (Fired, C.Motor))
-               and then (if C.Sensor /= None and then C.Motor = None
-                     then Has (Fired, C.Sensor))
-               and then (if C.Top /= None
-                     and then C.Motor = None
-                     and then C.Sensor = None
+               and then (if C.Motor /= None
+                     then Has (Fired, C.Motor)
+                  elsif C.Sensor /= None
+                     then Has (Fired, C.Sensor)
+                  elsif C.Top /= None
                      then Has (Fired, C.Top)));
          end if;
       end if;

@@ -716,12 +716,11 @@ is
                 or else Fired.Items (I) = C.Sensor
                 or else Fired.Items (I) = C.Top))
          and then Is_Ordered (Fired)
-         and then (if C.Motor /= None then Has (Fired, C.Motor))
-         and then (if C.Sensor /= None and then C.Motor = None
-               then Has (Fired, C.Sensor))
-         and then (if C.Top /= None
-               and then C.Motor = None
-               and then C.Sensor = None
+         and then (if C.Motor /= None
+               then Has (Fired, C.Motor)
+            elsif C.Sensor /= None
+               then Has (Fired, C.Sensor)
+            elsif C.Top /= None
                then Has (Fired, C.Top)))
    with Ghost;
    --  A deferral is fired alone. Otherwise what is chosen is fired, lane by

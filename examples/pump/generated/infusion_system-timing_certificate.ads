@@ -2,6 +2,8 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Infusion_System.Timing_Certificate
 with SPARK_Mode, Pure
 is
@@ -10,13 +12,17 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "ccfea17c75a712f378c2271f967cce71f77a767905b41c23956d898daa2f0eb2";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 225_000;
@@ -34,9 +40,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 2, released by arrivals, no closer than T; it
-   --  may wait for T to be over as well. B: control may be inside
-   --  bed.line.mailbox.
+   --  [reception] released by arrivals, no closer than T; it may wait for T
+   --  to be over as well. B: control may be inside bed.line.mailbox.
+   Reception_Priority : constant := System.Default_Priority + 2;
    Ward_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
@@ -45,9 +51,10 @@ is
    Reception_C : constant := Ward_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [control] priority 1, released every T. B: main may be inside health.
-   --  C: what every release executes; C_2: rows of every 2th release, C_4:
-   --  rows of every 4th release.
+   --  [control] released every T. B: main may be inside health. C: what
+   --  every release executes; C_2: rows of every 2th release, C_4: rows of
+   --  every 4th release.
+   Control_Priority : constant := System.Default_Priority + 1;
    Bed_Ports_Budget : constant := 100_000;
    Bed_Keys_Budget : constant := 50_000;
    Bed_Infusion_Budget : constant := 300_000;
@@ -57,6 +64,76 @@ is
    Bed_Show_Budget : constant := 50_000;
    Control_T : constant := 50_000_000;
    Control_D : constant := 50_000_000;
+   Bed_Ports_Divisor : constant := 1;
+   Bed_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Ports_Divisor /= 1,
+      "bed.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Ports_Phase + 1) > Bed_Ports_Divisor,
+      "bed.ports " & "has a phase beyond its divisor");
+
+   Bed_Keys_Divisor : constant := 1;
+   Bed_Keys_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Keys_Divisor /= 1,
+      "bed.Keys " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Keys_Phase + 1) > Bed_Keys_Divisor,
+      "bed.Keys " & "has a phase beyond its divisor");
+
+   Bed_Infusion_Divisor : constant := 1;
+   Bed_Infusion_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Infusion_Divisor /= 1,
+      "bed.Infusion " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Infusion_Phase + 1) > Bed_Infusion_Divisor,
+      "bed.Infusion " & "has a phase beyond its divisor");
+
+   Bed_Turn_Divisor : constant := 2;
+   Bed_Turn_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Turn_Divisor /= 2,
+      "bed.turn " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Turn_Phase + 1) > Bed_Turn_Divisor,
+      "bed.turn " & "has a phase beyond its divisor");
+
+   Bed_Fill_Divisor : constant := 2;
+   Bed_Fill_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Fill_Divisor /= 2,
+      "bed.fill " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Fill_Phase + 1) > Bed_Fill_Divisor,
+      "bed.fill " & "has a phase beyond its divisor");
+
+   Bed_Drive_Divisor : constant := 1;
+   Bed_Drive_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Drive_Divisor /= 1,
+      "bed.drive " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Drive_Phase + 1) > Bed_Drive_Divisor,
+      "bed.drive " & "has a phase beyond its divisor");
+
+   Bed_Show_Divisor : constant := 4;
+   Bed_Show_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Bed_Show_Divisor /= 4,
+      "bed.show " & "is in the sum C_4, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Bed_Show_Phase + 1) > Bed_Show_Divisor,
+      "bed.show " & "has a phase beyond its divisor");
+
    Control_J : constant := 0;
    Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
@@ -69,8 +146,9 @@ is
    Control_C_4 : constant := Bed_Show_Budget;
    Control_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_rx.line] priority 3, the driver's work, released by
-   --  ward.line, which is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_rx.line] the driver's work, released by ward.line, which
+   --  is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Rx_Line_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Rx_Line_Budget : constant := 20_000;
    Ward_Driver_Rx_Line_T : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_D : constant := 1_000_000_000;
@@ -81,8 +159,9 @@ is
      Ward_Driver_Rx_Line_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Line_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_tx.motor] priority 3, the driver's work, released by
-   --  control, which is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_tx.motor] the driver's work, released by control, which
+   --  is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Tx_Motor_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Tx_Motor_Budget : constant := 20_000;
    Ward_Driver_Tx_Motor_T : constant := 50_000_000;
    Ward_Driver_Tx_Motor_D : constant := 50_000_000;
@@ -93,8 +172,9 @@ is
      Ward_Driver_Tx_Motor_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Motor_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_rx.panel] priority 3, the driver's work, released by
-   --  ward.panel, which is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_rx.panel] the driver's work, released by ward.panel,
+   --  which is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Rx_Panel_Priority : constant := System.Default_Priority + 3;
    Ward_Driver_Rx_Panel_Budget : constant := 20_000;
    Ward_Driver_Rx_Panel_T : constant := 50_000_000;
    Ward_Driver_Rx_Panel_D : constant := 50_000_000;
@@ -105,8 +185,10 @@ is
      Ward_Driver_Rx_Panel_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Panel_B : constant := Board_Critical_Section;
 
-   --  [ward.driver_tx.display] priority 3, the driver's work, released by
-   --  control, which is J late. B: control may be inside ward.transmit.
+   --  [ward.driver_tx.display] the driver's work, released by control,
+   --  which is J late. B: control may be inside ward.transmit.
+   Ward_Driver_Tx_Display_Priority : constant :=
+     System.Default_Priority + 3;
    Ward_Driver_Tx_Display_Budget : constant := 20_000;
    Ward_Driver_Tx_Display_T : constant := 200_000_000;
    Ward_Driver_Tx_Display_D : constant := 200_000_000;
@@ -117,6 +199,26 @@ is
      Ward_Driver_Tx_Display_Budget + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Display_B : constant := Board_Critical_Section;
 
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Line_Priority /= Ward_Driver_Tx_Motor_Priority,
+      "ward.driver_rx.line "
+      & "must have the priority of ward.driver_tx.motor");
+   pragma Compile_Time_Error
+     (Ward_Driver_Tx_Motor_Priority /= Ward_Driver_Rx_Panel_Priority,
+      "ward.driver_tx.motor "
+      & "must have the priority of ward.driver_rx.panel");
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Panel_Priority /= Ward_Driver_Tx_Display_Priority,
+      "ward.driver_rx.panel "
+      & "must have the priority of ward.driver_tx.display");
+   pragma Compile_Time_Error
+     ((Reception_Priority + 1) > Ward_Driver_Tx_Display_Priority,
+      "ward.driver_tx.display "
+      & "must have a higher priority than reception");
+   pragma Compile_Time_Error
+     ((Control_Priority + 1) > Reception_Priority,
+      "reception " & "must have a higher priority than control");
+
    --  [ward] bits in a second, and one bit in nanoseconds, rounded up. Of a
    --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
    --  the longest frame, with 10 bits that are not stuffed and 3 to the
@@ -125,10 +227,12 @@ is
    Ward_Bit : constant :=
      (1_000_000_000 + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
 
-   --  [ward.line] 11-bit identifier 0x100, 1 bytes from somebody outside
+   --  [ward.line] 11-bit identifier Id, Length bytes from somebody outside
+   Ward_Line_Id : constant := 16#100#;
+   Ward_Line_Length : constant := 1;
    Ward_Line_T : constant := 1_000_000_000;
    Ward_Line_D : constant := 1_000_000_000;
-   Ward_Line_Stuffed : constant := 34 + 8 * 1;
+   Ward_Line_Stuffed : constant := 34 + 8 * Ward_Line_Length;
    Ward_Line_Bits : constant :=
      Ward_Line_Stuffed + 13 + ((Ward_Line_Stuffed - 1) / 4);
    Ward_Line_C : constant :=
@@ -136,10 +240,12 @@ is
    Ward_Line_J : constant := 0;
    Ward_Line_A : constant := Ward_Line_J + (Ward_Line_T - 1);
 
-   --  [ward.motor] 11-bit identifier 0x101, 2 bytes from bed.motor
+   --  [ward.motor] 11-bit identifier Id, Length bytes from bed.motor
+   Ward_Motor_Id : constant := 16#101#;
+   Ward_Motor_Length : constant := 2;
    Ward_Motor_T : constant := 50_000_000;
    Ward_Motor_D : constant := 50_000_000;
-   Ward_Motor_Stuffed : constant := 34 + 8 * 2;
+   Ward_Motor_Stuffed : constant := 34 + 8 * Ward_Motor_Length;
    Ward_Motor_Bits : constant :=
      Ward_Motor_Stuffed + 13 + ((Ward_Motor_Stuffed - 1) / 4);
    Ward_Motor_C : constant :=
@@ -147,10 +253,12 @@ is
    Ward_Motor_J : constant := Ward_Driver_Tx_Motor_R;
    Ward_Motor_A : constant := Ward_Motor_J + (Ward_Motor_T - 1);
 
-   --  [ward.panel] 11-bit identifier 0x110, 3 bytes from somebody outside
+   --  [ward.panel] 11-bit identifier Id, Length bytes from somebody outside
+   Ward_Panel_Id : constant := 16#110#;
+   Ward_Panel_Length : constant := 3;
    Ward_Panel_T : constant := 50_000_000;
    Ward_Panel_D : constant := 50_000_000;
-   Ward_Panel_Stuffed : constant := 34 + 8 * 3;
+   Ward_Panel_Stuffed : constant := 34 + 8 * Ward_Panel_Length;
    Ward_Panel_Bits : constant :=
      Ward_Panel_Stuffed + 13 + ((Ward_Panel_Stuffed - 1) / 4);
    Ward_Panel_C : constant :=
@@ -158,16 +266,28 @@ is
    Ward_Panel_J : constant := 0;
    Ward_Panel_A : constant := Ward_Panel_J + (Ward_Panel_T - 1);
 
-   --  [ward.display] 11-bit identifier 0x111, 3 bytes from bed.display
+   --  [ward.display] 11-bit identifier Id, Length bytes from bed.display
+   Ward_Display_Id : constant := 16#111#;
+   Ward_Display_Length : constant := 3;
    Ward_Display_T : constant := 200_000_000;
    Ward_Display_D : constant := 200_000_000;
-   Ward_Display_Stuffed : constant := 34 + 8 * 3;
+   Ward_Display_Stuffed : constant := 34 + 8 * Ward_Display_Length;
    Ward_Display_Bits : constant :=
      Ward_Display_Stuffed + 13 + ((Ward_Display_Stuffed - 1) / 4);
    Ward_Display_C : constant :=
      ((Ward_Display_Bits * 10**9) + (Ward_Bit_Rate - 1)) / Ward_Bit_Rate;
    Ward_Display_J : constant := Ward_Driver_Tx_Display_R;
    Ward_Display_A : constant := Ward_Display_J + (Ward_Display_T - 1);
+
+   pragma Compile_Time_Error
+     (((2**19 * Ward_Line_Id) + 1) > (2**19 * Ward_Motor_Id),
+      "ward.line " & "must win the arbitration against ward.motor");
+   pragma Compile_Time_Error
+     (((2**19 * Ward_Motor_Id) + 1) > (2**19 * Ward_Panel_Id),
+      "ward.motor " & "must win the arbitration against ward.panel");
+   pragma Compile_Time_Error
+     (((2**19 * Ward_Panel_Id) + 1) > (2**19 * Ward_Display_Id),
+      "ward.panel " & "must win the arbitration against ward.display");
 
    --  [reception] what can delay it: jobs of the same or higher priority
    Reception_W : constant := Reception_R - Reception_J;
@@ -189,6 +309,9 @@ is
    pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Reception_W > Reception_Needs,
+      "reception " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
@@ -221,6 +344,9 @@ is
    pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Control_W > Control_Needs,
+      "control " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
@@ -255,6 +381,9 @@ is
      (Ward_Driver_Rx_Line_Needs > Ward_Driver_Rx_Line_W,
       "ward.driver_rx.line "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Line_W > Ward_Driver_Rx_Line_Needs,
+      "ward.driver_rx.line " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Ward_Driver_Rx_Line_J + Ward_Driver_Rx_Line_W)
       > Ward_Driver_Rx_Line_T,
@@ -291,6 +420,9 @@ is
       "ward.driver_tx.motor "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Ward_Driver_Tx_Motor_W > Ward_Driver_Tx_Motor_Needs,
+      "ward.driver_tx.motor " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Driver_Tx_Motor_J + Ward_Driver_Tx_Motor_W)
       > Ward_Driver_Tx_Motor_T,
       "ward.driver_tx.motor " & "can be released again before it completes");
@@ -325,6 +457,9 @@ is
      (Ward_Driver_Rx_Panel_Needs > Ward_Driver_Rx_Panel_W,
       "ward.driver_rx.panel "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Driver_Rx_Panel_W > Ward_Driver_Rx_Panel_Needs,
+      "ward.driver_rx.panel " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Ward_Driver_Rx_Panel_J + Ward_Driver_Rx_Panel_W)
       > Ward_Driver_Rx_Panel_T,
@@ -361,6 +496,9 @@ is
       "ward.driver_tx.display "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Ward_Driver_Tx_Display_W > Ward_Driver_Tx_Display_Needs,
+      "ward.driver_tx.display " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Driver_Tx_Display_J + Ward_Driver_Tx_Display_W)
       > Ward_Driver_Tx_Display_T,
       "ward.driver_tx.display "
@@ -385,6 +523,9 @@ is
      (Ward_Line_Busy_Needs > Ward_Line_Busy,
       "ward.line " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Ward_Line_Busy > Ward_Line_Busy_Needs,
+      "ward.line " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Line_Busy + Ward_Line_J) > Ward_Line_T,
       "ward.line " & "can come again before it is sent");
 
@@ -398,8 +539,14 @@ is
      (Ward_Line_Needs > Ward_Line_W,
       "ward.line " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Ward_Line_W > Ward_Line_Needs,
+      "ward.line " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Line_J + Ward_Line_W + Ward_Line_C) > Ward_Line_R,
       "ward.line " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Line_R > (Ward_Line_J + Ward_Line_W + Ward_Line_C),
+      "ward.line " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Ward_Line_R > Ward_Line_D,
       "ward.line " & "can miss its deadline");
@@ -422,6 +569,9 @@ is
      (Ward_Motor_Busy_Needs > Ward_Motor_Busy,
       "ward.motor " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Ward_Motor_Busy > Ward_Motor_Busy_Needs,
+      "ward.motor " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Motor_Busy + Ward_Motor_J) > Ward_Motor_T,
       "ward.motor " & "can come again before it is sent");
 
@@ -442,8 +592,14 @@ is
      (Ward_Motor_Needs > Ward_Motor_W,
       "ward.motor " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Ward_Motor_W > Ward_Motor_Needs,
+      "ward.motor " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Motor_J + Ward_Motor_W + Ward_Motor_C) > Ward_Motor_R,
       "ward.motor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Motor_R > (Ward_Motor_J + Ward_Motor_W + Ward_Motor_C),
+      "ward.motor " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Ward_Motor_R > Ward_Motor_D,
       "ward.motor " & "can miss its deadline");
@@ -469,6 +625,9 @@ is
      (Ward_Panel_Busy_Needs > Ward_Panel_Busy,
       "ward.panel " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Ward_Panel_Busy > Ward_Panel_Busy_Needs,
+      "ward.panel " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Panel_Busy + Ward_Panel_J) > Ward_Panel_T,
       "ward.panel " & "can come again before it is sent");
 
@@ -491,8 +650,14 @@ is
      (Ward_Panel_Needs > Ward_Panel_W,
       "ward.panel " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Ward_Panel_W > Ward_Panel_Needs,
+      "ward.panel " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Panel_J + Ward_Panel_W + Ward_Panel_C) > Ward_Panel_R,
       "ward.panel " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Panel_R > (Ward_Panel_J + Ward_Panel_W + Ward_Panel_C),
+      "ward.panel " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Ward_Panel_R > Ward_Panel_D,
       "ward.panel " & "can miss its deadline");
@@ -515,6 +680,9 @@ is
      (Ward_Display_Busy_Needs > Ward_Display_Busy,
       "ward.display " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Ward_Display_Busy > Ward_Display_Busy_Needs,
+      "ward.display " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Display_Busy + Ward_Display_J) > Ward_Display_T,
       "ward.display " & "can come again before it is sent");
 
@@ -535,8 +703,14 @@ is
      (Ward_Display_Needs > Ward_Display_W,
       "ward.display " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Ward_Display_W > Ward_Display_Needs,
+      "ward.display " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Ward_Display_J + Ward_Display_W + Ward_Display_C) > Ward_Display_R,
       "ward.display " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Ward_Display_R > (Ward_Display_J + Ward_Display_W + Ward_Display_C),
+      "ward.display " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Ward_Display_R > Ward_Display_D,
       "ward.display " & "can miss its deadline");

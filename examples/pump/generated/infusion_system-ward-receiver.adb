@@ -4,9 +4,9 @@
 
 with Infusion_System.Bed;
 with Infusion_System.Codecs;
-with Infusion_System.Elements;
 with Infusion_System.Trace;
 with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Layouts;
 with Ravenchart.Traces;
 
 package body Infusion_System.Ward.Receiver
@@ -26,14 +26,15 @@ is
       Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
-   procedure Run_Receive is
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
       Valid : Boolean;
       Line_Item : Infusion_System.Line;
       Panel_Item : Infusion_System.Press;
    begin
-      if Ravenchart.Can.Any_Frames.Id (Frame) = 256
+      if Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Ward_Line_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -45,15 +46,18 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 1)
+                 Timing_Certificate.Ward_Line_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Line));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Line_Message,
                0);
             Bed.Put_Line (Line_Item);
          end if;
-      elsif Ravenchart.Can.Any_Frames.Id (Frame) = 272
+      elsif Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Ward_Panel_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -65,8 +69,10 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 3)
+                 Timing_Certificate.Ward_Panel_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Panel));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Panel_Message,
@@ -74,5 +80,6 @@ is
             Bed.Put_Panel (Panel_Item);
          end if;
       end if;
+      Executed := Executed + Elements.Ward_Receive_Row;
    end Run_Receive;
 end Infusion_System.Ward.Receiver;

@@ -2,6 +2,8 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Infusion_System.Elements;
+
 package Infusion_System.Ward.Receiver
 with SPARK_Mode
 is
@@ -13,6 +15,9 @@ is
    procedure Wait;
    --  [ward.receive.release] suspend until a frame is there.
 
-   procedure Run_Receive;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Ward_Receive_Row;
    --  [ward.receive] decode it and hand it to its receivers.
 end Infusion_System.Ward.Receiver;

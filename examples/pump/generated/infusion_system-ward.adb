@@ -2,11 +2,9 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Infusion_System.Codecs;
 with Infusion_System.Elements;
 with Infusion_System.Health_Counts;
 with Infusion_System.Trace;
-with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
 
@@ -18,18 +16,27 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   function Frame_Of_Motor
+     (Item : Infusion_System.Portion)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Ward_Motor_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Ward_Motor_Length,
+           Payload => Codecs.Type_Portion.Pack (Item));
+   end Frame_Of_Motor;
+
    procedure Send_Motor (Item : Infusion_System.Portion) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Motor (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 257,
-               Format => Ravenchart.Can.Standard,
-               Length => 2,
-               Payload => Codecs.Type_Portion.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Motor));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Sent, Elements.Motor_Message, 0);
       if Status /= Ravenchart.Can.Queued then
          Health_Counts.Counters.Record_Fault
@@ -42,18 +49,27 @@ is
       end if;
    end Send_Motor;
 
+   function Frame_Of_Display
+     (Item : Infusion_System.View)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Ward_Display_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Ward_Display_Length,
+           Payload => Codecs.Type_View.Pack (Item));
+   end Frame_Of_Display;
+
    procedure Send_Display (Item : Infusion_System.View) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Display (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 273,
-               Format => Ravenchart.Can.Standard,
-               Length => 3,
-               Payload => Codecs.Type_View.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Display));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Display_Message,

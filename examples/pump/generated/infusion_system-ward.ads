@@ -2,8 +2,13 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Infusion_System.Codecs;
+with Infusion_System.Timing_Certificate;
+with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Controllers;
+with Ravenchart.Can.Layouts;
 with System;
 
 package Infusion_System.Ward
@@ -19,26 +24,73 @@ is
       Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
-        when Ravenchart.Can.Standard => Id in 256 | 272,
+        when Ravenchart.Can.Standard =>
+           Id
+           in Timing_Certificate.Ward_Line_Id
+             | Timing_Certificate.Ward_Panel_Id,
         when Ravenchart.Can.Extended => False);
    --  [ward] the identifiers that this node receives
 
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 3,
       Receive_Ceiling => System.Default_Priority + 3,
-      Driver_Priority => System.Default_Priority + 3,
+      Driver_Priority => Timing_Certificate.Ward_Driver_Rx_Line_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
       Setting =>
-        (Bit_Rate => 125_000,
+        (Bit_Rate => Timing_Certificate.Ward_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
          Recovery => Ravenchart.Can.Automatic));
 
+   use type Ravenchart.Can.Bits_Per_Second;
+
+   pragma Compile_Time_Error
+     (Controller.Given_Priority
+      /= Timing_Certificate.Ward_Driver_Rx_Line_Priority,
+      "ward " & "has another priority of its driver than its certificate");
+   pragma Assert
+     (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Ward_Bit_Rate
+      and then Controller.Given_Setting.Data_Rate = 0);
+
+   --  [ward] all that is received passes, and its frame holds its signals
+   pragma Assert
+     (Accepts (Codecs.Frame_Line.Id, Codecs.Frame_Line.Format)
+      and then Codecs.Type_Line.Fits_In (Codecs.Frame_Line));
+   pragma Assert
+     (Accepts (Codecs.Frame_Panel.Id, Codecs.Frame_Panel.Format)
+      and then Codecs.Type_Press.Fits_In (Codecs.Frame_Panel));
+
+   use type Interfaces.Unsigned_64;
+
+   function Frame_Of_Motor
+     (Item : Infusion_System.Portion)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Motor'Result,
+          Codecs.Frame_Motor)
+       and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Motor'Result)
+         = Codecs.Type_Portion.Pack (Item);
+   --  [motor] its frame by the layout table; none of its bits is cut off.
+
    procedure Send_Motor (Item : Infusion_System.Portion);
    --  [motor] hand one frame to the controller; never blocks.
+
+   function Frame_Of_Display
+     (Item : Infusion_System.View)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Display'Result,
+          Codecs.Frame_Display)
+       and then Ravenchart.Can.Any_Frames.Payload (Frame_Of_Display'Result)
+         = Codecs.Type_View.Pack (Item);
+   --  [display] its frame by the layout table; none of its bits is cut off.
 
    procedure Send_Display (Item : Infusion_System.View);
    --  [display] hand one frame to the controller; never blocks.

@@ -4,6 +4,7 @@
 
 with Ada.Real_Time;
 with Infusion_System.Reports;
+with Infusion_System.Timing_Certificate;
 with Ravenchart.Hosts;
 with System;
 
@@ -17,6 +18,8 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model
+     (Infusion_System.Timing_Certificate.Model_Digest);
    loop
       Infusion_System.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;

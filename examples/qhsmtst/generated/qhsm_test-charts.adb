@@ -20,6 +20,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -29,12 +30,17 @@ is
          0);
       case Item is
          when Test_Ports =>
-            Test.Run_Ports;
+            Test.Run_Ports (Executed);
          when Test_Keys =>
-            Test.Run_Keys;
+            Test.Run_Keys (Executed);
          when Test_Chart =>
-            Test.Run_Chart;
+            Test.Run_Chart (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Charts_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

@@ -30,16 +30,52 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Test_Ports => (Divisor => 1, Phase => 0),
-         Test_Keys => (Divisor => 1, Phase => 0),
-         Test_Chart => (Divisor => 1, Phase => 0)),
+        (Test_Ports =>
+           (Divisor => Timing_Certificate.Test_Ports_Divisor,
+            Phase => Timing_Certificate.Test_Ports_Phase),
+         Test_Keys =>
+           (Divisor => Timing_Certificate.Test_Keys_Divisor,
+            Phase => Timing_Certificate.Test_Keys_Phase),
+         Test_Chart =>
+           (Divisor => Timing_Certificate.Test_Chart_Divisor,
+            Phase => Timing_Certificate.Test_Chart_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Charts_T,
       Offset => 0,
       Deadline => Timing_Certificate.Charts_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Charts_Priority,
       Ceiling => System.Default_Priority + 1,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Charts_Priority,
+      "charts " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Charts_T,
+      "charts " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Charts_D,
+      "charts " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "charts " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Test_Ports).Divisor
+      = Timing_Certificate.Test_Ports_Divisor
+      and then Processor.Given_Table (Test_Ports).Phase
+        = Timing_Certificate.Test_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Test_Keys).Divisor
+      = Timing_Certificate.Test_Keys_Divisor
+      and then Processor.Given_Table (Test_Keys).Phase
+        = Timing_Certificate.Test_Keys_Phase);
+   pragma Assert
+     (Processor.Given_Table (Test_Chart).Divisor
+      = Timing_Certificate.Test_Chart_Divisor
+      and then Processor.Given_Table (Test_Chart).Phase
+        = Timing_Certificate.Test_Chart_Phase);
 end Qhsm_Test.Charts;

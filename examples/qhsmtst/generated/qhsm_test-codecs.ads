@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Layouts;
 
 package Qhsm_Test.Codecs
@@ -31,6 +32,11 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => 0);
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Value));
 
       function Raw_Of_Value
         (Word : Interfaces.Unsigned_64)
@@ -63,4 +69,13 @@ is
       with Ghost;
       --  What is packed is what is unpacked.
    end Type_Key;
+
+   subtype Row_Of_Frame is Ravenchart.Can.Layouts.Frame_Row;
+
+   --  [key] the frame that carries it
+   Frame_Key : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 256,
+      Format => Ravenchart.Can.Standard,
+      Length => 1);
 end Qhsm_Test.Codecs;

@@ -3,10 +3,10 @@
 --  model's elements; trace.json says where they stand.
 
 with Qhsm_Test.Codecs;
-with Qhsm_Test.Elements;
 with Qhsm_Test.Test;
 with Qhsm_Test.Trace;
 with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Layouts;
 with Ravenchart.Traces;
 
 package body Qhsm_Test.Panel.Receiver
@@ -26,13 +26,14 @@ is
       Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
-   procedure Run_Receive is
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
       Valid : Boolean;
       Key_Item : Qhsm_Test.Key;
    begin
-      if Ravenchart.Can.Any_Frames.Id (Frame) = 256
+      if Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Panel_Key_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -44,8 +45,10 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 1)
+                 Timing_Certificate.Panel_Key_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Key));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Key_Message,
@@ -53,5 +56,6 @@ is
             Test.Put_Key (Key_Item);
          end if;
       end if;
+      Executed := Executed + Elements.Panel_Receive_Row;
    end Run_Receive;
 end Qhsm_Test.Panel.Receiver;

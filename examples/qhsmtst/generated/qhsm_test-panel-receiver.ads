@@ -2,6 +2,9 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart;
+with Qhsm_Test.Elements;
+
 package Qhsm_Test.Panel.Receiver
 with SPARK_Mode
 is
@@ -13,6 +16,9 @@ is
    procedure Wait;
    --  [panel.receive.release] suspend until a frame is there.
 
-   procedure Run_Receive;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Panel_Receive_Row;
    --  [panel.receive] decode it and hand it to its receivers.
 end Qhsm_Test.Panel.Receiver;

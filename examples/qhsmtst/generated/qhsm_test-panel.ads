@@ -2,6 +2,8 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Qhsm_Test.Codecs;
+with Qhsm_Test.Timing_Certificate;
 with Ravenchart.Can;
 with Ravenchart.Can.Controllers;
 with System;
@@ -19,21 +21,37 @@ is
       Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
-        when Ravenchart.Can.Standard => Id in 256,
+        when Ravenchart.Can.Standard =>
+           Id in Timing_Certificate.Panel_Key_Id,
         when Ravenchart.Can.Extended => False);
    --  [panel] the identifiers that this node receives
 
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 3,
       Receive_Ceiling => System.Default_Priority + 3,
-      Driver_Priority => System.Default_Priority + 3,
+      Driver_Priority => Timing_Certificate.Panel_Driver_Rx_Key_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
       Setting =>
-        (Bit_Rate => 125_000,
+        (Bit_Rate => Timing_Certificate.Panel_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
          Recovery => Ravenchart.Can.Automatic));
+
+   use type Ravenchart.Can.Bits_Per_Second;
+
+   pragma Compile_Time_Error
+     (Controller.Given_Priority
+      /= Timing_Certificate.Panel_Driver_Rx_Key_Priority,
+      "panel " & "has another priority of its driver than its certificate");
+   pragma Assert
+     (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Panel_Bit_Rate
+      and then Controller.Given_Setting.Data_Rate = 0);
+
+   --  [panel] all that is received passes, and its frame holds its signals
+   pragma Assert
+     (Accepts (Codecs.Frame_Key.Id, Codecs.Frame_Key.Format)
+      and then Codecs.Type_Key.Fits_In (Codecs.Frame_Key));
 end Qhsm_Test.Panel;

@@ -29,9 +29,21 @@ is
       Minimum_Separation => Timing_Certificate.Reception_T,
       Wait => Panel.Receiver.Wait,
       Deadline => Timing_Certificate.Reception_D,
-      Task_Priority => System.Default_Priority + 2,
+      Task_Priority => Timing_Certificate.Reception_Priority,
       Ceiling => System.Default_Priority + 2,
       Stack_Bytes => 16_384,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Reception_Priority,
+      "reception " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Separation /= Timing_Certificate.Reception_T,
+      "reception " & "has another separation than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Reception_D,
+      "reception " & "has another deadline than its certificate");
 end Qhsm_Test.Reception;

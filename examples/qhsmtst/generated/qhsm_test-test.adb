@@ -2,7 +2,6 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Qhsm_Test.Elements;
 with Qhsm_Test.Health_Counts;
 with Qhsm_Test.Qhsm.Chart;
 with Qhsm_Test.Qhsm.Keys;
@@ -237,7 +236,7 @@ is
       end case;
    end Offer;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Key_Item : Qhsm_Test.Key;
@@ -270,6 +269,7 @@ is
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
+      Executed := Executed + Elements.Test_Ports_Row;
    end Run_Ports;
 
    procedure Step_Keys is
@@ -308,10 +308,11 @@ is
       end if;
    end Step_Keys;
 
-   procedure Run_Keys is
+   procedure Run_Keys (Executed : in out Ravenchart.Element_Id) is
    begin
       Step_Keys;
       Keys_Board.Write (Keys_Region.Leaf);
+      Executed := Executed + Elements.Test_Keys_Row;
    end Run_Keys;
 
    procedure Step_Chart is
@@ -347,9 +348,10 @@ is
       end if;
    end Step_Chart;
 
-   procedure Run_Chart is
+   procedure Run_Chart (Executed : in out Ravenchart.Element_Id) is
    begin
       Step_Chart;
       Chart_Board.Write (Chart_Region.Leaf);
+      Executed := Executed + Elements.Test_Chart_Row;
    end Run_Chart;
 end Qhsm_Test.Test;

@@ -2,7 +2,9 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Ravenchart;
 with Qhsm_Test.Qhsm;
+with Qhsm_Test.Elements;
 
 package Qhsm_Test.Test
 with SPARK_Mode
@@ -12,18 +14,23 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   use type Ravenchart.Element_Id;
+
    procedure Put_Key (Item : Qhsm_Test.Key);
    --  [test.key.mailbox] by its senders; never blocks.
 
    procedure Offer (Item : Qhsm.Event);
    --  [test.events] offer Item to every region that names it; never blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Test_Ports_Row;
    --  [test.ports] one execution, by its processor alone.
 
-   procedure Run_Keys;
+   procedure Run_Keys (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Test_Keys_Row;
    --  [test.Keys] one execution, by its processor alone.
 
-   procedure Run_Chart;
+   procedure Run_Chart (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Test_Chart_Row;
    --  [test.Chart] one execution, by its processor alone.
 end Qhsm_Test.Test;

@@ -2,6 +2,8 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Qhsm_Test.Timing_Certificate
 with SPARK_Mode, Pure
 is
@@ -10,13 +12,17 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "8b02c33aec34ada9e3f711dc46754f154dfb3555f040889b48aae0da799ea680";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_R : constant := 105_000;
@@ -28,9 +34,9 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [reception] priority 2, released by arrivals, no closer than T; it
-   --  may wait for T to be over as well. B: charts may be inside
-   --  test.key.mailbox.
+   --  [reception] released by arrivals, no closer than T; it may wait for T
+   --  to be over as well. B: charts may be inside test.key.mailbox.
+   Reception_Priority : constant := System.Default_Priority + 2;
    Panel_Receive_Budget : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
@@ -40,12 +46,43 @@ is
      Panel_Receive_Budget + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
-   --  [charts] priority 1, released every T. B: main may be inside health.
+   --  [charts] released every T. B: main may be inside health.
+   Charts_Priority : constant := System.Default_Priority + 1;
    Test_Ports_Budget : constant := 50_000;
    Test_Keys_Budget : constant := 50_000;
    Test_Chart_Budget : constant := 100_000;
    Charts_T : constant := 10_000_000;
    Charts_D : constant := 10_000_000;
+   Test_Ports_Divisor : constant := 1;
+   Test_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Test_Ports_Divisor /= 1,
+      "test.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Test_Ports_Phase + 1) > Test_Ports_Divisor,
+      "test.ports " & "has a phase beyond its divisor");
+
+   Test_Keys_Divisor : constant := 1;
+   Test_Keys_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Test_Keys_Divisor /= 1,
+      "test.Keys " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Test_Keys_Phase + 1) > Test_Keys_Divisor,
+      "test.Keys " & "has a phase beyond its divisor");
+
+   Test_Chart_Divisor : constant := 1;
+   Test_Chart_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Test_Chart_Divisor /= 1,
+      "test.Chart " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Test_Chart_Phase + 1) > Test_Chart_Divisor,
+      "test.Chart " & "has a phase beyond its divisor");
+
    Charts_J : constant := 0;
    Charts_A : constant := Charts_J + (Charts_T - 1);
    Charts_C : constant :=
@@ -55,8 +92,9 @@ is
      + 2 * Board_Context_Switch;
    Charts_B : constant := Board_Critical_Section;
 
-   --  [panel.driver_rx.key] priority 3, the driver's work, released by
-   --  panel.key, which is J late. B: reception may be inside panel.receive.
+   --  [panel.driver_rx.key] the driver's work, released by panel.key, which
+   --  is J late. B: reception may be inside panel.receive.
+   Panel_Driver_Rx_Key_Priority : constant := System.Default_Priority + 3;
    Panel_Driver_Rx_Key_Budget : constant := 20_000;
    Panel_Driver_Rx_Key_T : constant := 10_000_000;
    Panel_Driver_Rx_Key_D : constant := 10_000_000;
@@ -67,6 +105,13 @@ is
      Panel_Driver_Rx_Key_Budget + 2 * Board_Context_Switch;
    Panel_Driver_Rx_Key_B : constant := Board_Critical_Section;
 
+   pragma Compile_Time_Error
+     ((Reception_Priority + 1) > Panel_Driver_Rx_Key_Priority,
+      "panel.driver_rx.key " & "must have a higher priority than reception");
+   pragma Compile_Time_Error
+     ((Charts_Priority + 1) > Reception_Priority,
+      "reception " & "must have a higher priority than charts");
+
    --  [panel] bits in a second, and one bit in nanoseconds, rounded up. Of
    --  a message, Stuffed: bits that stuffing can lengthen by a quarter;
    --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
@@ -75,10 +120,12 @@ is
    Panel_Bit : constant :=
      (1_000_000_000 + (Panel_Bit_Rate - 1)) / Panel_Bit_Rate;
 
-   --  [panel.key] 11-bit identifier 0x100, 1 bytes from somebody outside
+   --  [panel.key] 11-bit identifier Id, Length bytes from somebody outside
+   Panel_Key_Id : constant := 16#100#;
+   Panel_Key_Length : constant := 1;
    Panel_Key_T : constant := 10_000_000;
    Panel_Key_D : constant := 10_000_000;
-   Panel_Key_Stuffed : constant := 34 + 8 * 1;
+   Panel_Key_Stuffed : constant := 34 + 8 * Panel_Key_Length;
    Panel_Key_Bits : constant :=
      Panel_Key_Stuffed + 13 + ((Panel_Key_Stuffed - 1) / 4);
    Panel_Key_C : constant :=
@@ -100,6 +147,9 @@ is
    pragma Compile_Time_Error
      (Reception_Needs > Reception_W,
       "reception " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Reception_W > Reception_Needs,
+      "reception " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Reception_J + Reception_W) > Reception_T,
       "reception " & "can be released again before it completes");
@@ -125,6 +175,9 @@ is
      (Charts_Needs > Charts_W,
       "charts " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Charts_W > Charts_Needs,
+      "charts " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Charts_J + Charts_W) > Charts_T,
       "charts " & "can be released again before it completes");
    pragma Compile_Time_Error
@@ -149,6 +202,9 @@ is
       "panel.driver_rx.key "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Panel_Driver_Rx_Key_W > Panel_Driver_Rx_Key_Needs,
+      "panel.driver_rx.key " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Panel_Driver_Rx_Key_J + Panel_Driver_Rx_Key_W)
       > Panel_Driver_Rx_Key_T,
       "panel.driver_rx.key " & "can be released again before it completes");
@@ -170,6 +226,9 @@ is
      (Panel_Key_Busy_Needs > Panel_Key_Busy,
       "panel.key " & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Panel_Key_Busy > Panel_Key_Busy_Needs,
+      "panel.key " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Panel_Key_Busy + Panel_Key_J) > Panel_Key_T,
       "panel.key " & "can come again before it is sent");
 
@@ -183,8 +242,14 @@ is
      (Panel_Key_Needs > Panel_Key_W,
       "panel.key " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Panel_Key_W > Panel_Key_Needs,
+      "panel.key " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Panel_Key_J + Panel_Key_W + Panel_Key_C) > Panel_Key_R,
       "panel.key " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Panel_Key_R > (Panel_Key_J + Panel_Key_W + Panel_Key_C),
+      "panel.key " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Panel_Key_R > Panel_Key_D,
       "panel.key " & "can miss its deadline");

@@ -4,6 +4,7 @@
 
 with Ada.Real_Time;
 with Qhsm_Test.Reports;
+with Qhsm_Test.Timing_Certificate;
 with Ravenchart.Hosts;
 with System;
 
@@ -17,6 +18,7 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model (Qhsm_Test.Timing_Certificate.Model_Digest);
    loop
       Qhsm_Test.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;

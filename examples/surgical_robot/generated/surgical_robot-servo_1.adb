@@ -7,7 +7,6 @@ with Ravenchart.Health;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with Surgical_Robot.Boards;
-with Surgical_Robot.Elements;
 with Surgical_Robot.Health_Counts;
 with Surgical_Robot.Servo.Activities;
 with Surgical_Robot.Servo.Differ_Stand_In;
@@ -83,7 +82,7 @@ is
       Boards.Set_Current (Item);
    end Call_Set_Current;
 
-   procedure Run_Take_Orders is
+   procedure Run_Take_Orders (Executed : in out Ravenchart.Element_Id) is
       Asked : Servo.Motion_Requests.Request;
       Taken : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
@@ -99,9 +98,10 @@ is
             Goal => Goal_Own);
          Goal_Board.Write (Goal_Own);
       end loop;
+      Executed := Executed + Elements.Servo_1_Take_Orders_Row;
    end Run_Take_Orders;
 
-   procedure Run_Differ is
+   procedure Run_Differ (Executed : in out Ravenchart.Element_Id) is
       Get_Position_Value : Surgical_Robot.Angle_X4;
    begin
       Boards.Get_Position (Get_Position_Value);
@@ -110,9 +110,10 @@ is
          Differed => Differed_Own,
          Before => Before_Own);
       Differed_Board.Write (Differed_Own);
+      Executed := Executed + Elements.Servo_1_Differ_Row;
    end Run_Differ;
 
-   procedure Run_Control is
+   procedure Run_Control (Executed : in out Ravenchart.Element_Id) is
       Goal_Value : Surgical_Robot.Angle_X4;
       Get_Position_Value : Surgical_Robot.Angle_X4;
       Get_Velocity_Value : Surgical_Robot.Speed_X4;
@@ -136,5 +137,6 @@ is
       if Call_Set_Current_Asked then
          Call_Set_Current (Set_Current_Value);
       end if;
+      Executed := Executed + Elements.Servo_1_Control_Row;
    end Run_Control;
 end Surgical_Robot.Servo_1;

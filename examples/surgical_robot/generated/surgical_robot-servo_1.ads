@@ -4,10 +4,13 @@
 
 with Ravenchart.Queueing;
 with Surgical_Robot.Servo;
+with Surgical_Robot.Elements;
 
 package Surgical_Robot.Servo_1
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Motion
      (Item   : Servo.Motion_Requests.Request;
       Status : out Ravenchart.Queueing.Put_Status);
@@ -16,12 +19,17 @@ is
    procedure Get_Position (Reply : out Surgical_Robot.Angle_X4);
    --  [servo_1.Seen] what was published last.
 
-   procedure Run_Take_Orders;
+   procedure Run_Take_Orders (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Servo_1_Take_Orders_Row;
    --  [servo_1.Take_Orders] one execution, by its processor alone.
 
-   procedure Run_Differ;
+   procedure Run_Differ (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Servo_1_Differ_Row;
    --  [servo_1.Differ] one execution, by its processor alone.
 
-   procedure Run_Control;
+   procedure Run_Control (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Servo_1_Control_Row;
    --  [servo_1.Control] one execution, by its processor alone.
 end Surgical_Robot.Servo_1;

@@ -15,6 +15,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -24,12 +25,17 @@ is
          0);
       case Item is
          when Servo_1_Take_Orders =>
-            Servo_1.Run_Take_Orders;
+            Servo_1.Run_Take_Orders (Executed);
          when Servo_1_Differ =>
-            Servo_1.Run_Differ;
+            Servo_1.Run_Differ (Executed);
          when Servo_1_Control =>
-            Servo_1.Run_Control;
+            Servo_1.Run_Control (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Servo_Loop_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

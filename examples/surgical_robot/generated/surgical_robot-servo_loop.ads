@@ -25,16 +25,52 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Servo_1_Take_Orders => (Divisor => 1, Phase => 0),
-         Servo_1_Differ => (Divisor => 1, Phase => 0),
-         Servo_1_Control => (Divisor => 1, Phase => 0)),
+        (Servo_1_Take_Orders =>
+           (Divisor => Timing_Certificate.Servo_1_Take_Orders_Divisor,
+            Phase => Timing_Certificate.Servo_1_Take_Orders_Phase),
+         Servo_1_Differ =>
+           (Divisor => Timing_Certificate.Servo_1_Differ_Divisor,
+            Phase => Timing_Certificate.Servo_1_Differ_Phase),
+         Servo_1_Control =>
+           (Divisor => Timing_Certificate.Servo_1_Control_Divisor,
+            Phase => Timing_Certificate.Servo_1_Control_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Servo_Loop_T,
       Offset => 0,
       Deadline => Timing_Certificate.Servo_Loop_D,
-      Task_Priority => System.Default_Priority + 2,
+      Task_Priority => Timing_Certificate.Servo_Loop_Priority,
       Ceiling => System.Default_Priority + 3,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Servo_Loop_Priority,
+      "servo_loop " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Servo_Loop_T,
+      "servo_loop " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Servo_Loop_D,
+      "servo_loop " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "servo_loop " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Servo_1_Take_Orders).Divisor
+      = Timing_Certificate.Servo_1_Take_Orders_Divisor
+      and then Processor.Given_Table (Servo_1_Take_Orders).Phase
+        = Timing_Certificate.Servo_1_Take_Orders_Phase);
+   pragma Assert
+     (Processor.Given_Table (Servo_1_Differ).Divisor
+      = Timing_Certificate.Servo_1_Differ_Divisor
+      and then Processor.Given_Table (Servo_1_Differ).Phase
+        = Timing_Certificate.Servo_1_Differ_Phase);
+   pragma Assert
+     (Processor.Given_Table (Servo_1_Control).Divisor
+      = Timing_Certificate.Servo_1_Control_Divisor
+      and then Processor.Given_Table (Servo_1_Control).Phase
+        = Timing_Certificate.Servo_1_Control_Phase);
 end Surgical_Robot.Servo_Loop;

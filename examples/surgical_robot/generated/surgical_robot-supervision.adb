@@ -15,6 +15,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -24,8 +25,13 @@ is
          0);
       case Item is
          when Supervisor_1_Task_Of_Arm =>
-            Supervisor_1.Run_Task_Of_Arm;
+            Supervisor_1.Run_Task_Of_Arm (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Supervision_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

@@ -24,14 +24,37 @@ is
      (Name => "supervision",
       Activity_Id => Row,
       Table_Type => Row_Table,
-      Table => (Supervisor_1_Task_Of_Arm => (Divisor => 1, Phase => 0)),
+      Table =>
+        (Supervisor_1_Task_Of_Arm =>
+           (Divisor => Timing_Certificate.Supervisor_1_Task_Of_Arm_Divisor,
+            Phase => Timing_Certificate.Supervisor_1_Task_Of_Arm_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Supervision_T,
       Offset => 0,
       Deadline => Timing_Certificate.Supervision_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Supervision_Priority,
       Ceiling => System.Default_Priority + 3,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Supervision_Priority,
+      "supervision " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Supervision_T,
+      "supervision " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Supervision_D,
+      "supervision " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "supervision " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Supervisor_1_Task_Of_Arm).Divisor
+      = Timing_Certificate.Supervisor_1_Task_Of_Arm_Divisor
+      and then Processor.Given_Table (Supervisor_1_Task_Of_Arm).Phase
+        = Timing_Certificate.Supervisor_1_Task_Of_Arm_Phase);
 end Surgical_Robot.Supervision;

@@ -5,7 +5,6 @@
 with Ravenchart.Blackboards;
 with Ravenchart.Queueing;
 with Ravenchart.Traces;
-with Surgical_Robot.Elements;
 with Surgical_Robot.Servo;
 with Surgical_Robot.Servo_1;
 with Surgical_Robot.Supervisor;
@@ -79,12 +78,13 @@ is
       end if;
    end Step_Task_Of_Arm;
 
-   procedure Run_Task_Of_Arm is
+   procedure Run_Task_Of_Arm (Executed : in out Ravenchart.Element_Id) is
       Ins : Supervisor.Task_Of_Arm.Inputs;
    begin
       Servo_1.Get_Position (Ins.Get_Position);
       Supervisor.Task_Of_Arm.Tick (Task_Of_Arm_Region);
       Step_Task_Of_Arm (Ins);
       Task_Of_Arm_Board.Write (Task_Of_Arm_Region.Leaf);
+      Executed := Executed + Elements.Supervisor_1_Task_Of_Arm_Row;
    end Run_Task_Of_Arm;
 end Surgical_Robot.Supervisor_1;

@@ -2,9 +2,16 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Surgical_Robot.Elements;
+
 package Surgical_Robot.Supervisor_1
 with SPARK_Mode
 is
-   procedure Run_Task_Of_Arm;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Task_Of_Arm (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Supervisor_1_Task_Of_Arm_Row;
    --  [supervisor_1.Task_Of_Arm] one execution, by its processor alone.
 end Surgical_Robot.Supervisor_1;

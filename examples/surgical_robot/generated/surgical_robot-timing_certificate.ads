@@ -2,16 +2,22 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Surgical_Robot.Timing_Certificate
 with SPARK_Mode, Pure
 is
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "c5cd0524a4c784d349b9fcb72c5f67f4c568f6e5cdd10754b905beaa5a250755";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Servo_Loop_R : constant := 345_000;
@@ -22,13 +28,45 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [servo_loop] priority 2, released every T. B: supervision may be
-   --  inside servo_1.Seen.
+   --  [servo_loop] released every T. B: supervision may be inside
+   --  servo_1.Seen.
+   Servo_Loop_Priority : constant := System.Default_Priority + 2;
    Servo_1_Take_Orders_Budget : constant := 50_000;
    Servo_1_Differ_Budget : constant := 54_000;
    Servo_1_Control_Budget : constant := 146_000;
    Servo_Loop_T : constant := 5_000_000;
    Servo_Loop_D : constant := 5_000_000;
+   Servo_1_Take_Orders_Divisor : constant := 1;
+   Servo_1_Take_Orders_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_1_Take_Orders_Divisor /= 1,
+      "servo_1.Take_Orders "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_1_Take_Orders_Phase + 1) > Servo_1_Take_Orders_Divisor,
+      "servo_1.Take_Orders " & "has a phase beyond its divisor");
+
+   Servo_1_Differ_Divisor : constant := 1;
+   Servo_1_Differ_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_1_Differ_Divisor /= 1,
+      "servo_1.Differ " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_1_Differ_Phase + 1) > Servo_1_Differ_Divisor,
+      "servo_1.Differ " & "has a phase beyond its divisor");
+
+   Servo_1_Control_Divisor : constant := 1;
+   Servo_1_Control_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_1_Control_Divisor /= 1,
+      "servo_1.Control " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_1_Control_Phase + 1) > Servo_1_Control_Divisor,
+      "servo_1.Control " & "has a phase beyond its divisor");
+
    Servo_Loop_J : constant := 0;
    Servo_Loop_A : constant := Servo_Loop_J + (Servo_Loop_T - 1);
    Servo_Loop_C : constant :=
@@ -38,19 +76,32 @@ is
      + 2 * Board_Context_Switch;
    Servo_Loop_B : constant := Board_Critical_Section;
 
-   --  [supervision] priority 1, released every T. B: main may be inside
-   --  health.
+   --  [supervision] released every T. B: main may be inside health.
+   Supervision_Priority : constant := System.Default_Priority + 1;
    Supervisor_1_Task_Of_Arm_Budget : constant := 300_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
+   Supervisor_1_Task_Of_Arm_Divisor : constant := 1;
+   Supervisor_1_Task_Of_Arm_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Supervisor_1_Task_Of_Arm_Divisor /= 1,
+      "supervisor_1.Task_Of_Arm "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Supervisor_1_Task_Of_Arm_Phase + 1)
+      > Supervisor_1_Task_Of_Arm_Divisor,
+      "supervisor_1.Task_Of_Arm " & "has a phase beyond its divisor");
+
    Supervision_J : constant := 0;
    Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
      Supervisor_1_Task_Of_Arm_Budget + 2 * Board_Context_Switch;
    Supervision_B : constant := Board_Critical_Section;
 
-   --  [board.supervisor] priority 3, released every T. B: servo_loop may be
-   --  inside servo_loop.monitor.
+   --  [board.supervisor] released every T. B: servo_loop may be inside
+   --  servo_loop.monitor.
+   Board_Supervisor_Priority : constant := System.Default_Priority + 3;
    Board_Supervisor_Budget : constant := 50_000;
    Board_Supervisor_T : constant := 5_000_000;
    Board_Supervisor_D : constant := 5_000_000;
@@ -60,6 +111,13 @@ is
    Board_Supervisor_C : constant :=
      Board_Supervisor_Budget + 2 * Board_Context_Switch;
    Board_Supervisor_B : constant := Board_Critical_Section;
+
+   pragma Compile_Time_Error
+     ((Servo_Loop_Priority + 1) > Board_Supervisor_Priority,
+      "board.supervisor " & "must have a higher priority than servo_loop");
+   pragma Compile_Time_Error
+     ((Supervision_Priority + 1) > Servo_Loop_Priority,
+      "servo_loop " & "must have a higher priority than supervision");
 
    --  [servo_loop] what can delay it: jobs of the same or higher priority
    Servo_Loop_W : constant := Servo_Loop_R - Servo_Loop_J;
@@ -75,6 +133,9 @@ is
    pragma Compile_Time_Error
      (Servo_Loop_Needs > Servo_Loop_W,
       "servo_loop " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Servo_Loop_W > Servo_Loop_Needs,
+      "servo_loop " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Servo_Loop_J + Servo_Loop_W) > Servo_Loop_T,
       "servo_loop " & "can be released again before it completes");
@@ -100,6 +161,9 @@ is
      (Supervision_Needs > Supervision_W,
       "supervision " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Supervision_W > Supervision_Needs,
+      "supervision " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Supervision_J + Supervision_W) > Supervision_T,
       "supervision " & "can be released again before it completes");
    pragma Compile_Time_Error
@@ -120,6 +184,9 @@ is
    pragma Compile_Time_Error
      (Board_Supervisor_Needs > Board_Supervisor_W,
       "board.supervisor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Board_Supervisor_W > Board_Supervisor_Needs,
+      "board.supervisor " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Board_Supervisor_J + Board_Supervisor_W) > Board_Supervisor_T,
       "board.supervisor " & "can be released again before it completes");

@@ -5,6 +5,7 @@
 with Ada.Real_Time;
 with Ravenchart.Hosts;
 with Surgical_Robot.Reports;
+with Surgical_Robot.Timing_Certificate;
 with System;
 
 procedure Surgical_Robot_Main
@@ -17,6 +18,8 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model
+     (Surgical_Robot.Timing_Certificate.Model_Digest);
    loop
       Surgical_Robot.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;

@@ -31,11 +31,21 @@ is
       Name => "board.supervisor",
       Period => Timing_Certificate.Board_Supervisor_T,
       Patience => 1_000_000_000,
-      Task_Priority => System.Default_Priority + 4,
+      Task_Priority => Timing_Certificate.Board_Supervisor_Priority,
       Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Look => Look,
       On_Silence => On_Silence,
       Feed_Watchdog => Ravenchart.Failures.Feed_Watchdog,
       Give_Up => Ravenchart.Failures.Give_Up);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Supervisor.Given_Period /= Timing_Certificate.Board_Supervisor_T,
+      "board.supervisor " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Supervisor.Given_Priority
+      /= Timing_Certificate.Board_Supervisor_Priority,
+      "board.supervisor " & "has another priority than its certificate");
 end Three_Components.Liveness_Supervision;

@@ -8,7 +8,6 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
-with Three_Components.Elements;
 with Three_Components.Health_Counts;
 with Three_Components.Starter.Starting;
 with Three_Components.Starter.Watching;
@@ -137,7 +136,7 @@ is
       Two.Put_Token_In (Item);
    end Send_Token_Out;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Token_In_Item : Three_Components.Token;
@@ -169,6 +168,7 @@ is
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
+      Executed := Executed + Elements.One_Ports_Row;
    end Run_Ports;
 
    procedure Step_Starting (Ins : Starter.Starting.Inputs) is
@@ -208,13 +208,14 @@ is
       end if;
    end Step_Starting;
 
-   procedure Run_Starting is
+   procedure Run_Starting (Executed : in out Ravenchart.Element_Id) is
       Ins : Starter.Starting.Inputs;
    begin
       Token_In_Board.Read (Ins.Token_In);
       Starter.Starting.Tick (Starting_Region);
       Step_Starting (Ins);
       Starting_Board.Write (Starting_Region.Leaf);
+      Executed := Executed + Elements.One_Starting_Row;
    end Run_Starting;
 
    procedure Step_Watching is
@@ -250,10 +251,11 @@ is
       end if;
    end Step_Watching;
 
-   procedure Run_Watching is
+   procedure Run_Watching (Executed : in out Ravenchart.Element_Id) is
    begin
       Starter.Watching.Tick (Watching_Region);
       Step_Watching;
       Watching_Board.Write (Watching_Region.Leaf);
+      Executed := Executed + Elements.One_Watching_Row;
    end Run_Watching;
 end Three_Components.One;

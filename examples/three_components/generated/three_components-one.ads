@@ -3,22 +3,28 @@
 --  model's elements; trace.json says where they stand.
 
 with Three_Components.Starter;
+with Three_Components.Elements;
 
 package Three_Components.One
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Token_In (Item : Three_Components.Token);
    --  [one.token_in.mailbox] by its senders; never blocks.
 
    procedure Offer (Item : Starter.Event);
    --  [one.events] offer Item to every region that names it; never blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.One_Ports_Row;
    --  [one.ports] one execution, by its processor alone.
 
-   procedure Run_Starting;
+   procedure Run_Starting (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.One_Starting_Row;
    --  [one.Starting] one execution, by its processor alone.
 
-   procedure Run_Watching;
+   procedure Run_Watching (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.One_Watching_Row;
    --  [one.Watching] one execution, by its processor alone.
 end Three_Components.One;

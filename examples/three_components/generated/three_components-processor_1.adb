@@ -15,6 +15,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -24,12 +25,17 @@ is
          0);
       case Item is
          when One_Ports =>
-            One.Run_Ports;
+            One.Run_Ports (Executed);
          when One_Starting =>
-            One.Run_Starting;
+            One.Run_Starting (Executed);
          when One_Watching =>
-            One.Run_Watching;
+            One.Run_Watching (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Processor_1_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

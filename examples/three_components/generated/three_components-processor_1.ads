@@ -25,16 +25,52 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (One_Ports => (Divisor => 1, Phase => 0),
-         One_Starting => (Divisor => 2, Phase => 0),
-         One_Watching => (Divisor => 2, Phase => 0)),
+        (One_Ports =>
+           (Divisor => Timing_Certificate.One_Ports_Divisor,
+            Phase => Timing_Certificate.One_Ports_Phase),
+         One_Starting =>
+           (Divisor => Timing_Certificate.One_Starting_Divisor,
+            Phase => Timing_Certificate.One_Starting_Phase),
+         One_Watching =>
+           (Divisor => Timing_Certificate.One_Watching_Divisor,
+            Phase => Timing_Certificate.One_Watching_Phase)),
       Cycle => 2,
       Period => Timing_Certificate.Processor_1_T,
       Offset => 0,
       Deadline => Timing_Certificate.Processor_1_D,
-      Task_Priority => System.Default_Priority + 3,
+      Task_Priority => Timing_Certificate.Processor_1_Priority,
       Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Processor_1_Priority,
+      "processor_1 " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Processor_1_T,
+      "processor_1 " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Processor_1_D,
+      "processor_1 " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "processor_1 " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (One_Ports).Divisor
+      = Timing_Certificate.One_Ports_Divisor
+      and then Processor.Given_Table (One_Ports).Phase
+        = Timing_Certificate.One_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (One_Starting).Divisor
+      = Timing_Certificate.One_Starting_Divisor
+      and then Processor.Given_Table (One_Starting).Phase
+        = Timing_Certificate.One_Starting_Phase);
+   pragma Assert
+     (Processor.Given_Table (One_Watching).Divisor
+      = Timing_Certificate.One_Watching_Divisor
+      and then Processor.Given_Table (One_Watching).Phase
+        = Timing_Certificate.One_Watching_Phase);
 end Three_Components.Processor_1;

@@ -16,6 +16,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -25,12 +26,17 @@ is
          0);
       case Item is
          when Two_Ports =>
-            Two.Run_Ports;
+            Two.Run_Ports (Executed);
          when Two_Handling =>
-            Two.Run_Handling;
+            Two.Run_Handling (Executed);
          when Three_Watching =>
-            Three.Run_Watching;
+            Three.Run_Watching (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Processor_2_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

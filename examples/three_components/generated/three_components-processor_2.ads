@@ -25,16 +25,52 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Two_Ports => (Divisor => 1, Phase => 0),
-         Two_Handling => (Divisor => 1, Phase => 0),
-         Three_Watching => (Divisor => 2, Phase => 0)),
+        (Two_Ports =>
+           (Divisor => Timing_Certificate.Two_Ports_Divisor,
+            Phase => Timing_Certificate.Two_Ports_Phase),
+         Two_Handling =>
+           (Divisor => Timing_Certificate.Two_Handling_Divisor,
+            Phase => Timing_Certificate.Two_Handling_Phase),
+         Three_Watching =>
+           (Divisor => Timing_Certificate.Three_Watching_Divisor,
+            Phase => Timing_Certificate.Three_Watching_Phase)),
       Cycle => 2,
       Period => Timing_Certificate.Processor_2_T,
       Offset => 0,
       Deadline => Timing_Certificate.Processor_2_D,
-      Task_Priority => System.Default_Priority + 2,
+      Task_Priority => Timing_Certificate.Processor_2_Priority,
       Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Processor_2_Priority,
+      "processor_2 " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Processor_2_T,
+      "processor_2 " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Processor_2_D,
+      "processor_2 " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "processor_2 " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Two_Ports).Divisor
+      = Timing_Certificate.Two_Ports_Divisor
+      and then Processor.Given_Table (Two_Ports).Phase
+        = Timing_Certificate.Two_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Two_Handling).Divisor
+      = Timing_Certificate.Two_Handling_Divisor
+      and then Processor.Given_Table (Two_Handling).Phase
+        = Timing_Certificate.Two_Handling_Phase);
+   pragma Assert
+     (Processor.Given_Table (Three_Watching).Divisor
+      = Timing_Certificate.Three_Watching_Divisor
+      and then Processor.Given_Table (Three_Watching).Phase
+        = Timing_Certificate.Three_Watching_Phase);
 end Three_Components.Processor_2;

@@ -16,6 +16,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -25,16 +26,21 @@ is
          0);
       case Item is
          when Three_Ports =>
-            Three.Run_Ports;
+            Three.Run_Ports (Executed);
          when Three_Handling =>
-            Three.Run_Handling;
+            Three.Run_Handling (Executed);
          when Two_Watching =>
-            Two.Run_Watching;
+            Two.Run_Watching (Executed);
          when Two_Work =>
-            Two.Run_Work;
+            Two.Run_Work (Executed);
          when Three_Work =>
-            Three.Run_Work;
+            Three.Run_Work (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Processor_3_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

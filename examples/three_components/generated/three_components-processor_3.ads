@@ -30,18 +30,68 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Three_Ports => (Divisor => 1, Phase => 0),
-         Three_Handling => (Divisor => 1, Phase => 0),
-         Two_Watching => (Divisor => 2, Phase => 0),
-         Two_Work => (Divisor => 2, Phase => 0),
-         Three_Work => (Divisor => 2, Phase => 0)),
+        (Three_Ports =>
+           (Divisor => Timing_Certificate.Three_Ports_Divisor,
+            Phase => Timing_Certificate.Three_Ports_Phase),
+         Three_Handling =>
+           (Divisor => Timing_Certificate.Three_Handling_Divisor,
+            Phase => Timing_Certificate.Three_Handling_Phase),
+         Two_Watching =>
+           (Divisor => Timing_Certificate.Two_Watching_Divisor,
+            Phase => Timing_Certificate.Two_Watching_Phase),
+         Two_Work =>
+           (Divisor => Timing_Certificate.Two_Work_Divisor,
+            Phase => Timing_Certificate.Two_Work_Phase),
+         Three_Work =>
+           (Divisor => Timing_Certificate.Three_Work_Divisor,
+            Phase => Timing_Certificate.Three_Work_Phase)),
       Cycle => 2,
       Period => Timing_Certificate.Processor_3_T,
       Offset => 0,
       Deadline => Timing_Certificate.Processor_3_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Processor_3_Priority,
       Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Processor_3_Priority,
+      "processor_3 " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Processor_3_T,
+      "processor_3 " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Processor_3_D,
+      "processor_3 " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "processor_3 " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Three_Ports).Divisor
+      = Timing_Certificate.Three_Ports_Divisor
+      and then Processor.Given_Table (Three_Ports).Phase
+        = Timing_Certificate.Three_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Three_Handling).Divisor
+      = Timing_Certificate.Three_Handling_Divisor
+      and then Processor.Given_Table (Three_Handling).Phase
+        = Timing_Certificate.Three_Handling_Phase);
+   pragma Assert
+     (Processor.Given_Table (Two_Watching).Divisor
+      = Timing_Certificate.Two_Watching_Divisor
+      and then Processor.Given_Table (Two_Watching).Phase
+        = Timing_Certificate.Two_Watching_Phase);
+   pragma Assert
+     (Processor.Given_Table (Two_Work).Divisor
+      = Timing_Certificate.Two_Work_Divisor
+      and then Processor.Given_Table (Two_Work).Phase
+        = Timing_Certificate.Two_Work_Phase);
+   pragma Assert
+     (Processor.Given_Table (Three_Work).Divisor
+      = Timing_Certificate.Three_Work_Divisor
+      and then Processor.Given_Table (Three_Work).Phase
+        = Timing_Certificate.Three_Work_Phase);
 end Three_Components.Processor_3;

@@ -3,10 +3,13 @@
 --  model's elements; trace.json says where they stand.
 
 with Three_Components.Station;
+with Three_Components.Elements;
 
 package Three_Components.Three
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Token_In (Item : Three_Components.Token);
    --  [three.token_in.mailbox] by its senders; never blocks.
 
@@ -14,15 +17,19 @@ is
    --  [three.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Watching;
+   procedure Run_Watching (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Three_Watching_Row;
    --  [three.Watching] one execution, by its processor alone.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Three_Ports_Row;
    --  [three.ports] one execution, by its processor alone.
 
-   procedure Run_Handling;
+   procedure Run_Handling (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Three_Handling_Row;
    --  [three.Handling] one execution, by its processor alone.
 
-   procedure Run_Work;
+   procedure Run_Work (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Three_Work_Row;
    --  [three.work] one execution, by its processor alone.
 end Three_Components.Three;

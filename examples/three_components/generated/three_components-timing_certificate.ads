@@ -2,16 +2,22 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Three_Components.Timing_Certificate
 with SPARK_Mode, Pure
 is
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "053c9f234b0c87db4f385d0178e613c9ddbdcb58979d36fe5f609422ffbbeca5";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Processor_1_R : constant := 695_000;
@@ -23,28 +29,90 @@ is
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
 
-   --  [processor_1] priority 3, released every T. B: processor_3 may be
-   --  inside one.token_in.mailbox. C: what every release executes; C_2:
-   --  rows of every 2th release.
+   --  [processor_1] released every T. B: processor_3 may be inside
+   --  one.token_in.mailbox. C: what every release executes; C_2: rows of
+   --  every 2th release.
+   Processor_1_Priority : constant := System.Default_Priority + 3;
    One_Ports_Budget : constant := 200_000;
    One_Starting_Budget : constant := 200_000;
    One_Watching_Budget : constant := 200_000;
    Processor_1_T : constant := 10_000_000;
    Processor_1_D : constant := 10_000_000;
+   One_Ports_Divisor : constant := 1;
+   One_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (One_Ports_Divisor /= 1,
+      "one.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((One_Ports_Phase + 1) > One_Ports_Divisor,
+      "one.ports " & "has a phase beyond its divisor");
+
+   One_Starting_Divisor : constant := 2;
+   One_Starting_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (One_Starting_Divisor /= 2,
+      "one.Starting " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((One_Starting_Phase + 1) > One_Starting_Divisor,
+      "one.Starting " & "has a phase beyond its divisor");
+
+   One_Watching_Divisor : constant := 2;
+   One_Watching_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (One_Watching_Divisor /= 2,
+      "one.Watching " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((One_Watching_Phase + 1) > One_Watching_Divisor,
+      "one.Watching " & "has a phase beyond its divisor");
+
    Processor_1_J : constant := 0;
    Processor_1_A : constant := Processor_1_J + (Processor_1_T - 1);
    Processor_1_C : constant := One_Ports_Budget + 2 * Board_Context_Switch;
    Processor_1_C_2 : constant := One_Starting_Budget + One_Watching_Budget;
    Processor_1_B : constant := Board_Critical_Section;
 
-   --  [processor_2] priority 2, released every T. B: processor_3 may be
-   --  inside one.token_in.mailbox. C: what every release executes; C_2:
-   --  rows of every 2th release.
+   --  [processor_2] released every T. B: processor_3 may be inside
+   --  one.token_in.mailbox. C: what every release executes; C_2: rows of
+   --  every 2th release.
+   Processor_2_Priority : constant := System.Default_Priority + 2;
    Two_Ports_Budget : constant := 200_000;
    Two_Handling_Budget : constant := 200_000;
    Three_Watching_Budget : constant := 200_000;
    Processor_2_T : constant := 10_000_000;
    Processor_2_D : constant := 10_000_000;
+   Two_Ports_Divisor : constant := 1;
+   Two_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Two_Ports_Divisor /= 1,
+      "two.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Two_Ports_Phase + 1) > Two_Ports_Divisor,
+      "two.ports " & "has a phase beyond its divisor");
+
+   Two_Handling_Divisor : constant := 1;
+   Two_Handling_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Two_Handling_Divisor /= 1,
+      "two.Handling " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Two_Handling_Phase + 1) > Two_Handling_Divisor,
+      "two.Handling " & "has a phase beyond its divisor");
+
+   Three_Watching_Divisor : constant := 2;
+   Three_Watching_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Three_Watching_Divisor /= 2,
+      "three.Watching " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Three_Watching_Phase + 1) > Three_Watching_Divisor,
+      "three.Watching " & "has a phase beyond its divisor");
+
    Processor_2_J : constant := 0;
    Processor_2_A : constant := Processor_2_J + (Processor_2_T - 1);
    Processor_2_C : constant :=
@@ -52,9 +120,9 @@ is
    Processor_2_C_2 : constant := Three_Watching_Budget;
    Processor_2_B : constant := Board_Critical_Section;
 
-   --  [processor_3] priority 1, released every T. B: main may be inside
-   --  health. C: what every release executes; C_2: rows of every 2th
-   --  release.
+   --  [processor_3] released every T. B: main may be inside health. C: what
+   --  every release executes; C_2: rows of every 2th release.
+   Processor_3_Priority : constant := System.Default_Priority + 1;
    Three_Ports_Budget : constant := 200_000;
    Three_Handling_Budget : constant := 200_000;
    Two_Watching_Budget : constant := 200_000;
@@ -62,6 +130,56 @@ is
    Three_Work_Budget : constant := 200_000;
    Processor_3_T : constant := 10_000_000;
    Processor_3_D : constant := 10_000_000;
+   Three_Ports_Divisor : constant := 1;
+   Three_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Three_Ports_Divisor /= 1,
+      "three.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Three_Ports_Phase + 1) > Three_Ports_Divisor,
+      "three.ports " & "has a phase beyond its divisor");
+
+   Three_Handling_Divisor : constant := 1;
+   Three_Handling_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Three_Handling_Divisor /= 1,
+      "three.Handling " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Three_Handling_Phase + 1) > Three_Handling_Divisor,
+      "three.Handling " & "has a phase beyond its divisor");
+
+   Two_Watching_Divisor : constant := 2;
+   Two_Watching_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Two_Watching_Divisor /= 2,
+      "two.Watching " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Two_Watching_Phase + 1) > Two_Watching_Divisor,
+      "two.Watching " & "has a phase beyond its divisor");
+
+   Two_Work_Divisor : constant := 2;
+   Two_Work_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Two_Work_Divisor /= 2,
+      "two.work " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Two_Work_Phase + 1) > Two_Work_Divisor,
+      "two.work " & "has a phase beyond its divisor");
+
+   Three_Work_Divisor : constant := 2;
+   Three_Work_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Three_Work_Divisor /= 2,
+      "three.work " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Three_Work_Phase + 1) > Three_Work_Divisor,
+      "three.work " & "has a phase beyond its divisor");
+
    Processor_3_J : constant := 0;
    Processor_3_A : constant := Processor_3_J + (Processor_3_T - 1);
    Processor_3_C : constant :=
@@ -70,8 +188,9 @@ is
      Two_Watching_Budget + Two_Work_Budget + Three_Work_Budget;
    Processor_3_B : constant := Board_Critical_Section;
 
-   --  [board.supervisor] priority 4, released every T. B: processor_1 may
-   --  be inside one.Starting.queue.
+   --  [board.supervisor] released every T. B: processor_1 may be inside
+   --  one.Starting.queue.
+   Board_Supervisor_Priority : constant := System.Default_Priority + 4;
    Board_Supervisor_Budget : constant := 50_000;
    Board_Supervisor_T : constant := 10_000_000;
    Board_Supervisor_D : constant := 10_000_000;
@@ -81,6 +200,16 @@ is
    Board_Supervisor_C : constant :=
      Board_Supervisor_Budget + 2 * Board_Context_Switch;
    Board_Supervisor_B : constant := Board_Critical_Section;
+
+   pragma Compile_Time_Error
+     ((Processor_1_Priority + 1) > Board_Supervisor_Priority,
+      "board.supervisor " & "must have a higher priority than processor_1");
+   pragma Compile_Time_Error
+     ((Processor_2_Priority + 1) > Processor_1_Priority,
+      "processor_1 " & "must have a higher priority than processor_2");
+   pragma Compile_Time_Error
+     ((Processor_3_Priority + 1) > Processor_2_Priority,
+      "processor_2 " & "must have a higher priority than processor_3");
 
    --  [processor_1] what can delay it: jobs of the same or higher priority
    Processor_1_W : constant := Processor_1_R - Processor_1_J;
@@ -97,6 +226,9 @@ is
    pragma Compile_Time_Error
      (Processor_1_Needs > Processor_1_W,
       "processor_1 " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Processor_1_W > Processor_1_Needs,
+      "processor_1 " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Processor_1_J + Processor_1_W) > Processor_1_T,
       "processor_1 " & "can be released again before it completes");
@@ -124,6 +256,9 @@ is
    pragma Compile_Time_Error
      (Processor_2_Needs > Processor_2_W,
       "processor_2 " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Processor_2_W > Processor_2_Needs,
+      "processor_2 " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Processor_2_J + Processor_2_W) > Processor_2_T,
       "processor_2 " & "can be released again before it completes");
@@ -155,6 +290,9 @@ is
      (Processor_3_Needs > Processor_3_W,
       "processor_3 " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Processor_3_W > Processor_3_Needs,
+      "processor_3 " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Processor_3_J + Processor_3_W) > Processor_3_T,
       "processor_3 " & "can be released again before it completes");
    pragma Compile_Time_Error
@@ -175,6 +313,9 @@ is
    pragma Compile_Time_Error
      (Board_Supervisor_Needs > Board_Supervisor_W,
       "board.supervisor " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Board_Supervisor_W > Board_Supervisor_Needs,
+      "board.supervisor " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Board_Supervisor_J + Board_Supervisor_W) > Board_Supervisor_T,
       "board.supervisor " & "can be released again before it completes");

@@ -8,7 +8,6 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
-with Three_Components.Elements;
 with Three_Components.Health_Counts;
 with Three_Components.Station.Flows;
 with Three_Components.Station.Handling;
@@ -146,7 +145,7 @@ is
       Three.Put_Token_In (Item);
    end Send_Token_Out;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Token_In_Item : Three_Components.Token;
@@ -178,6 +177,7 @@ is
                Ravenchart.Health.Fault_Kind'Pos
                  (Ravenchart.Health.Stale_Input));
       end case;
+      Executed := Executed + Elements.Two_Ports_Row;
    end Run_Ports;
 
    procedure Step_Handling (Ins : Station.Handling.Inputs) is
@@ -217,12 +217,13 @@ is
       end if;
    end Step_Handling;
 
-   procedure Run_Handling is
+   procedure Run_Handling (Executed : in out Ravenchart.Element_Id) is
       Ins : Station.Handling.Inputs;
    begin
       Held_Board.Read (Ins.Held);
       Step_Handling (Ins);
       Handling_Board.Write (Handling_Region.Leaf);
+      Executed := Executed + Elements.Two_Handling_Row;
    end Run_Handling;
 
    procedure Step_Watching is
@@ -258,14 +259,15 @@ is
       end if;
    end Step_Watching;
 
-   procedure Run_Watching is
+   procedure Run_Watching (Executed : in out Ravenchart.Element_Id) is
    begin
       Station.Watching.Tick (Watching_Region);
       Step_Watching;
       Watching_Board.Write (Watching_Region.Leaf);
+      Executed := Executed + Elements.Two_Watching_Row;
    end Run_Watching;
 
-   procedure Run_Work is
+   procedure Run_Work (Executed : in out Ravenchart.Element_Id) is
       Handling_Now : Station.Handling_States.Leaf;
       use type Station.Handling_States.Leaf;
       Token_In_Value : Station.Token_In_View;
@@ -283,5 +285,6 @@ is
             Offer (Station.Worked);
          end if;
       end if;
+      Executed := Executed + Elements.Two_Work_Row;
    end Run_Work;
 end Three_Components.Two;

@@ -3,25 +3,32 @@
 --  model's elements; trace.json says where they stand.
 
 with Three_Components.Station;
+with Three_Components.Elements;
 
 package Three_Components.Two
 with SPARK_Mode
 is
+   use type Ravenchart.Element_Id;
+
    procedure Put_Token_In (Item : Three_Components.Token);
    --  [two.token_in.mailbox] by its senders; never blocks.
 
    procedure Offer (Item : Station.Event);
    --  [two.events] offer Item to every region that names it; never blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Two_Ports_Row;
    --  [two.ports] one execution, by its processor alone.
 
-   procedure Run_Handling;
+   procedure Run_Handling (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Two_Handling_Row;
    --  [two.Handling] one execution, by its processor alone.
 
-   procedure Run_Watching;
+   procedure Run_Watching (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Two_Watching_Row;
    --  [two.Watching] one execution, by its processor alone.
 
-   procedure Run_Work;
+   procedure Run_Work (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Two_Work_Row;
    --  [two.work] one execution, by its processor alone.
 end Three_Components.Two;

@@ -6,6 +6,7 @@ with Ada.Real_Time;
 with Ravenchart.Hosts;
 with System;
 with Three_Components.Reports;
+with Three_Components.Timing_Certificate;
 
 procedure Three_Components_Main
 with SPARK_Mode, Priority => System.Priority'First
@@ -17,6 +18,8 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model
+     (Three_Components.Timing_Certificate.Model_Digest);
    loop
       Three_Components.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;

@@ -21,6 +21,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -30,16 +31,21 @@ is
          0);
       case Item is
          when Link_Watch_Drive =>
-            Link.Watch.Run_Watch;
+            Link.Watch.Run_Watch (Executed);
          when Servo_Ports =>
-            Servo.Run_Ports;
+            Servo.Run_Ports (Executed);
          when Servo_Drive =>
-            Servo.Run_Drive;
+            Servo.Run_Drive (Executed);
          when Servo_Control =>
-            Servo.Run_Control;
+            Servo.Run_Control (Executed);
          when Servo_Tell =>
-            Servo.Run_Tell;
+            Servo.Run_Tell (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Control_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

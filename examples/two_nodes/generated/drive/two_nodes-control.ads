@@ -35,18 +35,68 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Link_Watch_Drive => (Divisor => 2, Phase => 0),
-         Servo_Ports => (Divisor => 1, Phase => 0),
-         Servo_Drive => (Divisor => 1, Phase => 0),
-         Servo_Control => (Divisor => 1, Phase => 0),
-         Servo_Tell => (Divisor => 2, Phase => 0)),
+        (Link_Watch_Drive =>
+           (Divisor => Timing_Certificate.Link_Watch_Drive_Divisor,
+            Phase => Timing_Certificate.Link_Watch_Drive_Phase),
+         Servo_Ports =>
+           (Divisor => Timing_Certificate.Servo_Ports_Divisor,
+            Phase => Timing_Certificate.Servo_Ports_Phase),
+         Servo_Drive =>
+           (Divisor => Timing_Certificate.Servo_Drive_Divisor,
+            Phase => Timing_Certificate.Servo_Drive_Phase),
+         Servo_Control =>
+           (Divisor => Timing_Certificate.Servo_Control_Divisor,
+            Phase => Timing_Certificate.Servo_Control_Phase),
+         Servo_Tell =>
+           (Divisor => Timing_Certificate.Servo_Tell_Divisor,
+            Phase => Timing_Certificate.Servo_Tell_Phase)),
       Cycle => 2,
       Period => Timing_Certificate.Control_T,
       Offset => 0,
       Deadline => Timing_Certificate.Control_D,
-      Task_Priority => System.Default_Priority + 2,
+      Task_Priority => Timing_Certificate.Control_Priority,
       Ceiling => System.Default_Priority + 2,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Control_Priority,
+      "control " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Control_T,
+      "control " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Control_D,
+      "control " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "control " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Link_Watch_Drive).Divisor
+      = Timing_Certificate.Link_Watch_Drive_Divisor
+      and then Processor.Given_Table (Link_Watch_Drive).Phase
+        = Timing_Certificate.Link_Watch_Drive_Phase);
+   pragma Assert
+     (Processor.Given_Table (Servo_Ports).Divisor
+      = Timing_Certificate.Servo_Ports_Divisor
+      and then Processor.Given_Table (Servo_Ports).Phase
+        = Timing_Certificate.Servo_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Servo_Drive).Divisor
+      = Timing_Certificate.Servo_Drive_Divisor
+      and then Processor.Given_Table (Servo_Drive).Phase
+        = Timing_Certificate.Servo_Drive_Phase);
+   pragma Assert
+     (Processor.Given_Table (Servo_Control).Divisor
+      = Timing_Certificate.Servo_Control_Divisor
+      and then Processor.Given_Table (Servo_Control).Phase
+        = Timing_Certificate.Servo_Control_Phase);
+   pragma Assert
+     (Processor.Given_Table (Servo_Tell).Divisor
+      = Timing_Certificate.Servo_Tell_Divisor
+      and then Processor.Given_Table (Servo_Tell).Phase
+        = Timing_Certificate.Servo_Tell_Phase);
 end Two_Nodes.Control;

@@ -3,9 +3,9 @@
 --  model's elements; trace.json says where they stand.
 
 with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Layouts;
 with Ravenchart.Traces;
 with Two_Nodes.Codecs;
-with Two_Nodes.Elements;
 with Two_Nodes.Servo;
 with Two_Nodes.Trace;
 
@@ -26,13 +26,14 @@ is
       Controller.Wait_Frame (Frame, Unused_Stamp);
    end Wait;
 
-   procedure Run_Receive is
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Identifier;
       use type Ravenchart.Can.Frame_Format;
       Valid : Boolean;
       Supervisor_Order_Item : Two_Nodes.Servo_Order;
    begin
-      if Ravenchart.Can.Any_Frames.Id (Frame) = 1
+      if Ravenchart.Can.Any_Frames.Id (Frame)
+         = Timing_Certificate.Link_Supervisor_Order_Id
          and then Ravenchart.Can.Any_Frames.Format (Frame)
            = Ravenchart.Can.Standard
       then
@@ -44,8 +45,12 @@ is
             and then Ravenchart.Can.Any_Frames.Carries
                 (Frame,
                  Ravenchart.Can.Any_Frames.Classic,
-                 3)
+                 Timing_Certificate.Link_Supervisor_Order_Length)
          then
+            pragma Assert
+              (Ravenchart.Can.Layouts.Is_Framed
+                 (Frame,
+                  Codecs.Frame_Supervisor_Order));
             Trace.Buffer.Note
               (Ravenchart.Traces.Arrived,
                Elements.Supervisor_Order_Message,
@@ -53,5 +58,6 @@ is
             Servo.Put_Order (Supervisor_Order_Item);
          end if;
       end if;
+      Executed := Executed + Elements.Link_Receive_Drive_Row;
    end Run_Receive;
 end Two_Nodes.Link.Receiver;

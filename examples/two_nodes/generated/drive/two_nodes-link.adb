@@ -2,10 +2,8 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
-with Ravenchart.Can.Any_Frames;
 with Ravenchart.Health;
 with Ravenchart.Traces;
-with Two_Nodes.Codecs;
 with Two_Nodes.Elements;
 with Two_Nodes.Health_Counts;
 with Two_Nodes.Trace;
@@ -18,18 +16,27 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   function Frame_Of_Servo_Report
+     (Item : Two_Nodes.Servo_Report)
+     return Ravenchart.Can.Any_Frames.Any_Frame is
+   begin
+      return
+        Ravenchart.Can.Any_Frames.Whole_Frame
+          (Id => Timing_Certificate.Link_Servo_Report_Id,
+           Format => Ravenchart.Can.Standard,
+           Length => Timing_Certificate.Link_Servo_Report_Length,
+           Payload => Codecs.Type_Servo_Report.Pack (Item));
+   end Frame_Of_Servo_Report;
+
    procedure Send_Servo_Report (Item : Two_Nodes.Servo_Report) is
       use type Ravenchart.Can.Send_Status;
+      Frame : constant Ravenchart.Can.Any_Frames.Any_Frame :=
+        Frame_Of_Servo_Report (Item);
       Status : Ravenchart.Can.Send_Status;
    begin
-      Controller.Send
-        (Ravenchart.Can.Any_Frames.To_Any
-           (Ravenchart.Can.Data_Frame
-              (Id => 2,
-               Format => Ravenchart.Can.Standard,
-               Length => 3,
-               Payload => Codecs.Type_Servo_Report.Pack (Item))),
-         Status);
+      pragma Assert
+        (Ravenchart.Can.Layouts.Is_Framed (Frame, Codecs.Frame_Servo_Report));
+      Controller.Send (Frame, Status);
       Trace.Buffer.Note
         (Ravenchart.Traces.Sent,
          Elements.Servo_Report_Message,

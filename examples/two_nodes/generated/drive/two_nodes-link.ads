@@ -2,9 +2,14 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Controllers;
+with Ravenchart.Can.Layouts;
 with System;
+with Two_Nodes.Codecs;
+with Two_Nodes.Timing_Certificate;
 
 package Two_Nodes.Link
 with SPARK_Mode
@@ -19,23 +24,59 @@ is
       Format : Ravenchart.Can.Frame_Format)
      return Boolean is
      (case Format is
-        when Ravenchart.Can.Standard => Id in 1,
+        when Ravenchart.Can.Standard =>
+           Id in Timing_Certificate.Link_Supervisor_Order_Id,
         when Ravenchart.Can.Extended => False);
    --  [link] the identifiers that this node receives
 
    package Controller is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 5,
       Receive_Ceiling => System.Default_Priority + 5,
-      Driver_Priority => System.Default_Priority + 5,
+      Driver_Priority =>
+        Timing_Certificate.Link_Driver_Rx_Supervisor_Order_Priority,
       Transmit_Depth => 8,
       Receive_Depth => 8,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
       Setting =>
-        (Bit_Rate => 500_000,
+        (Bit_Rate => Timing_Certificate.Link_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
          Recovery => Ravenchart.Can.On_Request));
+
+   use type Ravenchart.Can.Bits_Per_Second;
+
+   pragma Compile_Time_Error
+     (Controller.Given_Priority
+      /= Timing_Certificate.Link_Driver_Rx_Supervisor_Order_Priority,
+      "link " & "has another priority of its driver than its certificate");
+   pragma Assert
+     (Controller.Given_Setting.Bit_Rate = Timing_Certificate.Link_Bit_Rate
+      and then Controller.Given_Setting.Data_Rate = 0);
+
+   --  [link] all that is received passes, and its frame holds its signals
+   pragma Assert
+     (Accepts
+        (Codecs.Frame_Supervisor_Order.Id,
+         Codecs.Frame_Supervisor_Order.Format)
+      and then Codecs.Type_Servo_Order.Fits_In
+          (Codecs.Frame_Supervisor_Order));
+
+   use type Interfaces.Unsigned_64;
+
+   function Frame_Of_Servo_Report
+     (Item : Two_Nodes.Servo_Report)
+     return Ravenchart.Can.Any_Frames.Any_Frame
+   with
+     Post =>
+       Ravenchart.Can.Layouts.Is_Framed
+         (Frame_Of_Servo_Report'Result,
+          Codecs.Frame_Servo_Report)
+       and then Ravenchart.Can.Any_Frames.Payload
+           (Frame_Of_Servo_Report'Result)
+         = Codecs.Type_Servo_Report.Pack (Item);
+   --  [servo_report] its frame by the layout table; none of its bits is cut
+   --  off.
 
    procedure Send_Servo_Report (Item : Two_Nodes.Servo_Report);
    --  [servo_report] hand one frame to the controller; never blocks.

@@ -30,9 +30,22 @@ is
       Minimum_Separation => Timing_Certificate.Reception_Drive_T,
       Wait => Link.Receiver.Wait,
       Deadline => Timing_Certificate.Reception_Drive_D,
-      Task_Priority => System.Default_Priority + 3,
+      Task_Priority => Timing_Certificate.Reception_Drive_Priority,
       Ceiling => System.Default_Priority + 3,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority
+      /= Timing_Certificate.Reception_Drive_Priority,
+      "reception_drive " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Separation /= Timing_Certificate.Reception_Drive_T,
+      "reception_drive " & "has another separation than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Reception_Drive_D,
+      "reception_drive " & "has another deadline than its certificate");
 end Two_Nodes.Reception_Drive;

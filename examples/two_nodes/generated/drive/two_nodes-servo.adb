@@ -8,7 +8,6 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
-with Two_Nodes.Elements;
 with Two_Nodes.Health_Counts;
 with Two_Nodes.Linear_Servo.Drive;
 with Two_Nodes.Linear_Servo.Flows;
@@ -145,7 +144,7 @@ is
       Link.Send_Servo_Report (Item);
    end Send_Report;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Order_Item : Two_Nodes.Servo_Order;
@@ -178,6 +177,7 @@ is
                  (Ravenchart.Health.Stale_Input));
             Offer (Linear_Servo.Nobody_Tells);
       end case;
+      Executed := Executed + Elements.Servo_Ports_Row;
    end Run_Ports;
 
    procedure Step_Drive (Ins : Linear_Servo.Drive.Inputs) is
@@ -213,15 +213,16 @@ is
       end if;
    end Step_Drive;
 
-   procedure Run_Drive is
+   procedure Run_Drive (Executed : in out Ravenchart.Element_Id) is
       Ins : Linear_Servo.Drive.Inputs;
    begin
       Order_Board.Read (Ins.Order);
       Step_Drive (Ins);
       Drive_Board.Write (Drive_Region.Leaf);
+      Executed := Executed + Elements.Servo_Drive_Row;
    end Run_Drive;
 
-   procedure Run_Control is
+   procedure Run_Control (Executed : in out Ravenchart.Element_Id) is
       Order_Value : Linear_Servo.Order_View;
       Drive_Value : Linear_Servo.Drive_States.Leaf;
    begin
@@ -232,9 +233,10 @@ is
          Drive => Drive_Value,
          Position => Position_Own);
       Position_Board.Write (Position_Own);
+      Executed := Executed + Elements.Servo_Control_Row;
    end Run_Control;
 
-   procedure Run_Tell is
+   procedure Run_Tell (Executed : in out Ravenchart.Element_Id) is
       Position_Value : Two_Nodes.Position;
       Drive_Value : Linear_Servo.Drive_States.Leaf;
       Report_Value : Two_Nodes.Servo_Report;
@@ -250,5 +252,6 @@ is
       if Send_Report_Asked then
          Send_Report (Report_Value);
       end if;
+      Executed := Executed + Elements.Servo_Tell_Row;
    end Run_Tell;
 end Two_Nodes.Servo;

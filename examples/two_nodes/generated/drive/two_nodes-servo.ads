@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Two_Nodes.Linear_Servo;
+with Two_Nodes.Elements;
 
 package Two_Nodes.Servo
 with SPARK_Mode
@@ -12,6 +13,8 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   use type Ravenchart.Element_Id;
+
    procedure Put_Order (Item : Two_Nodes.Servo_Order);
    --  [servo.order.mailbox] by its senders; never blocks.
 
@@ -19,15 +22,19 @@ is
    --  [servo.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Servo_Ports_Row;
    --  [servo.ports] one execution, by its processor alone.
 
-   procedure Run_Drive;
+   procedure Run_Drive (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Servo_Drive_Row;
    --  [servo.Drive] one execution, by its processor alone.
 
-   procedure Run_Control;
+   procedure Run_Control (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Servo_Control_Row;
    --  [servo.control] one execution, by its processor alone.
 
-   procedure Run_Tell;
+   procedure Run_Tell (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Servo_Tell_Row;
    --  [servo.tell] one execution, by its processor alone.
 end Two_Nodes.Servo;

@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Interfaces;
+with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Layouts;
 
 package Two_Nodes.Codecs
@@ -52,6 +53,12 @@ is
          Order => Ravenchart.Can.Layouts.Intel,
          Signed => False,
          Offset => 0);
+
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Wish)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Target));
 
       function Raw_Of_Wish
         (Word : Interfaces.Unsigned_64)
@@ -121,6 +128,12 @@ is
          Signed => False,
          Offset => 0);
 
+      function Fits_In
+        (Row : Ravenchart.Can.Layouts.Frame_Row)
+        return Boolean is
+        (Ravenchart.Can.Layouts.Holds (Row, Signal_Condition)
+         and then Ravenchart.Can.Layouts.Holds (Row, Signal_Position));
+
       function Raw_Of_Condition
         (Word : Interfaces.Unsigned_64)
         return Interfaces.Unsigned_8 is
@@ -176,4 +189,20 @@ is
       with Ghost;
       --  What is packed is what is unpacked.
    end Type_Servo_Report;
+
+   subtype Row_Of_Frame is Ravenchart.Can.Layouts.Frame_Row;
+
+   --  [supervisor_order] the frame that carries it
+   Frame_Supervisor_Order : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 1,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
+
+   --  [servo_report] the frame that carries it
+   Frame_Servo_Report : constant Row_Of_Frame :=
+     (Family => Ravenchart.Can.Any_Frames.Classic,
+      Id => 2,
+      Format => Ravenchart.Can.Standard,
+      Length => 3);
 end Two_Nodes.Codecs;

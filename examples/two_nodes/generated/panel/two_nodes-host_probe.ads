@@ -3,7 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Ravenchart.Host_Probes;
-with System;
+with Two_Nodes.Timing_Certificate;
 
 package Two_Nodes.Host_Probe
 with SPARK_Mode
@@ -15,7 +15,16 @@ is
 
    package Probe is new Ravenchart.Host_Probes
      (Name => "panel.probe",
-      Period => 1_000_000,
-      Probe_Priority => System.Default_Priority + 6,
+      Period => Timing_Certificate.Panel_Probe_T,
+      Probe_Priority => Timing_Certificate.Panel_Probe_Priority,
       Stack_Bytes => 16_384);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Probe.Given_Period /= Timing_Certificate.Panel_Probe_T,
+      "panel.probe " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Probe.Given_Priority /= Timing_Certificate.Panel_Probe_Priority,
+      "panel.probe " & "has another priority than its certificate");
 end Two_Nodes.Host_Probe;

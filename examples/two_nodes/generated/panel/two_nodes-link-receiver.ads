@@ -2,6 +2,8 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Two_Nodes.Elements;
+
 package Two_Nodes.Link.Receiver
 with SPARK_Mode
 is
@@ -13,6 +15,11 @@ is
    procedure Wait;
    --  [link.receive.release] suspend until a frame is there.
 
-   procedure Run_Receive;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Receive (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Link_Receive_Panel_Row;
    --  [link.receive] decode it and hand it to its receivers.
 end Two_Nodes.Link.Receiver;

@@ -5,7 +5,6 @@
 with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;
 with Ravenchart.Traces;
-with Two_Nodes.Elements;
 with Two_Nodes.Supervisor;
 with Two_Nodes.Trace;
 with Two_Nodes.Traveller;
@@ -24,7 +23,7 @@ is
    --  looks until recovery from bus-off is requested
    Left : Ravenchart.Can.Fault_Notices.Look_Count := 5;
 
-   procedure Run_Watch is
+   procedure Run_Watch (Executed : in out Ravenchart.Element_Id) is
       use type Ravenchart.Can.Controller_State;
       Now : Ravenchart.Can.Fault_Notices.Fault_Log;
       Found : Ravenchart.Can.Fault_Notices.Notices;
@@ -66,5 +65,6 @@ is
       if Is_Due then
          Controller.Request_Recovery;
       end if;
+      Executed := Executed + Elements.Link_Watch_Panel_Row;
    end Run_Watch;
 end Two_Nodes.Link.Watch;

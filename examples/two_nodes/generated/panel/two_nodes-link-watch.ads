@@ -2,6 +2,8 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Two_Nodes.Elements;
+
 package Two_Nodes.Link.Watch
 with SPARK_Mode
 is
@@ -10,7 +12,12 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
-   procedure Run_Watch;
+   use type Ravenchart.Element_Id;
+
+   procedure Run_Watch (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Link_Watch_Panel_Row;
    --  [link.watch] look at the controller, and raise the events of what has
    --  happened to it since the last look.
 end Two_Nodes.Link.Watch;

@@ -30,9 +30,22 @@ is
       Minimum_Separation => Timing_Certificate.Reception_Panel_T,
       Wait => Link.Receiver.Wait,
       Deadline => Timing_Certificate.Reception_Panel_D,
-      Task_Priority => System.Default_Priority + 4,
+      Task_Priority => Timing_Certificate.Reception_Panel_Priority,
       Ceiling => System.Default_Priority + 4,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority
+      /= Timing_Certificate.Reception_Panel_Priority,
+      "reception_panel " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Separation /= Timing_Certificate.Reception_Panel_T,
+      "reception_panel " & "has another separation than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Reception_Panel_D,
+      "reception_panel " & "has another deadline than its certificate");
 end Two_Nodes.Reception_Panel;

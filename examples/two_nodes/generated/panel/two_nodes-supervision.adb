@@ -21,6 +21,7 @@ is
    use type Ravenchart.Element_Id;
 
    procedure Execute (Item : Row) is
+      Executed : Ravenchart.Element_Id := 0;
    begin
       Trace.Buffer.Note
         (Ravenchart.Traces.Activity,
@@ -30,14 +31,19 @@ is
          0);
       case Item is
          when Link_Watch_Panel =>
-            Link.Watch.Run_Watch;
+            Link.Watch.Run_Watch (Executed);
          when Supervisor_Ports =>
-            Supervisor.Run_Ports;
+            Supervisor.Run_Ports (Executed);
          when Supervisor_Mission =>
-            Supervisor.Run_Mission;
+            Supervisor.Run_Mission (Executed);
          when Supervisor_Plan =>
-            Supervisor.Run_Plan;
+            Supervisor.Run_Plan (Executed);
       end case;
+      pragma Assert
+        (Executed
+         = (Elements.Supervision_Processor
+            + 1
+            + Ravenchart.Element_Id (Row'Pos (Item))));
    end Execute;
 
    procedure On_Deadline_Miss is

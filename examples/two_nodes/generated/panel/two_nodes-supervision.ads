@@ -34,17 +34,60 @@ is
       Activity_Id => Row,
       Table_Type => Row_Table,
       Table =>
-        (Link_Watch_Panel => (Divisor => 1, Phase => 0),
-         Supervisor_Ports => (Divisor => 1, Phase => 0),
-         Supervisor_Mission => (Divisor => 1, Phase => 0),
-         Supervisor_Plan => (Divisor => 1, Phase => 0)),
+        (Link_Watch_Panel =>
+           (Divisor => Timing_Certificate.Link_Watch_Panel_Divisor,
+            Phase => Timing_Certificate.Link_Watch_Panel_Phase),
+         Supervisor_Ports =>
+           (Divisor => Timing_Certificate.Supervisor_Ports_Divisor,
+            Phase => Timing_Certificate.Supervisor_Ports_Phase),
+         Supervisor_Mission =>
+           (Divisor => Timing_Certificate.Supervisor_Mission_Divisor,
+            Phase => Timing_Certificate.Supervisor_Mission_Phase),
+         Supervisor_Plan =>
+           (Divisor => Timing_Certificate.Supervisor_Plan_Divisor,
+            Phase => Timing_Certificate.Supervisor_Plan_Phase)),
       Cycle => 1,
       Period => Timing_Certificate.Supervision_T,
       Offset => 0,
       Deadline => Timing_Certificate.Supervision_D,
-      Task_Priority => System.Default_Priority + 1,
+      Task_Priority => Timing_Certificate.Supervision_Priority,
       Ceiling => System.Default_Priority + 1,
       Stack_Bytes => 32_768,
       Execute => Execute,
       On_Deadline_Miss => On_Deadline_Miss);
+
+   use type Ravenchart.Nanoseconds;
+
+   pragma Compile_Time_Error
+     (Processor.Given_Priority /= Timing_Certificate.Supervision_Priority,
+      "supervision " & "has another priority than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Period /= Timing_Certificate.Supervision_T,
+      "supervision " & "has another period than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Deadline /= Timing_Certificate.Supervision_D,
+      "supervision " & "has another deadline than its certificate");
+   pragma Compile_Time_Error
+     (Processor.Given_Offset /= 0,
+      "supervision " & "has another offset than its certificate");
+   pragma Assert
+     (Processor.Given_Table (Link_Watch_Panel).Divisor
+      = Timing_Certificate.Link_Watch_Panel_Divisor
+      and then Processor.Given_Table (Link_Watch_Panel).Phase
+        = Timing_Certificate.Link_Watch_Panel_Phase);
+   pragma Assert
+     (Processor.Given_Table (Supervisor_Ports).Divisor
+      = Timing_Certificate.Supervisor_Ports_Divisor
+      and then Processor.Given_Table (Supervisor_Ports).Phase
+        = Timing_Certificate.Supervisor_Ports_Phase);
+   pragma Assert
+     (Processor.Given_Table (Supervisor_Mission).Divisor
+      = Timing_Certificate.Supervisor_Mission_Divisor
+      and then Processor.Given_Table (Supervisor_Mission).Phase
+        = Timing_Certificate.Supervisor_Mission_Phase);
+   pragma Assert
+     (Processor.Given_Table (Supervisor_Plan).Divisor
+      = Timing_Certificate.Supervisor_Plan_Divisor
+      and then Processor.Given_Table (Supervisor_Plan).Phase
+        = Timing_Certificate.Supervisor_Plan_Phase);
 end Two_Nodes.Supervision;

@@ -8,7 +8,6 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
-with Two_Nodes.Elements;
 with Two_Nodes.Health_Counts;
 with Two_Nodes.Link;
 with Two_Nodes.Trace;
@@ -130,7 +129,7 @@ is
       Link.Send_Supervisor_Order (Item);
    end Send_Order;
 
-   procedure Run_Ports is
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id) is
       Status : Ravenchart.Queueing.Take_Status;
       use type Ravenchart.Queueing.Take_Status;
       Report_Item : Two_Nodes.Servo_Report;
@@ -162,6 +161,7 @@ is
                  (Ravenchart.Health.Stale_Input));
             Offer (Traveller.Servo_Lost);
       end case;
+      Executed := Executed + Elements.Supervisor_Ports_Row;
    end Run_Ports;
 
    procedure Step_Mission (Ins : Traveller.Mission.Inputs) is
@@ -197,16 +197,17 @@ is
       end if;
    end Step_Mission;
 
-   procedure Run_Mission is
+   procedure Run_Mission (Executed : in out Ravenchart.Element_Id) is
       Ins : Traveller.Mission.Inputs;
    begin
       Report_Board.Read (Ins.Report);
       Step_Mission (Ins);
       Mission_Board.Write (Mission_Region.Leaf);
       Goal_Board.Write (Mission_Region.Data.Goal);
+      Executed := Executed + Elements.Supervisor_Mission_Row;
    end Run_Mission;
 
-   procedure Run_Plan is
+   procedure Run_Plan (Executed : in out Ravenchart.Element_Id) is
       Goal_Value : Two_Nodes.Position;
       Report_Value : Traveller.Report_View;
       Mission_Value : Traveller.Mission_States.Leaf;
@@ -225,5 +226,6 @@ is
       if Send_Order_Asked then
          Send_Order (Order_Value);
       end if;
+      Executed := Executed + Elements.Supervisor_Plan_Row;
    end Run_Plan;
 end Two_Nodes.Supervisor;

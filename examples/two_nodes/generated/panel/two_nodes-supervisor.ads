@@ -3,6 +3,7 @@
 --  model's elements; trace.json says where they stand.
 
 with Two_Nodes.Traveller;
+with Two_Nodes.Elements;
 
 package Two_Nodes.Supervisor
 with SPARK_Mode
@@ -12,6 +13,8 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   use type Ravenchart.Element_Id;
+
    procedure Put_Report (Item : Two_Nodes.Servo_Report);
    --  [supervisor.report.mailbox] by its senders; never blocks.
 
@@ -19,12 +22,19 @@ is
    --  [supervisor.events] offer Item to every region that names it; never
    --  blocks.
 
-   procedure Run_Ports;
+   procedure Run_Ports (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Supervisor_Ports_Row;
    --  [supervisor.ports] one execution, by its processor alone.
 
-   procedure Run_Mission;
+   procedure Run_Mission (Executed : in out Ravenchart.Element_Id)
+   with
+     Pre => Executed = 0,
+     Post => Executed = Elements.Supervisor_Mission_Row;
    --  [supervisor.Mission] one execution, by its processor alone.
 
-   procedure Run_Plan;
+   procedure Run_Plan (Executed : in out Ravenchart.Element_Id)
+   with Pre => Executed = 0, Post => Executed = Elements.Supervisor_Plan_Row;
    --  [supervisor.plan] one execution, by its processor alone.
 end Two_Nodes.Supervisor;

@@ -2,6 +2,8 @@
 --  change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with System;
+
 package Two_Nodes.Timing_Certificate
 with SPARK_Mode, Pure
 is
@@ -10,13 +12,17 @@ is
    pragma Warnings (Off, "*explicit membership test *");
    pragma Warnings (Off, "*'Valid attribute *");
 
+   --  SHA-256 of the model: the program and its trace carry it.
+   Model_Digest : constant String :=
+     "5bd9b5c3c944095ae1b0842862edccafb569db99c3b854279714b252d6a9c630";
+
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
    --  context switches) or transmission, B blocking, R the claimed response
    --  from the event, W the time claimed from the start of a busy period. A
    --  is J + T - 1, so that (W + A) / T is the number of releases within W.
-   --  Needs is the demand that arises within W: where it is more, W is too
-   --  short.
+   --  Needs is the demand that arises within W, and equals it: where it is
+   --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
    Reception_Panel_R : constant := 245_000;
@@ -40,9 +46,10 @@ is
    Drive_Context_Switch : constant := 10_000;
    Drive_Critical_Section : constant := 5_000;
 
-   --  [reception_panel] priority 4, released by arrivals, no closer than T;
-   --  it may wait for T to be over as well. B: supervision may be inside
+   --  [reception_panel] released by arrivals, no closer than T; it may wait
+   --  for T to be over as well. B: supervision may be inside
    --  supervisor.report.mailbox.
+   Reception_Panel_Priority : constant := System.Default_Priority + 4;
    Link_Receive_Panel_Budget : constant := 40_000;
    Reception_Panel_T : constant := 1_000_000;
    Reception_Panel_D : constant := 1_000_000;
@@ -53,9 +60,10 @@ is
      Link_Receive_Panel_Budget + 4 * Panel_Context_Switch;
    Reception_Panel_B : constant := Panel_Critical_Section;
 
-   --  [reception_drive] priority 3, released by arrivals, no closer than T;
-   --  it may wait for T to be over as well. B: control may be inside
+   --  [reception_drive] released by arrivals, no closer than T; it may wait
+   --  for T to be over as well. B: control may be inside
    --  servo.order.mailbox.
+   Reception_Drive_Priority : constant := System.Default_Priority + 3;
    Link_Receive_Drive_Budget : constant := 40_000;
    Reception_Drive_T : constant := 1_000_000;
    Reception_Drive_D : constant := 1_000_000;
@@ -66,14 +74,55 @@ is
      Link_Receive_Drive_Budget + 4 * Drive_Context_Switch;
    Reception_Drive_B : constant := Drive_Critical_Section;
 
-   --  [supervision] priority 1, released every T. B: main may be inside
-   --  panel.health.
+   --  [supervision] released every T. B: main may be inside panel.health.
+   Supervision_Priority : constant := System.Default_Priority + 1;
    Link_Watch_Panel_Budget : constant := 50_000;
    Supervisor_Ports_Budget : constant := 100_000;
    Supervisor_Mission_Budget : constant := 200_000;
    Supervisor_Plan_Budget : constant := 150_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
+   Link_Watch_Panel_Divisor : constant := 1;
+   Link_Watch_Panel_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Link_Watch_Panel_Divisor /= 1,
+      "link.watch_panel " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Link_Watch_Panel_Phase + 1) > Link_Watch_Panel_Divisor,
+      "link.watch_panel " & "has a phase beyond its divisor");
+
+   Supervisor_Ports_Divisor : constant := 1;
+   Supervisor_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Supervisor_Ports_Divisor /= 1,
+      "supervisor.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Supervisor_Ports_Phase + 1) > Supervisor_Ports_Divisor,
+      "supervisor.ports " & "has a phase beyond its divisor");
+
+   Supervisor_Mission_Divisor : constant := 1;
+   Supervisor_Mission_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Supervisor_Mission_Divisor /= 1,
+      "supervisor.Mission "
+      & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Supervisor_Mission_Phase + 1) > Supervisor_Mission_Divisor,
+      "supervisor.Mission " & "has a phase beyond its divisor");
+
+   Supervisor_Plan_Divisor : constant := 1;
+   Supervisor_Plan_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Supervisor_Plan_Divisor /= 1,
+      "supervisor.plan " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Supervisor_Plan_Phase + 1) > Supervisor_Plan_Divisor,
+      "supervisor.plan " & "has a phase beyond its divisor");
+
    Supervision_J : constant := 0;
    Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
@@ -84,9 +133,9 @@ is
      + 2 * Panel_Context_Switch;
    Supervision_B : constant := Panel_Critical_Section;
 
-   --  [control] priority 2, released every T. B: main may be inside
-   --  drive.health. C: what every release executes; C_2: rows of every 2th
-   --  release.
+   --  [control] released every T. B: main may be inside drive.health. C:
+   --  what every release executes; C_2: rows of every 2th release.
+   Control_Priority : constant := System.Default_Priority + 2;
    Link_Watch_Drive_Budget : constant := 50_000;
    Servo_Ports_Budget : constant := 100_000;
    Servo_Drive_Budget : constant := 200_000;
@@ -94,6 +143,57 @@ is
    Servo_Tell_Budget : constant := 100_000;
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
+   Link_Watch_Drive_Divisor : constant := 2;
+   Link_Watch_Drive_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Link_Watch_Drive_Divisor /= 2,
+      "link.watch_drive "
+      & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Link_Watch_Drive_Phase + 1) > Link_Watch_Drive_Divisor,
+      "link.watch_drive " & "has a phase beyond its divisor");
+
+   Servo_Ports_Divisor : constant := 1;
+   Servo_Ports_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_Ports_Divisor /= 1,
+      "servo.ports " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_Ports_Phase + 1) > Servo_Ports_Divisor,
+      "servo.ports " & "has a phase beyond its divisor");
+
+   Servo_Drive_Divisor : constant := 1;
+   Servo_Drive_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_Drive_Divisor /= 1,
+      "servo.Drive " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_Drive_Phase + 1) > Servo_Drive_Divisor,
+      "servo.Drive " & "has a phase beyond its divisor");
+
+   Servo_Control_Divisor : constant := 1;
+   Servo_Control_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_Control_Divisor /= 1,
+      "servo.control " & "is in the sum C, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_Control_Phase + 1) > Servo_Control_Divisor,
+      "servo.control " & "has a phase beyond its divisor");
+
+   Servo_Tell_Divisor : constant := 2;
+   Servo_Tell_Phase : constant := 0;
+
+   pragma Compile_Time_Error
+     (Servo_Tell_Divisor /= 2,
+      "servo.tell " & "is in the sum C_2, which its divisor contradicts");
+   pragma Compile_Time_Error
+     ((Servo_Tell_Phase + 1) > Servo_Tell_Divisor,
+      "servo.tell " & "has a phase beyond its divisor");
+
    Control_J : constant := 0;
    Control_A : constant := Control_J + (Control_T - 1);
    Control_C : constant :=
@@ -104,9 +204,11 @@ is
    Control_C_2 : constant := Link_Watch_Drive_Budget + Servo_Tell_Budget;
    Control_B : constant := Drive_Critical_Section;
 
-   --  [link.driver_tx.supervisor_order] priority 5, the driver's work,
-   --  released by supervision, which is J late. B: supervision may be
-   --  inside panel.link.transmit.
+   --  [link.driver_tx.supervisor_order] the driver's work, released by
+   --  supervision, which is J late. B: supervision may be inside
+   --  panel.link.transmit.
+   Link_Driver_Tx_Supervisor_Order_Priority : constant :=
+     System.Default_Priority + 5;
    Link_Driver_Tx_Supervisor_Order_Budget : constant := 40_000;
    Link_Driver_Tx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Tx_Supervisor_Order_D : constant := 20_000_000;
@@ -118,9 +220,11 @@ is
      Link_Driver_Tx_Supervisor_Order_Budget + 2 * Panel_Context_Switch;
    Link_Driver_Tx_Supervisor_Order_B : constant := Panel_Critical_Section;
 
-   --  [link.driver_rx.supervisor_order] priority 5, the driver's work,
-   --  released by link.supervisor_order, which is J late. B: control may be
-   --  inside drive.link.transmit.
+   --  [link.driver_rx.supervisor_order] the driver's work, released by
+   --  link.supervisor_order, which is J late. B: control may be inside
+   --  drive.link.transmit.
+   Link_Driver_Rx_Supervisor_Order_Priority : constant :=
+     System.Default_Priority + 5;
    Link_Driver_Rx_Supervisor_Order_Budget : constant := 40_000;
    Link_Driver_Rx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Rx_Supervisor_Order_D : constant := 20_000_000;
@@ -132,9 +236,10 @@ is
      Link_Driver_Rx_Supervisor_Order_Budget + 2 * Drive_Context_Switch;
    Link_Driver_Rx_Supervisor_Order_B : constant := Drive_Critical_Section;
 
-   --  [link.driver_tx.servo_report] priority 5, the driver's work, released
-   --  by control, which is J late. B: control may be inside
-   --  drive.link.transmit.
+   --  [link.driver_tx.servo_report] the driver's work, released by control,
+   --  which is J late. B: control may be inside drive.link.transmit.
+   Link_Driver_Tx_Servo_Report_Priority : constant :=
+     System.Default_Priority + 5;
    Link_Driver_Tx_Servo_Report_Budget : constant := 40_000;
    Link_Driver_Tx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Tx_Servo_Report_D : constant := 20_000_000;
@@ -145,9 +250,11 @@ is
      Link_Driver_Tx_Servo_Report_Budget + 2 * Drive_Context_Switch;
    Link_Driver_Tx_Servo_Report_B : constant := Drive_Critical_Section;
 
-   --  [link.driver_rx.servo_report] priority 5, the driver's work, released
-   --  by link.servo_report, which is J late. B: supervision may be inside
+   --  [link.driver_rx.servo_report] the driver's work, released by
+   --  link.servo_report, which is J late. B: supervision may be inside
    --  panel.link.transmit.
+   Link_Driver_Rx_Servo_Report_Priority : constant :=
+     System.Default_Priority + 5;
    Link_Driver_Rx_Servo_Report_Budget : constant := 40_000;
    Link_Driver_Rx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Rx_Servo_Report_D : constant := 20_000_000;
@@ -158,8 +265,9 @@ is
      Link_Driver_Rx_Servo_Report_Budget + 2 * Panel_Context_Switch;
    Link_Driver_Rx_Servo_Report_B : constant := Panel_Critical_Section;
 
-   --  [panel.probe] priority 6, released every T. B: main may be inside
+   --  [panel.probe] released every T. B: main may be inside
    --  panel.probe.board.
+   Panel_Probe_Priority : constant := System.Default_Priority + 6;
    Panel_Probe_Budget : constant := 20_000;
    Panel_Probe_T : constant := 1_000_000;
    Panel_Probe_D : constant := 1_000_000;
@@ -169,8 +277,9 @@ is
      Panel_Probe_Budget + 2 * Panel_Context_Switch;
    Panel_Probe_B : constant := Panel_Critical_Section;
 
-   --  [drive.probe] priority 6, released every T. B: main may be inside
+   --  [drive.probe] released every T. B: main may be inside
    --  drive.probe.board.
+   Drive_Probe_Priority : constant := System.Default_Priority + 6;
    Drive_Probe_Budget : constant := 20_000;
    Drive_Probe_T : constant := 1_000_000;
    Drive_Probe_D : constant := 1_000_000;
@@ -180,6 +289,39 @@ is
      Drive_Probe_Budget + 2 * Drive_Context_Switch;
    Drive_Probe_B : constant := Drive_Critical_Section;
 
+   pragma Compile_Time_Error
+     ((Link_Driver_Tx_Supervisor_Order_Priority + 1) > Panel_Probe_Priority,
+      "panel.probe "
+      & "must have a higher priority than link.driver_tx.supervisor_order");
+   pragma Compile_Time_Error
+     (Link_Driver_Tx_Supervisor_Order_Priority
+      /= Link_Driver_Rx_Servo_Report_Priority,
+      "link.driver_tx.supervisor_order "
+      & "must have the priority of link.driver_rx.servo_report");
+   pragma Compile_Time_Error
+     ((Reception_Panel_Priority + 1) > Link_Driver_Rx_Servo_Report_Priority,
+      "link.driver_rx.servo_report "
+      & "must have a higher priority than reception_panel");
+   pragma Compile_Time_Error
+     ((Supervision_Priority + 1) > Reception_Panel_Priority,
+      "reception_panel " & "must have a higher priority than supervision");
+   pragma Compile_Time_Error
+     ((Link_Driver_Rx_Supervisor_Order_Priority + 1) > Drive_Probe_Priority,
+      "drive.probe "
+      & "must have a higher priority than link.driver_rx.supervisor_order");
+   pragma Compile_Time_Error
+     (Link_Driver_Rx_Supervisor_Order_Priority
+      /= Link_Driver_Tx_Servo_Report_Priority,
+      "link.driver_rx.supervisor_order "
+      & "must have the priority of link.driver_tx.servo_report");
+   pragma Compile_Time_Error
+     ((Reception_Drive_Priority + 1) > Link_Driver_Tx_Servo_Report_Priority,
+      "link.driver_tx.servo_report "
+      & "must have a higher priority than reception_drive");
+   pragma Compile_Time_Error
+     ((Control_Priority + 1) > Reception_Drive_Priority,
+      "reception_drive " & "must have a higher priority than control");
+
    --  [link] bits in a second, and one bit in nanoseconds, rounded up. Of a
    --  message, Stuffed: bits that stuffing can lengthen by a quarter; Bits:
    --  the longest frame, with 10 bits that are not stuffed and 3 to the
@@ -188,11 +330,14 @@ is
    Link_Bit : constant :=
      (1_000_000_000 + (Link_Bit_Rate - 1)) / Link_Bit_Rate;
 
-   --  [link.supervisor_order] 11-bit identifier 0x1, 3 bytes from
+   --  [link.supervisor_order] 11-bit identifier Id, Length bytes from
    --  supervisor.order
+   Link_Supervisor_Order_Id : constant := 16#1#;
+   Link_Supervisor_Order_Length : constant := 3;
    Link_Supervisor_Order_T : constant := 20_000_000;
    Link_Supervisor_Order_D : constant := 20_000_000;
-   Link_Supervisor_Order_Stuffed : constant := 34 + 8 * 3;
+   Link_Supervisor_Order_Stuffed : constant :=
+     34 + 8 * Link_Supervisor_Order_Length;
    Link_Supervisor_Order_Bits : constant :=
      Link_Supervisor_Order_Stuffed
      + 13
@@ -204,10 +349,14 @@ is
    Link_Supervisor_Order_A : constant :=
      Link_Supervisor_Order_J + (Link_Supervisor_Order_T - 1);
 
-   --  [link.servo_report] 11-bit identifier 0x2, 3 bytes from servo.report
+   --  [link.servo_report] 11-bit identifier Id, Length bytes from
+   --  servo.report
+   Link_Servo_Report_Id : constant := 16#2#;
+   Link_Servo_Report_Length : constant := 3;
    Link_Servo_Report_T : constant := 20_000_000;
    Link_Servo_Report_D : constant := 20_000_000;
-   Link_Servo_Report_Stuffed : constant := 34 + 8 * 3;
+   Link_Servo_Report_Stuffed : constant :=
+     34 + 8 * Link_Servo_Report_Length;
    Link_Servo_Report_Bits : constant :=
      Link_Servo_Report_Stuffed + 13 + ((Link_Servo_Report_Stuffed - 1) / 4);
    Link_Servo_Report_C : constant :=
@@ -216,6 +365,12 @@ is
    Link_Servo_Report_J : constant := Link_Driver_Tx_Servo_Report_R;
    Link_Servo_Report_A : constant :=
      Link_Servo_Report_J + (Link_Servo_Report_T - 1);
+
+   pragma Compile_Time_Error
+     (((2**19 * Link_Supervisor_Order_Id) + 1)
+      > (2**19 * Link_Servo_Report_Id),
+      "link.supervisor_order "
+      & "must win the arbitration against link.servo_report");
 
    --  [reception_panel] what can delay it: jobs of the same or higher
    --  priority
@@ -238,6 +393,9 @@ is
    pragma Compile_Time_Error
      (Reception_Panel_Needs > Reception_Panel_W,
       "reception_panel " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Reception_Panel_W > Reception_Panel_Needs,
+      "reception_panel " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Reception_Panel_J + Reception_Panel_W) > Reception_Panel_T,
       "reception_panel " & "can be released again before it completes");
@@ -269,6 +427,9 @@ is
      (Reception_Drive_Needs > Reception_Drive_W,
       "reception_drive " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Reception_Drive_W > Reception_Drive_Needs,
+      "reception_drive " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Reception_Drive_J + Reception_Drive_W) > Reception_Drive_T,
       "reception_drive " & "can be released again before it completes");
    pragma Compile_Time_Error
@@ -298,6 +459,9 @@ is
    pragma Compile_Time_Error
      (Supervision_Needs > Supervision_W,
       "supervision " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Supervision_W > Supervision_Needs,
+      "supervision " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Supervision_J + Supervision_W) > Supervision_T,
       "supervision " & "can be released again before it completes");
@@ -332,6 +496,9 @@ is
    pragma Compile_Time_Error
      (Supervisor_Ports_Needs > Supervisor_Ports_W,
       "supervisor.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Supervisor_Ports_W > Supervisor_Ports_Needs,
+      "supervisor.ports " & "claims more than its terms add up to");
 
    --  [supervisor.plan] done, from the event that releases its processor
    Supervisor_Plan_Done : constant := 765_000;
@@ -360,6 +527,9 @@ is
    pragma Compile_Time_Error
      (Supervisor_Plan_Needs > Supervisor_Plan_W,
       "supervisor.plan " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Supervisor_Plan_W > Supervisor_Plan_Needs,
+      "supervisor.plan " & "claims more than its terms add up to");
 
    --  [control] what can delay it: jobs of the same or higher priority
    Control_W : constant := Control_R - Control_J;
@@ -383,6 +553,9 @@ is
    pragma Compile_Time_Error
      (Control_Needs > Control_W,
       "control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Control_W > Control_Needs,
+      "control " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Control_J + Control_W) > Control_T,
       "control " & "can be released again before it completes");
@@ -416,6 +589,9 @@ is
    pragma Compile_Time_Error
      (Servo_Ports_Needs > Servo_Ports_W,
       "servo.ports " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Servo_Ports_W > Servo_Ports_Needs,
+      "servo.ports " & "claims more than its terms add up to");
 
    --  [servo.control] done, from the event that releases its processor
    Servo_Control_Done : constant := 765_000;
@@ -443,6 +619,9 @@ is
    pragma Compile_Time_Error
      (Servo_Control_Needs > Servo_Control_W,
       "servo.control " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Servo_Control_W > Servo_Control_Needs,
+      "servo.control " & "claims more than its terms add up to");
 
    --  [servo.tell] done, from the event that releases its processor
    Servo_Tell_Done : constant := 865_000;
@@ -471,6 +650,9 @@ is
    pragma Compile_Time_Error
      (Servo_Tell_Needs > Servo_Tell_W,
       "servo.tell " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Servo_Tell_W > Servo_Tell_Needs,
+      "servo.tell " & "claims more than its terms add up to");
 
    --  [link.driver_tx.supervisor_order] what can delay it: jobs of the same
    --  or higher priority
@@ -494,6 +676,11 @@ is
       > Link_Driver_Tx_Supervisor_Order_W,
       "link.driver_tx.supervisor_order "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Driver_Tx_Supervisor_Order_W
+      > Link_Driver_Tx_Supervisor_Order_Needs,
+      "link.driver_tx.supervisor_order "
+      & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Link_Driver_Tx_Supervisor_Order_J + Link_Driver_Tx_Supervisor_Order_W)
       > Link_Driver_Tx_Supervisor_Order_T,
@@ -531,6 +718,11 @@ is
       "link.driver_rx.supervisor_order "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Link_Driver_Rx_Supervisor_Order_W
+      > Link_Driver_Rx_Supervisor_Order_Needs,
+      "link.driver_rx.supervisor_order "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Driver_Rx_Supervisor_Order_J + Link_Driver_Rx_Supervisor_Order_W)
       > Link_Driver_Rx_Supervisor_Order_T,
       "link.driver_rx.supervisor_order "
@@ -566,6 +758,10 @@ is
       "link.driver_tx.servo_report "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Link_Driver_Tx_Servo_Report_W > Link_Driver_Tx_Servo_Report_Needs,
+      "link.driver_tx.servo_report "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Driver_Tx_Servo_Report_J + Link_Driver_Tx_Servo_Report_W)
       > Link_Driver_Tx_Servo_Report_T,
       "link.driver_tx.servo_report "
@@ -600,6 +796,10 @@ is
       "link.driver_rx.servo_report "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Link_Driver_Rx_Servo_Report_W > Link_Driver_Rx_Servo_Report_Needs,
+      "link.driver_rx.servo_report "
+      & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Driver_Rx_Servo_Report_J + Link_Driver_Rx_Servo_Report_W)
       > Link_Driver_Rx_Servo_Report_T,
       "link.driver_rx.servo_report "
@@ -623,6 +823,9 @@ is
      (Panel_Probe_Needs > Panel_Probe_W,
       "panel.probe " & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Panel_Probe_W > Panel_Probe_Needs,
+      "panel.probe " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Panel_Probe_J + Panel_Probe_W) > Panel_Probe_T,
       "panel.probe " & "can be released again before it completes");
    pragma Compile_Time_Error
@@ -641,6 +844,9 @@ is
    pragma Compile_Time_Error
      (Drive_Probe_Needs > Drive_Probe_W,
       "drive.probe " & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Drive_Probe_W > Drive_Probe_Needs,
+      "drive.probe " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      ((Drive_Probe_J + Drive_Probe_W) > Drive_Probe_T,
       "drive.probe " & "can be released again before it completes");
@@ -672,6 +878,9 @@ is
       "link.supervisor_order "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Link_Supervisor_Order_Busy > Link_Supervisor_Order_Busy_Needs,
+      "link.supervisor_order " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Supervisor_Order_Busy + Link_Supervisor_Order_J)
       > Link_Supervisor_Order_T,
       "link.supervisor_order " & "can come again before it is sent");
@@ -695,12 +904,21 @@ is
       "link.supervisor_order "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Link_Supervisor_Order_W > Link_Supervisor_Order_Needs,
+      "link.supervisor_order " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Supervisor_Order_J
        + Link_Supervisor_Order_W
        + Link_Supervisor_Order_C)
       > Link_Supervisor_Order_R,
       "link.supervisor_order "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Supervisor_Order_R
+      > (Link_Supervisor_Order_J
+         + Link_Supervisor_Order_W
+         + Link_Supervisor_Order_C),
+      "link.supervisor_order " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Link_Supervisor_Order_R > Link_Supervisor_Order_D,
       "link.supervisor_order " & "can miss its deadline");
@@ -728,6 +946,9 @@ is
       "link.servo_report "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Link_Servo_Report_Busy > Link_Servo_Report_Busy_Needs,
+      "link.servo_report " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Servo_Report_Busy + Link_Servo_Report_J) > Link_Servo_Report_T,
       "link.servo_report " & "can come again before it is sent");
 
@@ -750,10 +971,17 @@ is
       "link.servo_report "
       & "can take longer than its claimed response time");
    pragma Compile_Time_Error
+     (Link_Servo_Report_W > Link_Servo_Report_Needs,
+      "link.servo_report " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Servo_Report_J + Link_Servo_Report_W + Link_Servo_Report_C)
       > Link_Servo_Report_R,
       "link.servo_report "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Servo_Report_R
+      > (Link_Servo_Report_J + Link_Servo_Report_W + Link_Servo_Report_C),
+      "link.servo_report " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Link_Servo_Report_R > Link_Servo_Report_D,
       "link.servo_report " & "can miss its deadline");
@@ -781,6 +1009,10 @@ is
       "link.supervisor_order "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Link_Supervisor_Order_Turn_Busy
+      > Link_Supervisor_Order_Turn_Busy_Needs,
+      "link.supervisor_order " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Supervisor_Order_Turn_Busy + Link_Supervisor_Order_Turn_J)
       > Link_Supervisor_Order_T,
       "link.supervisor_order " & "can come again before it is sent");
@@ -796,6 +1028,9 @@ is
      (Link_Supervisor_Order_Turn_Needs > Link_Supervisor_Order_Turn_W,
       "link.supervisor_order "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Supervisor_Order_Turn_W > Link_Supervisor_Order_Turn_Needs,
+      "link.supervisor_order " & "claims more than its terms add up to");
 
    Link_Supervisor_Order_Turn : constant := 1_435_000;
 
@@ -804,6 +1039,10 @@ is
       > Link_Supervisor_Order_Turn,
       "link.supervisor_order "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Supervisor_Order_Turn
+      > (Link_Supervisor_Order_Turn_J + Link_Supervisor_Order_Turn_W),
+      "link.supervisor_order " & "claims more than its terms add up to");
 
    Link_Supervisor_Order_Handed : constant :=
      Link_Supervisor_Order_Turn + (2 * Reception_Drive_R);
@@ -828,6 +1067,9 @@ is
       "link.servo_report "
       & "can keep others waiting for longer than claimed");
    pragma Compile_Time_Error
+     (Link_Servo_Report_Turn_Busy > Link_Servo_Report_Turn_Busy_Needs,
+      "link.servo_report " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      ((Link_Servo_Report_Turn_Busy + Link_Servo_Report_Turn_J)
       > Link_Servo_Report_T,
       "link.servo_report " & "can come again before it is sent");
@@ -843,6 +1085,9 @@ is
      (Link_Servo_Report_Turn_Needs > Link_Servo_Report_Turn_W,
       "link.servo_report "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Servo_Report_Turn_W > Link_Servo_Report_Turn_Needs,
+      "link.servo_report " & "claims more than its terms add up to");
 
    Link_Servo_Report_Turn : constant := 1_535_000;
 
@@ -851,6 +1096,10 @@ is
       > Link_Servo_Report_Turn,
       "link.servo_report "
       & "can take longer than its claimed response time");
+   pragma Compile_Time_Error
+     (Link_Servo_Report_Turn
+      > (Link_Servo_Report_Turn_J + Link_Servo_Report_Turn_W),
+      "link.servo_report " & "claims more than its terms add up to");
 
    Link_Servo_Report_Handed : constant :=
      Link_Servo_Report_Turn + (2 * Reception_Panel_R);
@@ -869,6 +1118,9 @@ is
      (Chain_Planned_Reaction_Needs > Chain_Planned_Reaction,
       "chain planned " & "can have a longer reaction than claimed");
    pragma Compile_Time_Error
+     (Chain_Planned_Reaction > Chain_Planned_Reaction_Needs,
+      "chain planned " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      (Chain_Planned_Reaction > Chain_Planned_Reaction_Limit,
       "chain planned " & "can exceed the limit of its reaction");
    pragma Assert
@@ -884,6 +1136,9 @@ is
    pragma Compile_Time_Error
      (Chain_Planned_Age_Needs > Chain_Planned_Age,
       "chain planned " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Planned_Age > Chain_Planned_Age_Needs,
+      "chain planned " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_Planned_Age > Chain_Planned_Age_Limit,
       "chain planned " & "can exceed the limit of its age");
@@ -905,6 +1160,9 @@ is
      (Chain_Followed_Reaction_Needs > Chain_Followed_Reaction,
       "chain followed " & "can have a longer reaction than claimed");
    pragma Compile_Time_Error
+     (Chain_Followed_Reaction > Chain_Followed_Reaction_Needs,
+      "chain followed " & "claims more than its terms add up to");
+   pragma Compile_Time_Error
      (Chain_Followed_Reaction > Chain_Followed_Reaction_Limit,
       "chain followed " & "can exceed the limit of its reaction");
    pragma Assert
@@ -922,6 +1180,9 @@ is
    pragma Compile_Time_Error
      (Chain_Followed_Age_Needs > Chain_Followed_Age,
       "chain followed " & "can have a longer age than claimed");
+   pragma Compile_Time_Error
+     (Chain_Followed_Age > Chain_Followed_Age_Needs,
+      "chain followed " & "claims more than its terms add up to");
    pragma Compile_Time_Error
      (Chain_Followed_Age > Chain_Followed_Age_Limit,
       "chain followed " & "can exceed the limit of its age");

@@ -6,6 +6,7 @@ with Ada.Real_Time;
 with Ravenchart.Hosts;
 with System;
 with Two_Nodes.Reports;
+with Two_Nodes.Timing_Certificate;
 
 procedure Two_Nodes_Main
 with SPARK_Mode, Priority => System.Priority'First
@@ -17,6 +18,7 @@ is
    Stop : Boolean;
 begin
    Ravenchart.Hosts.Start;
+   Ravenchart.Hosts.Put_Model (Two_Nodes.Timing_Certificate.Model_Digest);
    loop
       Two_Nodes.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;
