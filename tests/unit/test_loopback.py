@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from xml.etree import ElementTree
@@ -140,10 +141,44 @@ def test_a_bus_that_harms_frames_fails(
     assert named(Verdict.FAILED, result) == failing
 
 
+def test_one_late_frame_in_two_hundred_fails(server: BusServer) -> None:
+    def hold_up(record: Record) -> Record:
+        if record.data[0] == 77:
+            time.sleep(0.3)
+        return record
+
+    server.harm = hold_up
+    ends = on(server)
+    ends.patience = 2.0
+    result = run(ends, cases=[case for case in CASES if case.name == "latency"])
+    ends.close()
+    assert result.cases[0].verdict is Verdict.FAILED
+    assert result.cases[0].detail.startswith("1 of 200 frames took longer than 200 ms, the longest")
+    assert result.cases[0].detail.endswith("the first of them frame 78")
+
+
+def test_a_node_that_nobody_acknowledges_is_told_at_once(server: BusServer) -> None:
+    server.harm = lambda record: None
+    server.confirms = False
+    setup = Setup("ravenchart", server.channel, "ravenchart", server.channel, echo=True)
+    ends = open_ends(setup, patience=0.3)
+    server.inject(Record(Kind.STATE, code=1, transmit_errors=128))
+    began = time.monotonic()
+    result = run(ends)
+    ends.close()
+    assert time.monotonic() - began < 5
+    first, *others = result.cases
+    assert first.verdict is Verdict.FAILED
+    assert first.detail == (
+        "0 of 9 frames arrived; no other node acknowledges a frame, or the bus is cut"
+    )
+    assert {case.detail for case in others} == {"the bus was lost before"}
+
+
 def test_frames_that_change_places_fail(server: BusServer) -> None:
     def swap(record: Record) -> Record:
         """The 1st and the 65th of the burst have one identifier; each comes as the other."""
-        other = {0: 64, 64: 0}.get(record.data[0])
+        other = {0: 64, 64: 0}.get(record.data[0]) if record.length else None
         return record if other is None else replace(record, data=bytes([other]).ljust(64, b"\0"))
 
     server.harm = swap

@@ -9,7 +9,7 @@ from enum import Enum
 
 import can
 
-from .cases import CASES, Case, Failed, Skipped
+from .cases import CASES, LAST, Case, Failed, Skipped, frame
 from .ends import Ends, Setup, words
 
 Progress = Callable[[str], None]
@@ -60,7 +60,7 @@ class LoopbackResult:
 def run(
     ends: Ends, progress: Progress = lambda name: None, cases: Sequence[Case] = CASES
 ) -> LoopbackResult:
-    """Run ``cases`` in order; once the bus is lost the rest is skipped."""
+    """Run ``cases`` in order; once no frame arrives at all, the rest is skipped."""
     results: list[CaseResult] = []
     lost = False
     for case in cases:
@@ -70,9 +70,30 @@ def run(
             verdict, detail = Verdict.SKIPPED, "the bus was lost before"
         else:
             verdict, detail = _run_one(ends, case)
-            lost = verdict is Verdict.FAILED and not ends.usable()
+            loss = _loss(ends) if verdict is Verdict.FAILED else None
+            if loss is not None:
+                lost, detail = True, f"{detail}{loss}"
         results.append(CaseResult(case.name, verdict, detail, time.monotonic() - began))
     return LoopbackResult(ends.setup, tuple(results), tuple(ends.latencies), ends.rate)
+
+
+def _loss(ends: Ends) -> str | None:
+    """Why no case can pass after one has failed, as its end; None when a frame still arrives."""
+    if not ends.usable():
+        return ""
+    try:
+        if ends.across([frame(LAST)]):
+            return None
+    except Exception as fault:
+        return f"; no frame can be sent: {words(fault)}"
+    if ends.errors or _is_faulty(ends.near):
+        return "; no other node acknowledges a frame, or the bus is cut"
+    return f"; no frame arrives within {ends.patience:g} s"
+
+
+def _is_faulty(bus: can.BusABC) -> bool:
+    """Does the interface say that its controller is not error-active?"""
+    return type(bus).state is not can.BusABC.state and bus.state is not can.BusState.ACTIVE
 
 
 def _run_one(ends: Ends, case: Case) -> tuple[Verdict, str]:
