@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -16,6 +17,11 @@ LAUNCHER = ROOT / ".venv" / "bin" / "ravenchart"
 PYTHON = sys.executable
 
 
+def _heeding_hang_up() -> None:
+    """A test that is itself run by nohup lets its programs be ended by HUP all the same."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 class Marked:
     """A started command; whatever it starts inherits its mark."""
 
@@ -25,7 +31,7 @@ class Marked:
         self.process = subprocess.Popen(
             words, cwd=where, env={**os.environ, name: value}, text=True,
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            start_new_session=True,
+            start_new_session=True, preexec_fn=_heeding_hang_up,
         )  # fmt: skip
 
     def alive(self) -> dict[int, str]:

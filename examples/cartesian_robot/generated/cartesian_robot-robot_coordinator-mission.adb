@@ -124,6 +124,20 @@ is
                and then Ins.Command.Value.Kind = Cartesian_Robot.Reset
                then Recover
             else None),
+        when Mission_States.Recovering =>
+           (if Now = Conditions
+               and then Ins.Report_X.Value.Condition
+                 /= Cartesian_Robot.Failed
+               and then Ins.Report_Y.Value.Condition
+                 /= Cartesian_Robot.Failed
+               and then Ins.Report_Z.Value.Condition
+                 /= Cartesian_Robot.Failed
+               then Recovered
+            elsif Now = Expiry_Of_Not_Recovered
+               then Not_Recovered
+            elsif Now = On_Shutdown
+               then Shut_Down_Recovering
+            else None),
         when Mission_States.Shut_Down => None)
    with Post => Is_Selection (Select_Transition'Result, Leaf, Now, Ins);
 
@@ -138,6 +152,7 @@ is
          Departing,
          Under_Way,
          Failed,
+         Recovering,
          Shut_Down,
          Active,
          Travelling,
@@ -170,6 +185,8 @@ is
          case Due is
             when 1 =>
                Now := Expiry_Of_Under_Way;
+            when 2 =>
+               Now := Expiry_Of_Not_Recovered;
             when others =>
                Now := Conditions;
          end case;
@@ -196,6 +213,13 @@ is
               Self.Leaf'Old,
               Self.Leaf,
               Self.Timers'Old (1))
+       and then Self.Timers (2)
+         = Timer_After
+             (2,
+              Domain_Of (Chosen),
+              Self.Leaf'Old,
+              Self.Leaf,
+              Self.Timers'Old (2))
    is
       use type Chart.Node;
       Active : Chart.Node :=
@@ -210,12 +234,29 @@ is
           and then Active
             = Chart.Moved (Active'Old, Chart.Departing, Chart.Travelling)
           and then Self.Timers (1) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
          Active := Chart.Moved (Active, Chart.Departing, Chart.Travelling);
       end Exit_Departing;
+      procedure Exit_Recovering
+      with
+        Post =>
+          Self.Leaf = Self.Leaf'Old
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Recovering, Chart.Stopped)
+          and then Self.Timers (2) = Ravenchart.Timers.Stopped
+          and then (for all I in Self.Timers'Range =>
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
+      is
+      begin
+         Ravenchart.Timers.Disarm (Self.Timers (2));
+         Active := Chart.Moved (Active, Chart.Recovering, Chart.Stopped);
+      end Exit_Recovering;
       procedure Leave_Travelling
       with
         Pre =>
@@ -228,6 +269,8 @@ is
             = (if Self.Leaf = Mission_States.Departing
                   then Ravenchart.Timers.Stopped
                else Self.Timers'Old (1))
+          and then (for all I in Self.Timers'Range =>
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -251,6 +294,8 @@ is
             = (if Self.Leaf = Mission_States.Departing
                   then Ravenchart.Timers.Stopped
                else Self.Timers'Old (1))
+          and then (for all I in Self.Timers'Range =>
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -323,6 +368,8 @@ is
           and then Active
             = Chart.Moved (Active'Old, Chart.Travelling, Chart.Departing)
           and then Self.Timers (1) = Ravenchart.Timers.Started (5)
+          and then (for all I in Self.Timers'Range =>
+                (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
       is
       begin
@@ -354,6 +401,34 @@ is
             Target => 0);
          Box.Order_Z_Sent := True;
       end Enter_Stopped;
+      procedure Enter_Recovering
+      with
+        Post =>
+          Self.Leaf = Mission_States.Recovering
+          and then Active
+            = Chart.Moved (Active'Old, Chart.Stopped, Chart.Recovering)
+          and then Self.Timers (2) = Ravenchart.Timers.Started (10)
+          and then (for all I in Self.Timers'Range =>
+                (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
+          and then Self.Started = Self.Started'Old
+      is
+      begin
+         Self.Leaf := Mission_States.Recovering;
+         Ravenchart.Timers.Arm (Self.Timers (2), 10);
+         Active := Chart.Moved (Active, Chart.Stopped, Chart.Recovering);
+         Box.Order_X :=
+           Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
+            Target => 0);
+         Box.Order_X_Sent := True;
+         Box.Order_Y :=
+           Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
+            Target => 0);
+         Box.Order_Y_Sent := True;
+         Box.Order_Z :=
+           Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
+            Target => 0);
+         Box.Order_Z_Sent := True;
+      end Enter_Recovering;
    begin
       case Chosen is
          when Initial_Entry =>
@@ -396,23 +471,20 @@ is
             Active := Chart.Moved (Active, Chart.Failed, Chart.Shut_Down);
             Self.Leaf := Mission_States.Shut_Down;
          when Recover =>
-            Active := Chart.Moved (Active, Chart.Failed, Chart.Nowhere);
-            pragma Assert (Active = Chart.Nowhere);
-            Box.Order_X :=
-              Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
-               Target => 0);
-            Box.Order_X_Sent := True;
-            Box.Order_Y :=
-              Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
-               Target => 0);
-            Box.Order_Y_Sent := True;
-            Box.Order_Z :=
-              Cartesian_Robot.Joint_Order'(Kind => Cartesian_Robot.Reset,
-               Target => 0);
-            Box.Order_Z_Sent := True;
-            pragma Assert (Active = Chart.Nowhere);
-            Active := Chart.Moved (Active, Chart.Nowhere, Chart.Waiting);
+            Active := Chart.Moved (Active, Chart.Failed, Chart.Stopped);
+            Enter_Recovering;
+         when Recovered =>
+            Exit_Recovering;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Waiting);
             Self.Leaf := Mission_States.Waiting;
+         when Not_Recovered =>
+            Exit_Recovering;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Failed);
+            Self.Leaf := Mission_States.Failed;
+         when Shut_Down_Recovering =>
+            Exit_Recovering;
+            Active := Chart.Moved (Active, Chart.Stopped, Chart.Shut_Down);
+            Self.Leaf := Mission_States.Shut_Down;
          when Joint_Failed =>
             Leave_Active;
             Active := Chart.Moved (Active, Chart.Active, Chart.Nowhere);

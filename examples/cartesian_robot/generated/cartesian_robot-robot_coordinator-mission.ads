@@ -18,6 +18,7 @@ is
       On_Joint_Lost,
       On_Shutdown,
       Expiry_Of_Under_Way,
+      Expiry_Of_Not_Recovered,
       Conditions);
 
    --  [Robot_Coordinator.Mission.transitions] in order of precedence,
@@ -34,6 +35,9 @@ is
       Halt_Homing,
       Shut_Down_Failed,
       Recover,
+      Recovered,
+      Not_Recovered,
+      Shut_Down_Recovering,
       Joint_Failed,
       Joint_Lost,
       Shut_Down,
@@ -67,7 +71,7 @@ is
    type Region is record
       Started : Boolean := False;
       Leaf    : Mission_States.Leaf := Mission_States.Waiting;
-      Timers  : Ravenchart.Timers.Timer_Array (1 .. 1);
+      Timers  : Ravenchart.Timers.Timer_Array (1 .. 2);
    end record;
 
    function Enabled
@@ -118,6 +122,17 @@ is
            Leaf = Mission_States.Failed
            and then Now = On_Commanded
            and then Ins.Command.Value.Kind = Cartesian_Robot.Reset,
+        when Recovered =>
+           Leaf = Mission_States.Recovering
+           and then Now = Conditions
+           and then Ins.Report_X.Value.Condition /= Cartesian_Robot.Failed
+           and then Ins.Report_Y.Value.Condition /= Cartesian_Robot.Failed
+           and then Ins.Report_Z.Value.Condition /= Cartesian_Robot.Failed,
+        when Not_Recovered =>
+           Leaf = Mission_States.Recovering
+           and then Now = Expiry_Of_Not_Recovered,
+        when Shut_Down_Recovering =>
+           Leaf = Mission_States.Recovering and then Now = On_Shutdown,
         when Joint_Failed =>
            Leaf in Mission_States.Active
            and then Now = Conditions
@@ -145,6 +160,9 @@ is
         when Halt_Homing => Leaf = Mission_States.Homing,
         when Shut_Down_Failed => Leaf = Mission_States.Failed,
         when Recover => Leaf = Mission_States.Failed,
+        when Recovered => Leaf = Mission_States.Recovering,
+        when Not_Recovered => Leaf = Mission_States.Recovering,
+        when Shut_Down_Recovering => Leaf = Mission_States.Recovering,
         when Joint_Failed => Leaf in Mission_States.Active,
         when Joint_Lost => Leaf in Mission_States.Active,
         when Shut_Down => Leaf in Mission_States.Active);
@@ -162,7 +180,10 @@ is
         when Halt => Mission_States.Failed,
         when Halt_Homing => Mission_States.Failed,
         when Shut_Down_Failed => Mission_States.Shut_Down,
-        when Recover => Mission_States.Waiting,
+        when Recover => Mission_States.Recovering,
+        when Recovered => Mission_States.Waiting,
+        when Not_Recovered => Mission_States.Failed,
+        when Shut_Down_Recovering => Mission_States.Shut_Down,
         when Joint_Failed => Mission_States.Failed,
         when Joint_Lost => Mission_States.Failed,
         when Shut_Down => Mission_States.Shut_Down);
@@ -190,7 +211,10 @@ is
         when Halt => Everything,
         when Halt_Homing => Everything,
         when Shut_Down_Failed => Inside_Stopped,
-        when Recover => Everything,
+        when Recover => Inside_Stopped,
+        when Recovered => Everything,
+        when Not_Recovered => Inside_Stopped,
+        when Shut_Down_Recovering => Inside_Stopped,
         when Joint_Failed => Everything,
         when Joint_Lost => Everything,
         when Shut_Down => Everything);
@@ -215,6 +239,15 @@ is
               D /= Beginning and then Before = Mission_States.Departing,
               After = Mission_States.Departing,
               Ravenchart.Timers.Started (5)),
+        when 2 =>
+           Ravenchart.Timers.Moved
+             (Timer,
+              D = Inside_Stopped
+              or else D = Everything
+              or else D = Beginning,
+              D /= Beginning and then Before = Mission_States.Recovering,
+              After = Mission_States.Recovering,
+              Ravenchart.Timers.Started (10)),
         when others => Timer);
    --  Each time-out: cancelled when its state is left, started when it is
    --  entered.
@@ -255,12 +288,15 @@ is
        and then (case Now is
             when Expiry_Of_Under_Way =>
                Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
+            when Expiry_Of_Not_Recovered =>
+               Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 2),
             when others => Self.Timers'Old = Self.Timers)
        and then (Now = Start_Of_Region) = not Self.Started
        and then (if Self.Started
              then (if (for some I in Self.Timers'Range =>
                         Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
-                    then Now in Expiry_Of_Under_Way
+                    then Now
+                       in Expiry_Of_Under_Way .. Expiry_Of_Not_Recovered
                  else Now = Conditions));
    --  Its start, or the time-out that is due; Conditions when there is
    --  neither.
@@ -287,6 +323,13 @@ is
                     Domain_Of (Fired),
                     Self.Leaf'Old,
                     Self.Leaf,
-                    Self.Timers'Old (1)));
+                    Self.Timers'Old (1))
+             and then Self.Timers (2)
+               = Timer_After
+                   (2,
+                    Domain_Of (Fired),
+                    Self.Leaf'Old,
+                    Self.Leaf,
+                    Self.Timers'Old (2)));
    --  One run-to-completion step.
 end Cartesian_Robot.Robot_Coordinator.Mission;

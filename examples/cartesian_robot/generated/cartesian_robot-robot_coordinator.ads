@@ -25,6 +25,7 @@ is
          Departing,
          Under_Way,
          Failed,
+         Recovering,
          Shut_Down);
 
       subtype Active is Leaf range Waiting .. Under_Way;

@@ -9,7 +9,7 @@ with SPARK_Mode, Pure
 is
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
-     "8804b55a234683bfde98308944445e41ee0f953adc077575d7e266043bac01d3";
+     "49f4594776750eda129257c7c8fc3a4090499e3b71c70250928dbe3a0b8e9db8";
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with

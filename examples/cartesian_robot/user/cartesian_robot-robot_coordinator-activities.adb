@@ -21,7 +21,8 @@ is
             when Mission_States.Ready     => Ready,
             when Mission_States.Departing |
                  Mission_States.Under_Way => Moving,
-            when Mission_States.Failed    => Failed,
+            when Mission_States.Failed |
+                 Mission_States.Recovering => Failed,
             when Mission_States.Shut_Down => Stopped);
    begin
       Status :=
