@@ -6,7 +6,7 @@ given a second meaning, and one that falls out of use is not given again.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -284,6 +284,18 @@ def render(diagnostic: Diagnostic, sources: Sources) -> str:
     if diagnostic.hint is not None:
         lines.append(f"{diagnostic.origin}: hint: {diagnostic.hint}")
     return "\n".join(_printable(line) for line in lines)
+
+
+MOST = 100
+"""Diagnostics that are printed of one file; the rest is counted."""
+
+
+def render_all(diagnostics: Sequence[Diagnostic], sources: Sources) -> str:
+    """Each as `render` has it, one below the other; of very many the first."""
+    lines = [render(one, sources) for one in diagnostics[:MOST]]
+    if len(diagnostics) > MOST:
+        lines.append(f"{len(diagnostics) - MOST:,} more errors or warnings are not shown")
+    return "\n".join(lines)
 
 
 def _excerpt(origin: Origin, sources: Sources) -> tuple[str, ...]:

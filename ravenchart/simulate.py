@@ -8,7 +8,7 @@ order of `behaviour.machine` and prints the lines of `Record.text`.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 
 from behaviour.interpreter import Stuck
@@ -16,7 +16,7 @@ from behaviour.machine import Machine
 from behaviour.rules.outside import external_events
 from behaviour.stimuli import Raised, Stimuli, read
 from behaviour.traces import Record, parsed
-from gen.diagnostics import Diagnostic, error, render, warning
+from gen.diagnostics import Diagnostic, error, render, render_all, warning
 from gen.distribution import as_one
 from gen.emit.simulation import numbers
 from gen.emit.simulation import stimuli as stimuli_of_system
@@ -53,9 +53,9 @@ def _unreadable(path: Path, reason: str) -> Diagnostic:
     return error("RV-1001", Origin(str(path), 1, 1), message)
 
 
-def _refused(found: Iterable[Diagnostic], path: Path, text: str) -> Refused:
+def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
     sources = {str(path): lines_of(text)} if text else {}
-    return Refused("\n".join(render(one, sources) for one in found))
+    return Refused(render_all(found, sources))
 
 
 def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:

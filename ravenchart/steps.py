@@ -18,7 +18,7 @@ from analysis.identifiers import order_of
 from analysis.timing import Analysis, analyse
 from gen.claims import Claims
 from gen.derive import programs
-from gen.diagnostics import Diagnostic, render
+from gen.diagnostics import Diagnostic, render, render_all
 from gen.emit.naming import ada_case
 from gen.generate import folder_of, generate, simulated_drivers, source_folders, user_units
 from gen.identifiers import with_order
@@ -168,7 +168,7 @@ def identified(system: System) -> tuple[System, tuple[Diagnostic, ...]]:
 
 
 def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
-    return "\n".join(render(d, loaded.sources) for d in diagnostics)
+    return render_all(diagnostics, loaded.sources)
 
 
 def claims(checked: Checked) -> Claims:

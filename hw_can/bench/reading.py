@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from gen.diagnostics import Diagnostic, error, in_order, render
+from gen.diagnostics import Diagnostic, error, in_order, render_all
 from gen.terms import Origin
 from gen.tree import Map, Seq, lines_of
 
@@ -130,7 +130,7 @@ def rendered(found: Sequence[Diagnostic], file: str, text: str) -> str:
     """Diagnostics of one file, each once."""
     once = {(one.origin, one.message): one for one in found}
     sources = {file: lines_of(text)} if text else {}
-    return "\n".join(render(one, sources) for one in in_order(once.values()))
+    return render_all(in_order(once.values()), sources)
 
 
 def _shown(value: object) -> str:
