@@ -329,8 +329,8 @@ class RegionForm(Element):
     initial: InitialState = key("State entered first; any state of the region.")
     safe_state: Reference | None = optional("State that must be reachable from every other.")
     states: dict[Name, StateForm] = key("The top states and pseudostates.", min_length=1)
-    transitions: dict[Name, TransitionForm] = key(
-        "Transitions by name; the earlier goes before the later. `{}`: there are none."
+    transitions: dict[Name, TransitionForm] = PydanticField(
+        default={}, description="Transitions by name; the earlier goes before the later."
     )
 
 

@@ -76,7 +76,7 @@ def chart_system(chart: str) -> System:
     declares, ``events`` only where there is more to say than a name.
     """
     region: Json = {"period": "10 ms", "wcet": "1 us", "queue": 4} | plain(chart)
-    triggers = [t["on"] for t in region["transitions"].values() if "on" in t]
+    triggers = [t["on"] for t in region.get("transitions", {}).values() if "on" in t]
     events: Json = {name: {} for name in triggers} | region.pop("events", {})
     data = {
         name: {"type": "Small", "initial": value} for name, value in region.pop("data", {}).items()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.support.behaviour_models import model, region, said
 from tests.support.interpreted import steps
 
@@ -11,11 +13,12 @@ def test_nothing_is_wrong_with_it() -> None:
     assert not said(model(still))
 
 
-def test_it_enters_its_states_and_stays() -> None:
-    chart = """
+@pytest.mark.parametrize("none", ["", "transitions: {}"])
+def test_it_enters_its_states_and_stays(none: str) -> None:
+    chart = f"""
     initial: A
-    states: {A: {initial: B, states: {B: {entry: [{set: x, to: 1}]}}}}
-    transitions: {}
-    data: {x: 0}
+    states: {{A: {{initial: B, states: {{B: {{entry: [{{set: x, to: 1}}]}}}}}}}}
+    {none}
+    data: {{x: 0}}
     """
     assert steps(chart) == ["0 A.entry, B.entry"]
