@@ -28,7 +28,7 @@ from . import (
     bus,
     draw,
     house,
-    import_dbc,
+    import_database,
     loopback,
     observed,
     outside_spark,
@@ -209,6 +209,10 @@ def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "--periods", type=Path, metavar="FILE",
         help="the same for single messages, in YAML: `message: 20 ms`",
     )  # fmt: skip
+    sub.add_argument(
+        "--lenient", action="store_true",
+        help="read a database with signals that overlap, or identifiers that are too long",
+    )  # fmt: skip
     sub.set_defaults(command=_import_dbc)
 
 
@@ -383,8 +387,8 @@ def _bus(options: argparse.Namespace) -> int:
 
 
 def _import_dbc(options: argparse.Namespace) -> int:
-    given = import_dbc.periods(options.period, options.periods)
-    found = import_dbc.imported(options.database, options.node, given)
+    given = import_database.periods(options.period, options.periods)
+    found = import_database.imported(options.database, options.node, given, lenient=options.lenient)
     print(found.text, end="")
     for problem in found.problems:
         print(problem, file=sys.stderr)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import cantools
 import pytest
@@ -13,9 +14,10 @@ from gen.emit.dbc import emit_dbc
 from gen.load import load
 from gen.model import System
 from ravenchart.__main__ import OK, WRONG, main
-from ravenchart.import_dbc import imported
+from ravenchart.import_database import Periods, imported
 from ravenchart.steps import Refused
 from ravenchart.toolchain import ROOT
+from tests.support.interpreted import plain
 
 
 def system_of(path: Path) -> System:
@@ -26,7 +28,7 @@ def system_of(path: Path) -> System:
 
 def whole(text: str, node: str) -> str:
     """An imported model with what a database cannot know."""
-    model = yaml.safe_load(text)
+    model = plain(text)
     (name,) = model["components"]
     component = model["components"][name]
     outs = [port for port, form in component["ports"].items() if "out" in form]
@@ -132,11 +134,6 @@ def test_a_value_counts_the_scale_of_its_signal(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("message", "told"),
     [
-        ('BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (0.1,0.05) [0|25] "" other', "no whole number"),
-        ('BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (-1,0) [0|0] "" other', "has the scale -1"),
-        ('BO_ 1 odd: 8 ecu\n SG_ x : 0|64@1- (1,0) [0|0] "" other', "more than 62 bits"),
-        ('BO_ 1 odd: 8 ecu\n SG_ end : 0|8@1+ (1,0) [0|9] "" other', "a reserved word of Ada"),
-        ('BO_ 1 odd: 8 ecu\n SG_ x__y : 0|8@1+ (1,0) [0|9] "" other', "cannot have"),
         ("BO_ 1 odd: 8 ecu", "it has no signals"),
         ('BO_ 1 odd: 8 other\n SG_ x : 0|8@1+ (1,0) [0|9] "" ecu', "no cycle time"),
     ],
@@ -203,19 +200,134 @@ def test_periods_that_are_wrong_are_refused(
     assert out.out == ""
 
 
-def test_of_a_received_message_only_the_signal_without_words_is_left_out(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("signal", "named", "keys", "definition", "changes"),
+    [
+        (
+            'x : 0|8@1+ (0.1,0.05) [0|25] ""', "x", {"start": 0, "width": 8}, [0, 255],
+            ["x counts raw values: its offset is no whole number of counts "
+             "(value = 0.1 * raw + 0.05)"],
+        ),
+        (
+            'x : 0|8@1- (-2,3) [0|0] "deg"', "x", {"start": 0, "width": 8, "signed": True},
+            [-128, 127],
+            ["x counts raw values: its scale is -2 (value = -2 * raw + 3 deg)"],
+        ),
+        (
+            'x : 0|8@1+ (1,0) [9|300] "a unit of more than 20 letters"', "x",
+            {"start": 0, "width": 8}, [0, 255],
+            ["x counts raw values: its unit `a unit of more than 20 letters` is not one of at "
+             "most 20 characters (value = 1 * raw + 0 a unit of more than 20 letters)"],
+        ),
+        (
+            'x : 0|8@1+ (1,0) [300|400] ""', "x", {"start": 0, "width": 8}, [0, 255],
+            ["x counts raw values: it has no value within its limits (value = 1 * raw + 0)"],
+        ),
+        (
+            'end : 0|8@1+ (1,0) [0|9] ""', "end_2", {"start": 0, "width": 8, "offset": 0}, [0, 9],
+            ["end is named end_2"],
+        ),
+        (
+            'x__y : 0|8@1+ (1,0) [0|9] ""', "x_y", {"start": 0, "width": 8, "offset": 0}, [0, 9],
+            ["x__y is named x_y"],
+        ),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize(("sender", "receiver"), [("ecu", "other"), ("other", "ecu")])
+def test_what_a_model_has_no_words_for_is_changed_and_said(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    signal: str,
+    named: str,
+    keys: dict[str, object],
+    definition: list[int],
+    changes: list[str],
+    sender: str,
+    receiver: str,
 ) -> None:
-    text = f'{SILENT}\n SG_ y : 8|8@1+ (-1,0) [0|0] "" ecu'
-    path = database(tmp_path, text)
-    call = ["import-dbc", str(path), "--node", "ecu", "--period", "1 s"]
-    assert main(call) == WRONG
+    path = database(tmp_path, f"BO_ 1 odd: 8 {sender}\n SG_ {signal} {receiver}")
+    assert main(["import", str(path), "--node", "ecu", "--period", "1 s"]) == OK
     out = capsys.readouterr()
-    assert out.err == f"{path}: error: odd.y is left out: the signal y has the scale -1\n"
-    message = yaml.safe_load(out.out)["messages"]["odd"]
-    assert (list(message["signals"]), message["bytes"]) == (["x"], 8)
+    assert out.err == ""
+    model = yaml.safe_load(out.out)
+    assert model["messages"]["odd"]["signals"] == {named: keys}
+    (of_signal,) = (t for n, t in model["types"].items() if n.startswith("odd_") and "range" in t)
+    assert of_signal["range"] == definition
+    for change in changes:
+        assert f"# odd.{' '.join(change.split())}" in [
+            " ".join(line.split()) for line in out.out.splitlines()
+        ]
     (tmp_path / "model.yaml").write_text(whole(out.out, "ecu"))
     assert "odd" in {m.name for m in system_of(tmp_path / "model.yaml").messages}
+
+
+@pytest.mark.parametrize("order", ["0|64@1", "7|64@0"])
+def test_a_signal_of_64_bits_is_imported_in_halves(tmp_path: Path, order: str) -> None:
+    path = database(tmp_path, f'BO_ 1 odd: 8 other\n SG_ x : {order}- (1,0) [0|0] "" ecu')
+    found = imported(path, "ecu", Periods("1 s"))
+    assert found.problems == []
+    signals = yaml.safe_load(found.text)["messages"]["odd"]["signals"]
+    starts = {"x_High": 7, "x_Low": 39} if order == "7|64@0" else {"x_High": 32, "x_Low": 0}
+    assert {name: keys["start"] for name, keys in signals.items()} == starts
+    (tmp_path / "model.yaml").write_text(whole(found.text, "ecu"))
+    system = system_of(tmp_path / "model.yaml")
+    again = cantools.database.load_string(emit_dbc(system, system.buses[0]), "dbc")
+    assert isinstance(again, Database)
+    first = cantools.database.load_file(path)
+    assert isinstance(first, Database)
+    for octets in (bytes(range(1, 9)), bytes(range(250, 242, -1))):
+        of_first: Any = first.decode_message("odd", octets)
+        halves: Any = again.decode_message("odd", octets)
+        assert halves["x_High"] << 32 | halves["x_Low"] == of_first["x"] % 2**64
+
+
+def test_a_floating_point_number_is_imported_as_its_bits(tmp_path: Path) -> None:
+    text = 'BO_ 1 odd: 8 other\n SG_ x : 0|32@1- (1,0) [0|0] "" ecu\nSIG_VALTYPE_ 1 x : 1;'
+    found = imported(database(tmp_path, text), "ecu", Periods("1 s"))
+    model = yaml.safe_load(found.text)
+    assert model["types"]["odd_x"] == {"range": [0, 2**32 - 1]}
+    assert "counts raw values: it is a floating-point number\n" in found.text
+
+
+def test_signals_that_share_bits_need_lenient(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = database(tmp_path, f'{SILENT}\n SG_ y : 4|8@1+ (1,0) [0|9] "" ecu\n'
+                    ' SG_ z : 60|8@1+ (1,0) [0|9] "" ecu')  # fmt: skip
+    call = ["import", str(path), "--node", "ecu", "--period", "1 s"]
+    assert main(call) == WRONG
+    assert capsys.readouterr().out == ""
+    assert main([*call, "--lenient"]) == WRONG
+    out = capsys.readouterr()
+    assert out.err == (
+        f"{path}: error: odd.y is left out: it shares bits with x\n"
+        f"{path}: error: odd.z is left out: it reaches beyond the 8 bytes of its frame\n"
+    )
+    assert list(yaml.safe_load(out.out)["messages"]["odd"]["signals"]) == ["x"]
+
+
+def test_a_received_message_without_signals_stays_on_the_bus(tmp_path: Path) -> None:
+    found = imported(database(tmp_path, "BO_ 1 odd: 4 other"), None, Periods("50 ms"))
+    assert found.problems == []
+    assert yaml.safe_load(found.text)["messages"]["odd"] == {
+        "bus": "bus", "id": 1, "bytes": 4, "period": "50 ms",
+    }  # fmt: skip
+    assert "# odd  is on the bus alone: no port has its value\n" in found.text
+
+
+def test_names_that_are_no_names_are_mapped_and_stay_apart(tmp_path: Path) -> None:
+    text = (
+        'BO_ 1 odd: 8 other\n SG_ a_b : 0|8@1+ (1,0) [0|3] "" ecu\n'
+        ' SG_ a__b : 8|8@1+ (1,0) [0|9] "" ecu\n SG_ A_B_ : 16|8@1+ (1,0) [0|9] "" ecu\n'
+        'VAL_ 1 a_b 0 "Off now" 1 "off.now" 2 "2nd" 3 "Standard" ;'
+    )
+    found = imported(database(tmp_path, text), "ecu", Periods("1 s"))
+    model = plain(found.text)
+    assert list(model["messages"]["odd"]["signals"]) == ["a_b", "a_b_2", "A_B_3"]
+    assert model["types"]["odd_a_b"] == {"values": ["Off_now", "off_now_2", "N_2nd", "Standard_2"]}
+    assert "# odd.a_b   its value `off.now` is named off_now_2\n" in found.text
+    (tmp_path / "model.yaml").write_text(whole(found.text, "ecu"))
+    assert system_of(tmp_path / "model.yaml")
 
 
 @pytest.mark.parametrize("form", ["kcd", "sym", "dbc"])
@@ -254,8 +366,9 @@ def test_a_database_without_nodes_needs_all(
 
 def test_names_of_single_values_are_told(tmp_path: Path) -> None:
     text = 'BO_ 1 odd: 8 ecu\n SG_ x : 0|8@1+ (1,0) [0|250] "" other\nVAL_ 1 x 255 "Absent" ;'
-    (problem,) = imported(database(tmp_path, text), "ecu").problems
-    assert "names for some values, and numbers for others" in problem
+    found = imported(database(tmp_path, text), "ecu")
+    assert found.problems == []
+    assert "counts raw values: some of its values have names, and others have none" in found.text
 
 
 def test_several_multiplexors_are_told(tmp_path: Path) -> None:
