@@ -176,10 +176,11 @@ def parts_of(signal: Signal) -> tuple[Signal, ...]:
 def check_room(message: Message, signal: Signal, others: Sequence[Signal]) -> None:
     """`Unsayable` when a signal is beyond the frame, or shares bits with one of ``others``."""
     own = frozenset(_bits(signal))
+    paged = any(one.is_multiplexer for one in message.signals)
     if max(own) >= 8 * message.length:
         raise Unsayable(f"it reaches beyond the {message.length} bytes of its frame")
     for other in others:
-        if own & frozenset(_bits(other)) and _are_together(signal, other):
+        if own & frozenset(_bits(other)) and not (paged and _are_apart(signal, other)):
             raise Unsayable(f"it shares bits with {other.name}")
 
 
@@ -194,7 +195,7 @@ def _bits(signal: Signal) -> Iterator[int]:
             at = at - 1 if at % 8 else at + 15
 
 
-def _are_together(one: Signal, other: Signal) -> bool:
-    """May both be in one frame?"""
-    pages, more = one.multiplexer_ids, other.multiplexer_ids
-    return not pages or not more or bool(set(pages) & set(more))
+def _are_apart(one: Signal, other: Signal) -> bool:
+    """Are they on different pages, so that no frame has both?"""
+    pages, others = set(one.multiplexer_ids or ()), set(other.multiplexer_ids or ())
+    return bool(pages and others) and not pages & others

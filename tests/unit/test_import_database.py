@@ -306,6 +306,18 @@ def test_signals_that_share_bits_need_lenient(
     assert list(yaml.safe_load(out.out)["messages"]["odd"]["signals"]) == ["x"]
 
 
+def test_pages_without_a_multiplexor_share_their_bits(tmp_path: Path) -> None:
+    text = (
+        'BO_ 1 odd: 8 other\n SG_ a m : 6|2@1+ (1,0) [0|3] "" ecu\n'
+        ' SG_ b m1 : 0|6@1+ (1,0) [0|9] "" ecu\n SG_ c m2 : 0|6@1+ (1,0) [0|9] "" ecu'
+    )
+    found = imported(database(tmp_path, text), "ecu", Periods("1 s"), lenient=True)
+    (problem,) = found.problems
+    assert problem.endswith("odd.c is left out: it shares bits with b")
+    (tmp_path / "model.yaml").write_text(whole(found.text, "ecu"))
+    assert system_of(tmp_path / "model.yaml")
+
+
 def test_a_received_message_without_signals_stays_on_the_bus(tmp_path: Path) -> None:
     found = imported(database(tmp_path, "BO_ 1 odd: 4 other"), None, Periods("50 ms"))
     assert found.problems == []
