@@ -110,7 +110,9 @@ def _database(path: Path, *, lenient: bool) -> Database:
     try:
         database = cantools.database.load_file(path, database_format=form, strict=not lenient)
     except (OSError, ValueError, DatabaseFault, ElementTree.ParseError) as fault:
-        raise Refused(f"{path}: error: {fault}") from None
+        room = not lenient and ("overlapping" in str(fault) or "does not fit" in str(fault))
+        hint = f"\n{path}: hint: `--lenient` leaves such signals out" if room else ""
+        raise Refused(f"{path}: error: {fault}{hint}") from None
     if not isinstance(database, Database):
         raise Refused(f"{path}: error: it has diagnostics, and no messages")
     return database

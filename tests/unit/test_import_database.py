@@ -296,7 +296,9 @@ def test_signals_that_share_bits_need_lenient(
                     ' SG_ z : 60|8@1+ (1,0) [0|9] "" ecu')  # fmt: skip
     call = ["import", str(path), "--node", "ecu", "--period", "1 s"]
     assert main(call) == WRONG
-    assert capsys.readouterr().out == ""
+    refused = capsys.readouterr()
+    assert refused.out == ""
+    assert f"{path}: hint: `--lenient` leaves such signals out\n" in refused.err
     assert main([*call, "--lenient"]) == WRONG
     out = capsys.readouterr()
     assert out.err == (
