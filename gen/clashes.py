@@ -21,6 +21,7 @@ from .emit.ada_text import WIDTH, print_unit
 from .emit.naming import ada_case
 from .generate import Made, program, simulated_units
 from .model import System
+from .names import LONG_NAME
 from .terms import EnumerationType, Origin
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})
@@ -116,10 +117,6 @@ def _culprits(system: System, text: str, unit: str) -> list[_Element]:
     apt = apt or near
     longest = max((len(e.name) for e in apt), default=0)
     return [e for e in apt if len(e.name) == longest]
-
-
-LONG_NAME = 24
-"""Names up to this length always fit the lines of the generated program."""
 
 
 def _too_long(system: System) -> Iterator[Diagnostic]:

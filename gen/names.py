@@ -13,6 +13,8 @@ from .terms import Origin
 
 IDENTIFIER = r"^[A-Za-z](_?[A-Za-z0-9])*$"
 LONGEST_NAME = 60
+LONG_NAME = 24
+"""Names up to this length always fit the lines of the generated program."""
 
 _RESERVED = """
 abort abs abstract accept access aliased all and array at begin body case constant declare delay

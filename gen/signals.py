@@ -100,14 +100,7 @@ class Signal:
 
     def bits(self) -> tuple[int, ...]:
         """The frame's bit for each bit of the raw value, its least significant first."""
-        if self.order is ByteOrder.INTEL:
-            return tuple(range(self.start, self.start + self.width))
-        found: list[int] = []
-        at = self.start
-        for _ in range(self.width):
-            found.append(at)
-            at += 15 if at % 8 == 0 else -1
-        return tuple(reversed(found))
+        return positions(self.start, self.width, self.order)
 
     def pieces(self) -> tuple[Piece, ...]:
         """Its bits in as few pieces as there are, the least significant first."""
@@ -124,6 +117,18 @@ class Signal:
     def meets(self, other: Signal) -> bool:
         """Is there a frame in which both are?"""
         return not self.pages or not other.pages or bool(set(self.pages) & set(other.pages))
+
+
+def positions(start: int, width: int, order: ByteOrder) -> tuple[int, ...]:
+    """The frame's bits of a field, as DBC numbers them, the least significant first."""
+    if order is ByteOrder.INTEL:
+        return tuple(range(start, start + width))
+    found: list[int] = []
+    at = start
+    for _ in range(width):
+        found.append(at)
+        at += 15 if at % 8 == 0 else -1
+    return tuple(reversed(found))
 
 
 def width_for(low: int, high: int, *, signed: bool) -> int:

@@ -211,7 +211,7 @@ def _add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     )  # fmt: skip
     sub.add_argument(
         "--lenient", action="store_true",
-        help="read a database with signals that overlap, or identifiers that are too long",
+        help="read a database whose signals share bits or reach beyond their frame",
     )  # fmt: skip
     sub.set_defaults(command=_import_dbc)
 

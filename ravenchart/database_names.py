@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Set
 
-from gen.clashes import LONG_NAME
-from gen.names import CHILDREN, HIDING, PREDEFINED_TYPES, RESERVED
+from gen.names import CHILDREN, HIDING, LONG_NAME, PREDEFINED_TYPES, RESERVED
 
 HIDDEN = PREDEFINED_TYPES | HIDING | frozenset(CHILDREN)
 """What types and their values cannot be named, in lower case."""

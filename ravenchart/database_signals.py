@@ -7,13 +7,14 @@ words for, such as one of a negative scale, is imported as its raw counts, and t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from decimal import Decimal
 
 from cantools.database.can import Message, Signal
 
 from gen.layouts import RAW_LIMIT, SIGNED_BITS
+from gen.signals import ByteOrder, positions
 
 from .database_names import HIDDEN, Names
 
@@ -154,11 +155,11 @@ def parts_of(signal: Signal) -> tuple[Signal, ...]:
     """The signal itself, or its two halves where it has more bits than a model's number."""
     if signal.length <= SIGNED_BITS or signal.is_multiplexer:
         return (signal,)
-    bits = list(_bits(signal))
+    bits = _bits(signal)
     if signal.byte_order == "little_endian":
         starts = {"High": bits[HALF], "Low": bits[0]}
     else:
-        starts = {"High": bits[0], "Low": bits[signal.length - HALF]}
+        starts = {"High": bits[-1], "Low": bits[HALF - 1]}
     widths = {"High": signal.length - HALF, "Low": HALF}
     return tuple(
         Signal(
@@ -184,15 +185,11 @@ def check_room(message: Message, signal: Signal, others: Sequence[Signal]) -> No
             raise Unsayable(f"it shares bits with {other.name}")
 
 
-def _bits(signal: Signal) -> Iterator[int]:
-    """Its bits, counted as DBC does."""
-    at = signal.start
-    for _ in range(signal.length):
-        yield at
-        if signal.byte_order == "little_endian":
-            at += 1
-        else:
-            at = at - 1 if at % 8 else at + 15
+def _bits(signal: Signal) -> tuple[int, ...]:
+    """Its bits in the frame, the least significant first."""
+    intel = signal.byte_order == "little_endian"
+    order = ByteOrder.INTEL if intel else ByteOrder.MOTOROLA
+    return positions(signal.start, signal.length, order)
 
 
 def _are_apart(one: Signal, other: Signal) -> bool:

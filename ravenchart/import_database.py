@@ -126,7 +126,6 @@ class _Writer:
     periods: Periods
     names: Names
     """Of the messages."""
-    own_name: str = ""
     known: dict[str, str] = field(default_factory=dict)
     """Definition to name of the types, in the order in which they are needed."""
     type_names: Names = field(default_factory=Names)
@@ -141,9 +140,13 @@ class _Writer:
     """Signals that are not in the model, each with its message and the reason."""
 
     def __post_init__(self) -> None:
-        """The node's own name as a model can have it."""
-        self.own_name = Names().new(self.node or MONITOR)
+        """No type has a name that it would hide."""
         self.type_names.avoid(HIDDEN)
+
+    @property
+    def own_name(self) -> str:
+        """The node's name as a model can have it."""
+        return Names().new(self.node or MONITOR)
 
     @property
     def component(self) -> str:
@@ -194,8 +197,6 @@ class _Writer:
             raise Unsayable(
                 "it has no cycle time, which a message from outside needs; `--period` gives one"
             )
-        if message.frame_id >= 1 << (29 if message.is_extended_frame else 11):
-            raise Unsayable(f"its identifier {message.frame_id:#x} has too many bits")
         lines = self._head(message)
         if not sends and not takes:
             self.messages += [*lines, f"    period: {period}"]
@@ -270,17 +271,17 @@ class _Writer:
         found: dict[Signal, Words] = {}
         left_out: list[str] = []
         several = [s.name for s in message.signals if s.is_multiplexer]
+        selector = _selector(message)
         for signal in (part for one in message.signals for part in parts_of(one)):
             try:
                 if len(several) > 1 and signal.multiplexer_ids:
                     raise Unsayable(f"there are several multiplexors, {', '.join(several)}")
                 check_room(message, signal, list(found))
                 found[signal] = words_of(signal, taken=self.type_names.taken)
-                selector = _selector(message)
                 if selector in found:
                     _pages(signal, found[selector])
             except Unsayable as problem:
-                if whole or signal is _selector(message):
+                if whole or signal is selector:
                     raise Unsayable(f"its signal {signal.name}: {problem}") from None
                 found.pop(signal, None)
                 left_out.append(f"{message.name}.{signal.name} is left out: {problem}")

@@ -25,7 +25,7 @@ from .ada import (
     number,
 )
 from .events import event_value
-from .executions import ELEMENT_ID, EXECUTED, executed, run_spec
+from .executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from .naming import ada_case, root_package
 from .trace_calls import note, traced
 
@@ -38,7 +38,7 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
         return []
     root = root_package(system)
     name = f"{root}.{ada_case(bus.name)}.Watch"
-    slot = _slot(system, bus)
+    slot = bus_row(system, bus, Work.BUS_WATCH)
     spec: tuple[Decl, ...] = (
         UseType(ELEMENT_ID),
         run_spec("Watch", slot),
@@ -61,12 +61,6 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
             Package(name, _body(system, bus, slot), (SPARK,), is_body=True),
         ),
     ]
-
-
-def _slot(system: System, bus: Bus) -> Slot:
-    """The row that looks at the controller."""
-    slots = (slot for processor in system.processors for slot in processor.slots)
-    return next(s for s in slots if s.work is Work.BUS_WATCH and s.owner == bus.name)
 
 
 def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:

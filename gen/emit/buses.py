@@ -39,7 +39,7 @@ from .ada import (
 from .bus_watch import emit_watch
 from .certified import CERTIFICATE, agrees, fact
 from .codecs import codec_name, words_of
-from .executions import ELEMENT_ID, EXECUTED, executed, run_spec
+from .executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
 from .naming import ada_case, priority, root_package, type_name
 from .remote_calls import received_as
@@ -274,8 +274,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     root = root_package(system)
     name = f"{root}.{ada_case(bus.name)}.Receiver"
     received = _received(system, bus)
-    slots = (slot for processor in system.processors for slot in processor.slots)
-    slot = next(s for s in slots if s.work is Work.BUS_RECEIVE and s.owner == bus.name)
+    slot = bus_row(system, bus, Work.BUS_RECEIVE)
     spec: tuple[Decl, ...] = (
         Subprogram("Wait"),
         Comment(f"[{bus.name}.receive.release] suspend until a frame is there."),

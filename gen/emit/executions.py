@@ -8,12 +8,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..model import Slot
+from ..model import Bus, Slot, System, Work
 from .ada import Aspect, Assign, Chain, Expr, Param, Ref, Stmt, Subprogram, equal, number
 from .trace_calls import element_constant
 
 ELEMENT_ID = "Ravenchart.Element_Id"
 EXECUTED = Param("Executed", "in out", ELEMENT_ID)
+
+
+def bus_row(system: System, bus: Bus, work: Work) -> Slot:
+    """The row that does a bus's own work."""
+    slots = (slot for processor in system.processors for slot in processor.slots)
+    return next(s for s in slots if s.work is work and s.owner == bus.name)
 
 
 def row_of(slot: Slot) -> Expr:

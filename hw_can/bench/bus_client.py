@@ -134,8 +134,7 @@ class RavenchartBus(can.BusABC):
     @property
     def state(self) -> can.BusState:
         """ACTIVE, PASSIVE or ERROR (bus-off), as the server said last."""
-        while self._take(0):
-            pass
+        self._take_all()
         return self._state
 
     @state.setter
@@ -148,8 +147,7 @@ class RavenchartBus(can.BusABC):
     @property
     def error_counters(self) -> tuple[int, int]:
         """Transmit and receive error counter, each 0 .. 256, as the server said last."""
-        while self._take(0):
-            pass
+        self._take_all()
         return self._errors
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
@@ -160,8 +158,7 @@ class RavenchartBus(can.BusABC):
         were refused by then. Confirmations are read here: who only sends need not call `recv`.
         """
         waits = timeout is not None and timeout > 0
-        while not self._reading.locked() and self._take(0):
-            pass
+        self._take_all()
         with self._writing:
             refusals, self._refusals = self._refusals, []
             if refusals:
@@ -217,6 +214,11 @@ class RavenchartBus(can.BusABC):
             del self._awaited[number]
         if outcome:
             raise can.CanOperationError(f"the frame was refused: {outcome}")
+
+    def _take_all(self) -> None:
+        """Read all that has come, unless another thread reads."""
+        while self._take(0):
+            pass
 
     def _take(self, timeout: float | None, *, receiving: bool = False) -> bool:
         """Read what comes within ``timeout`` s and act on it; whether bytes came.

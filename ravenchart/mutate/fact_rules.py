@@ -44,11 +44,11 @@ _PRIORITY = r"\b(Task|Driver|Probe)_Priority =>\s*Timing_Certificate\.(\w+)"
 def task(file: str, files: Files) -> Iterator[Found]:
     """A task with another priority, period, deadline, separation or offset."""
     text = files[file]
+    levels = _priorities(files)
     for match in matches(text, _PRIORITY):
         span, own = Span(*match.span(2)), match.group(2)
         for rule, new in (("higher", f"{own} + 1"), ("lower", f"{own} - 1")):
             yield "priority", rule, replaced(span, new)
-        levels = _priorities(files)
         for other in levels:
             if levels[other] != levels[own]:
                 yield "priority", f"of {other}", replaced(span, other)

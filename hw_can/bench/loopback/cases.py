@@ -20,7 +20,7 @@ PINGS = 200
 """Frames whose latency is measured, one by one."""
 
 LATEST = 200_000_000
-"""Nanoseconds within which each of them arrives; ten times what a loaded host withholds."""
+"""Nanoseconds within which each of them must arrive."""
 
 STREAM = 1_000
 """Frames of the throughput."""
