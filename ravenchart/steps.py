@@ -6,6 +6,7 @@ import gc
 import hashlib
 import os
 import re
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -274,12 +275,21 @@ def _is_inside(name: str) -> bool:
 
 
 def replace_file(path: Path, text: str) -> bool:
-    """Put ``text`` at ``path`` in one step; False when it stands there already."""
+    """Put ``text`` at ``path`` in one step; False when it stands there already.
+
+    The compiler takes a source whose time is the same to the second for the one that it
+    compiled. So the file gets the second before this one, or the one after that of the
+    file it replaces: what is written later, by the user too, always has another.
+    """
     data = text.encode("utf-8")
-    if path.is_file() and path.read_bytes() == data:
-        return False
+    stamp = int(time.time()) - 1
+    if path.is_file():
+        if path.read_bytes() == data:
+            return False
+        stamp = max(stamp, int(path.stat().st_mtime) + 1)
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     beside.write_bytes(data)
+    os.utime(beside, (stamp, stamp))
     beside.replace(path)
     return True
 
