@@ -75,7 +75,7 @@ def _command(arguments: Sequence[str] | None) -> int:
     """The command itself, imported only now; its output has been written when it returns."""
     from rich.console import Console
 
-    from .__main__ import main as command
+    from .command_line import main as command
 
     setattr(Console, "on_broken_pipe", _again)  # noqa: B010 - rich asks for a subclass
     try:

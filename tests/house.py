@@ -13,9 +13,9 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ravenchart.building import steps, toolchain
-from ravenchart.building.steps import Refused
-from ravenchart.building.toolchain import ToolFailed, ToolMissing
+from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building.toolchain import ToolMissing
+from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark, proving
 
@@ -34,7 +34,7 @@ EXAMPLES = (
     "three_components",
     "two_nodes",
 )
-DRIVERS = tuple(steps.DRIVER_FOLDERS)
+DRIVERS = tuple(programs.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
 GENERIC_BODIES = {"ravenchart-can-controllers.adb", "ravenchart-can-ctu_cores.adb"}
@@ -80,7 +80,7 @@ def _bus() -> Target:
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
         (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
-        (folder, *steps.runtime_folders(DRIVERS[0])),
+        (folder, *programs.runtime_folders(DRIVERS[0])),
         warnings="error",
         whole=True,
     )
@@ -99,7 +99,7 @@ def _runtime(driver: str) -> Target:
     """All of it with the first driver; with another only what differs."""
     obj = ROOT / "obj"
     project = ROOT / "proofs" / "proofs.gpr"
-    folders = (*PROVED_WITH.get(driver, ()), *steps.DRIVER_FOLDERS[driver])
+    folders = (*PROVED_WITH.get(driver, ()), *programs.DRIVER_FOLDERS[driver])
     own = tuple(ROOT / "hw_can" / folder for folder in folders)
     sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
     bodies = {name for name in sources if name.endswith(".adb")}
@@ -108,7 +108,7 @@ def _runtime(driver: str) -> Target:
         project,
         {"MODE": "checks", "CAN_DRIVER": driver},
         (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
-        (project.parent, project.parent / "instances", *steps.runtime_folders(driver)),
+        (project.parent, project.parent / "instances", *programs.runtime_folders(driver)),
         warnings="error",
         whole=True,
         units=()
@@ -119,10 +119,10 @@ def _runtime(driver: str) -> Target:
 
 
 def _example(name: str) -> Iterator[Target]:
-    checked = steps.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
-    steps.write_program(checked)
-    driver = steps.default_driver(checked)
-    for made in steps.programs_of(checked):
+    checked = checking.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
+    generation.write_program(checked)
+    driver = programs.default_driver(checked)
+    for made in programs.programs_of(checked):
         target = f"{name}-{made.folder}" if made.folder else name
         yield Target(target, made.proof(driver, warnings="error"))
 
@@ -150,16 +150,16 @@ def check(_names: Sequence[str]) -> bool:
     """Generated files up to date, and every build free of warnings."""
     fresh = True
     for example in EXAMPLES:
-        checked = steps.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)
+        checked = checking.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)
         if checked.warnings:
             print(checked.warnings, file=sys.stderr)
             fresh = False
-        written = steps.write_program(checked)
+        written = generation.write_program(checked)
         if written.changed:
             print(f"{written.folder}: {written.changed} files were not what the model gives")
             fresh = False
         for mode in ("checks", "release"):
-            for made in steps.programs_of(checked):
+            for made in programs.programs_of(checked):
                 made.build(mode)
             print(f"{example}: builds without a warning ({mode})", flush=True)
     others = (ROOT / "hw_can" / "bus" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")

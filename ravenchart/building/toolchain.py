@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from ravenchart.failures import ToolFailed, Unusable
 from ravenchart.paths import ROOT, work
 
 from . import children
@@ -19,16 +20,12 @@ INSTALL_HINT = {
 }
 
 
-class ToolMissing(Exception):  # noqa: N818
+class ToolMissing(Unusable):
     """An outside program is not installed; the text says how to get it."""
 
     def __init__(self, tool: str) -> None:
         super().__init__(f"{tool} is not on PATH; {INSTALL_HINT[tool]}")
         self.tool = tool
-
-
-class ToolFailed(Exception):  # noqa: N818
-    """An outside program ended with an error; the text is what it printed."""
 
 
 def have(tool: str) -> bool:

@@ -9,6 +9,7 @@ have in the model: what hands a value on comes before what takes it.
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -24,10 +25,12 @@ from ravenchart.analysis.present.table import WIDTH
 from ravenchart.analysis.present.words import verdict_line
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.analysis.units import duration, microseconds
+from ravenchart.failures import OK, WRONG
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
 
+from . import common
 from .allocation_search import SET, Judged, searched
 
 STRATEGIES = {
@@ -245,3 +248,25 @@ def _written(system: System) -> Iterator[Processor]:
             seen.add(name)
         else:
             yield one
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    common.add_model(sub)
+    sub.add_argument(
+        "--strategy", choices=tuple(STRATEGIES), required=True,
+        help="a processor for each period; for each instance where rates fit; as few as do; "
+        "as much slack as there is",
+    )  # fmt: skip
+    sub.add_argument("--yaml", action="store_true", help="print it for the model")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Propose it; the exit status."""
+    checked = common.checked(options, deadlines=False)
+    proposal = propose(checked.analysis, options.strategy)
+    if options.yaml:
+        print(yaml(proposal), end="")
+    else:
+        show(proposal)
+    return OK if proposal.analysis.schedulable else WRONG

@@ -148,3 +148,8 @@ def _words(most: int, kinds: Sequence[str] = ()) -> Callable[[str], str]:
         return text
 
     return read
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Serve until it is stopped; the exit status."""
+    return serve(words(options))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from ravenchart.building import toolchain
-from ravenchart.building.steps import Refused
+from ravenchart.failures import OK, Refused
 from ravenchart.gen.draw import structure_text
 from ravenchart.gen.draw.ada_chart import picture_of_ada
 from ravenchart.gen.draw.ada_text import NotDeclaredError
@@ -18,6 +19,8 @@ from ravenchart.gen.draw.plantuml import plantuml
 from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.draw.svg import finished
 from ravenchart.gen.model.system import System
+
+from . import common
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,3 +72,31 @@ def write(drawings: Mapping[str, str], folder: Path) -> None:
 def svg(dot: str) -> str:
     """The drawing of a DOT text; ToolMissing without Graphviz."""
     return finished(toolchain.filtered("dot", ["-Tsvg"], dot), dot)
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    source = sub.add_mutually_exclusive_group(required=True)
+    source.add_argument(
+        "model", type=Path, nargs="?", metavar="MODEL", help="the model's YAML file"
+    )
+    source.add_argument(
+        "--from-ada",
+        type=Path,
+        metavar="FILE",
+        help="draw what the generated spec of a region says",
+    )
+    sub.add_argument("--out", type=Path, metavar="DIR", help="where to (default: drawings/ beside)")
+    sub.add_argument("--format", choices=FORMATS, default="svg", help="default: svg")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Draw it; the exit status."""
+    if options.from_ada is not None:
+        drawings = texts_of_ada(options.from_ada, options.format)
+    else:
+        drawings = texts(common.checked(options, deadlines=False).system, options.format)
+    folder = options.out or (options.from_ada or options.model).parent / "drawings"
+    write(drawings, folder)
+    print(f"{folder}: {len(drawings)} drawings")
+    return OK

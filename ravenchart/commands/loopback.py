@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Setup, open_ends
 from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, histogram, run
@@ -105,15 +105,12 @@ def tested(options: argparse.Namespace) -> bool:
     return result.passed
 
 
-def main() -> int:
-    """The command alone, without what the others need: 0 passed, 1 failed, 2 not run."""
-    parser = argparse.ArgumentParser(prog="loopback")
-    add_arguments(parser)
+def execute(options: argparse.Namespace) -> int:
+    """Test them; the exit status."""
     try:
-        return 0 if tested(parser.parse_args()) else 1
-    except (BenchError, OSError) as problem:
-        print(f"loopback: error: {problem}", file=sys.stderr)
-        return 2
+        return OK if tested(options) else WRONG
+    except BenchError as problem:
+        raise Unusable(str(problem)) from problem
 
 
 def _bitrate(text: str) -> int:
@@ -121,7 +118,3 @@ def _bitrate(text: str) -> int:
     if not (text.isascii() and text.isdigit() and 0 < int(text) <= 1_000_000):
         raise argparse.ArgumentTypeError(f"{text!r} is not 1 .. 1000000 bit/s")
     return int(text)
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -8,7 +8,8 @@ from pathlib import Path
 from ravenchart.analysis.present.report import Execution, executions
 from ravenchart.analysis.system.observed import TraceError, of_model, read_map, read_trace
 from ravenchart.analysis.units import microseconds
-from ravenchart.building.steps import Checked, Refused
+from ravenchart.building.checking import Checked
+from ravenchart.failures import Refused
 
 
 def within_budgets(checked: Checked, path: Path) -> bool:

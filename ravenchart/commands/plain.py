@@ -19,7 +19,7 @@ from ravenchart.analysis.plain.results import PlainResult, analyse, everything, 
 from ravenchart.analysis.present.report import Execution
 from ravenchart.analysis.present.words import offset_lines
 from ravenchart.analysis.units import duration, percent
-from ravenchart.building.steps import Refused
+from ravenchart.failures import Refused
 
 from .observed import tell
 

@@ -7,6 +7,7 @@ order of `behaviour.machine` and prints the lines of `Record.text`.
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,14 +18,10 @@ from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read
 from ravenchart.behaviour.interpreter.traces import Record, parsed
 from ravenchart.behaviour.rules.outside import external_events
 from ravenchart.building import children, toolchain
-from ravenchart.building.steps import (
-    Checked,
-    Refused,
-    build_home,
-    replace_file,
-    without_clashes,
-    write_first_versions,
-)
+from ravenchart.building.checking import Checked
+from ravenchart.building.generation import replace_file, without_clashes, write_first_versions
+from ravenchart.building.programs import build_home
+from ravenchart.failures import OK, Refused, ToolFailed
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import Diagnostic, error, render, render_all, warning
 from ravenchart.gen.emit.nodes.simulation import numbers
@@ -34,6 +31,8 @@ from ravenchart.gen.files.load import LARGEST, read_file
 from ravenchart.gen.files.located import lines_of
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
+
+from . import common
 
 
 def stimuli_of(system: System, path: Path) -> Stimuli:
@@ -120,7 +119,7 @@ def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Reco
     text = "".join(f"{line}\n" for line in lines)
     done = children.run([program], text)
     if done.returncode:
-        raise toolchain.ToolFailed(f"{program.name}: {done.stderr.strip()}")
+        raise ToolFailed(f"{program.name}: {done.stderr.strip()}")
     return [parsed(line) for line in done.stdout.splitlines()]
 
 
@@ -173,3 +172,26 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
     else:
         records = simulated_by_program(checked, stimuli)
     return "".join(f"{one.json() if as_json else one.text()}\n" for one in records)
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    common.add_model(sub)
+    sub.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
+    sub.add_argument(
+        "--interpreter", action="store_true", help="by the interpreter, not the generated program"
+    )
+    sub.add_argument("--json", action="store_true", help="one JSON object for each step")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Run it in virtual time; the exit status."""
+    checked = common.checked(options, deadlines=False)
+    trace = simulated(
+        checked, options.events, interpreter=options.interpreter, as_json=options.json
+    )
+    missing = left_out(checked.system) if options.interpreter else None
+    if missing is not None:
+        print(render(missing, {}), file=sys.stderr)
+    print(trace, end="")
+    return OK

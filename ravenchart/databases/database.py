@@ -16,7 +16,7 @@ from cantools.database import Database
 from cantools.database.can import Message, Signal
 from cantools.database.errors import Error as DatabaseFault
 
-from ravenchart.building.steps import Refused
+from ravenchart.failures import Refused
 from ravenchart.gen.language.names import meant
 from ravenchart.gen.language.quantities import duration
 from ravenchart.gen.resolve.layouts import SIGNED_BITS

@@ -14,13 +14,15 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from ravenchart.failures import Failure
+
 from .spark_results import Outside
 
 FILE = "outside_spark.toml"
 """Its name, beside a model."""
 
 
-class WrongList(Exception):  # noqa: N818
+class WrongList(Failure):
     """The file is no list of names with reasons; the text says where and why."""
 
 

@@ -22,7 +22,7 @@ from ravenchart.analysis.system.observed import (
     together,
 )
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.building.steps import Program
+from ravenchart.building.programs import Program
 from ravenchart.commands import bus
 from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH

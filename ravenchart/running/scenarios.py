@@ -13,7 +13,7 @@ import cantools
 from cantools.database.can import Message as DbcMessage
 from cantools.database.can import Signal as DbcSignal
 
-from ravenchart.building.steps import Refused
+from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ravenchart.behaviour import rules as behaviour_rules
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, toolchain
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
@@ -56,8 +56,8 @@ def runtime_operations() -> None:
 def generator() -> None:
     """Load, analyse and generate the robot."""
     path = ROOT / "examples" / "cartesian_robot" / "model.yaml"
-    checked = steps.check(path)
-    claims = steps.claims(checked)
+    checked = checking.check(path)
+    claims = generation.claims(checked)
     print("the Cartesian robot (medians):")
     print(f"  load and check the model: {median_ms(lambda: load(path)):.0f} ms")
     print(f"  generate its program: {median_ms(lambda: generate(checked.system, claims)):.0f} ms")
@@ -71,8 +71,8 @@ def large_models() -> None:
             path = Path(place) / "model.yaml"
             path.write_text(large_model(components, regions), encoding="utf-8")
             start = time.perf_counter()
-            checked = steps.check(path, patience=0.0)
-            written = steps.write_program(checked)
+            checked = checking.check(path, patience=0.0)
+            written = generation.write_program(checked)
             spent = time.perf_counter() - start
             start = time.perf_counter()
             behaviour_rules.findings(checked.system)

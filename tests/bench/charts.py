@@ -7,8 +7,9 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from ravenchart.building import steps, toolchain
-from ravenchart.building.steps import replace_file
+from ravenchart.building import checking, generation, toolchain
+from ravenchart.building.generation import replace_file
+from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
 
@@ -34,8 +35,8 @@ def main() -> None:
     home = ROOT / "build" / "bench-charts"
     source = home / "generated"
     source.mkdir(parents=True, exist_ok=True)
-    checked = steps.check(HERE / "model.yaml")
-    for name, text in generate(checked.system, steps.claims(checked)).items():
+    checked = checking.check(HERE / "model.yaml")
+    for name, text in generate(checked.system, generation.claims(checked)).items():
         replace_file(source / name, text)
     variables = {
         "MODE": "release",
@@ -95,6 +96,6 @@ def cross_size(source: Path, home: Path) -> None:
             [*command, path], cwd=home, capture_output=True, text=True, check=False
         )
         if done.returncode != 0:
-            raise toolchain.ToolFailed(done.stderr)
+            raise ToolFailed(done.stderr)
     tool = re.sub(r"gcc(-\d+)?$", "size", compiler)
     size("32-bit Arm (Thumb-2)", tool, home / f"{REGION}.o", home / "hand_written.o")

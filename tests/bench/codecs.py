@@ -19,7 +19,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, programs, toolchain
 from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.buses.codecs import codec_name
 from ravenchart.gen.language.terms import EnumerationType
@@ -340,10 +340,10 @@ def nanoseconds() -> Figures:
     with tempfile.TemporaryDirectory(prefix="ravenchart-codecs-") as place:
         folder = Path(place) / "robot"
         shutil.copytree(ROOT / "examples" / "cartesian_robot", folder)
-        checked = steps.check(folder / "model.yaml")
-        steps.write_program(checked)
+        checked = checking.check(folder / "model.yaml")
+        generation.write_program(checked)
         system = checked.system
-        (made,) = steps.programs_of(checked)
+        (made,) = programs.programs_of(checked)
         database = made.generated / f"{system.buses[0].name}.dbc"
         objects = c_objects(system, database, Path(place))
         (folder / "user" / "codecs_bench.adb").write_text(ada_main(system), encoding="ascii")

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, programs, toolchain
 from ravenchart.paths import ROOT
 
 MOST_OF_PLAIN = 1.05
@@ -92,11 +92,11 @@ def nanoseconds() -> tuple[float, float, float]:
     with tempfile.TemporaryDirectory(prefix="ravenchart-commands-") as place:
         folder = Path(place) / "requests"
         shutil.copytree(ROOT / "tests" / "feature" / "requests", folder)
-        checked = steps.check(folder / "model.yaml")
-        steps.write_program(checked)
+        checked = checking.check(folder / "model.yaml")
+        generation.write_program(checked)
         (folder / "user" / "commands_bench.adb").write_text(MAIN, encoding="utf-8")
         (folder / "user" / "kept.ads").write_text(KEPT, encoding="utf-8")
-        (made,) = steps.programs_of(checked)
+        (made,) = programs.programs_of(checked)
         given = {**made.scenario("release", "loopback"), "RAVENCHART_BUILD": place}
         options = ["-p", "-q", "-P", made.project.name, "commands_bench.adb"]
         toolchain.run("gprbuild", options, made.generated, given)

@@ -22,7 +22,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ravenchart.building import toolchain
-from ravenchart.building.toolchain import ToolFailed, ToolMissing
+from ravenchart.building.toolchain import ToolMissing
+from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
 
 from . import machines
@@ -98,7 +99,8 @@ def steps(python: str, programs: Path) -> tuple[Step, ...]:
         python,
         "-P",
         "-m",
-        "ravenchart.commands.loopback",
+        "ravenchart",
+        "loopback",
         "--interface",
         "socketcan",
         "--channel",

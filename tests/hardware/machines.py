@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.building.toolchain import ToolFailed
+from ravenchart.failures import ToolFailed
 
 SWITCHES = ("-gnat2012", "-gnata", "-O1")
 

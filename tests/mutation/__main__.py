@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
 
-from ravenchart.building.toolchain import ToolFailed, ToolMissing
+from ravenchart.building.toolchain import ToolMissing
+from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
 
 from .catalogue import KINDS, mutants_of

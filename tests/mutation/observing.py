@@ -18,9 +18,9 @@ from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised, Stimuli
 from ravenchart.behaviour.interpreter.traces import Record
-from ravenchart.building import steps
-from ravenchart.building.toolchain import ToolFailed
+from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
+from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.program import simulation
 from ravenchart.gen.language.terms import (
     IntegerType,
@@ -50,7 +50,7 @@ Process = subprocess.Popen[bytes]
 class Observer:
     """Runs the unbroken program once, then says how a broken one differs."""
 
-    def __init__(self, checked: steps.Checked, folder: Path) -> None:
+    def __init__(self, checked: checking.Checked, folder: Path) -> None:
         self.checked = checked
         self.folder = folder
 
@@ -105,7 +105,7 @@ def _scalar(of_type: ScalarType, rng: Random) -> Scalar:
 class Simulated(Observer):
     """Regions by the program in virtual time against the interpreter, the rest by a real run."""
 
-    def __init__(self, checked: steps.Checked, folder: Path) -> None:
+    def __init__(self, checked: checking.Checked, folder: Path) -> None:
         super().__init__(checked, folder)
         self.system = checked.system
         self.stimuli = [random_stimuli(self.system, seed) for seed in SEEDS]
@@ -288,10 +288,10 @@ class PlayedTogether(Observer):
         home.mkdir()
         for source in self.checked.folder.glob("*.yaml"):
             shutil.copy(source, home)
-        unbroken = steps.check(home / self.checked.path.name)
-        steps.write_program(unbroken)
+        unbroken = checking.check(home / self.checked.path.name)
+        generation.write_program(unbroken)
         self.generated = unbroken.generated
-        self.controllers = [controller(made) for made in steps.programs_of(unbroken)]
+        self.controllers = [controller(made) for made in programs.programs_of(unbroken)]
         if failures := self._failures(executable):
             raise ToolFailed(f"the unbroken program fails its scenario: {failures}")
 

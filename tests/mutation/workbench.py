@@ -14,9 +14,9 @@ from threading import Lock
 
 import yaml
 
-from ravenchart.building import steps
-from ravenchart.building.steps import Refused
-from ravenchart.building.toolchain import ToolFailed, ToolMissing, have
+from ravenchart.building import checking, generation, programs
+from ravenchart.building.toolchain import ToolMissing, have
+from ravenchart.failures import Refused, ToolFailed
 from ravenchart.gen.emit.program import generate, user_units
 from ravenchart.paths import ROOT
 
@@ -54,10 +54,10 @@ class Workbench:
         self, model: Path, folder: Path, observer: type[Observer] = Simulated, node: str = ""
     ) -> None:
         """Of a model with several nodes, the program of ``node`` is broken."""
-        checked = steps.check(model)
+        checked = checking.check(model)
         self.folder = folder
-        self.driver = steps.default_driver(checked)
-        files = dict(generate(checked.system, steps.claims(checked)))
+        self.driver = programs.default_driver(checked)
+        files = dict(generate(checked.system, generation.claims(checked)))
         home = f"{node}/" if node else ""
         files = {n.removeprefix(home): t for n, t in files.items() if n.startswith(home)}
         self.model = checked.path
@@ -71,7 +71,7 @@ class Workbench:
         self.main = f"{checked.stem}_main"
         self.observer = observer(checked, folder)
 
-    def _copy(self, checked: steps.Checked, files: Mapping[str, str]) -> None:
+    def _copy(self, checked: checking.Checked, files: Mapping[str, str]) -> None:
         for name in ("spark_runtime", "hw_can"):
             shutil.copytree(ROOT / name, self.folder / name, dirs_exist_ok=True)
         for name in ("ravenchart.gpr", "switches.gpr"):
@@ -150,7 +150,7 @@ class Workbench:
             (folder / name).write_text(broken if name == file else text)
         try:
             with _RULES:
-                checked = steps.check(folder / self.model.name)
+                checked = checking.check(folder / self.model.name)
         except Refused as refused:
             return Verdict("model rules", _first_error(str(refused)))
         seen = self.observer.model_differs(checked.system)

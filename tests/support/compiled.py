@@ -13,6 +13,7 @@ from pathlib import Path
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.building import toolchain
+from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.program import generate
 from tests.support.interpreted import system_of
@@ -37,6 +38,6 @@ def complaints(models: Mapping[str, str], home: Path, mode: str) -> str:
     given = {"MODE": mode, "CAN_DRIVER": "loopback", "RAVENCHART_BUILD": str(home / "objects")}
     try:
         toolchain.run("gprbuild", options, source, given)
-    except toolchain.ToolFailed as problem:
+    except ToolFailed as problem:
         return str(problem)
     return ""

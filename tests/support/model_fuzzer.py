@@ -26,7 +26,8 @@ from typing import Any
 
 import yaml
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
+from ravenchart.failures import Refused
 from ravenchart.gen.derive.calls import device_types
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.commands.devices import simulated_driver
@@ -195,9 +196,9 @@ def tried(seed: int) -> Outcome:
         model = Path(place) / "model.yaml"
         model.write_text(text, encoding="utf-8")
         try:
-            checked = steps.check(model, deadlines=False, patience=PATIENCE)
-            files = generate(checked.system, steps.claims(checked))
-        except steps.Refused as refused:
+            checked = checking.check(model, deadlines=False, patience=PATIENCE)
+            files = generate(checked.system, generation.claims(checked))
+        except Refused as refused:
             return Outcome(seed, "refused", str(refused))
         except Exception as broken:
             return Outcome(seed, "wrong", f"{type(broken).__name__}: {broken}")

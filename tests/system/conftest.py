@@ -8,27 +8,27 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 
 CopyOf = Callable[[str], Path]
 """Copies an example to a folder of its own."""
 
 
-def _built(name: str) -> tuple[steps.Checked, Path]:
-    checked = steps.check(ROOT / "examples" / name / "model.yaml")
-    steps.write_program(checked)
-    return checked, steps.programs_of(checked)[0].build()
+def _built(name: str) -> tuple[checking.Checked, Path]:
+    checked = checking.check(ROOT / "examples" / name / "model.yaml")
+    generation.write_program(checked)
+    return checked, programs.programs_of(checked)[0].build()
 
 
 @pytest.fixture(scope="session")
-def robot() -> tuple[steps.Checked, Path]:
+def robot() -> tuple[checking.Checked, Path]:
     """The Cartesian robot, checked and built."""
     return _built("cartesian_robot")
 
 
 @pytest.fixture(scope="session")
-def stations() -> tuple[steps.Checked, Path]:
+def stations() -> tuple[checking.Checked, Path]:
     """The three components, checked and built."""
     return _built("three_components")
 

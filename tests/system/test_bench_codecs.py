@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import steps
+from ravenchart.building import checking
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 from tests.bench import codecs as bench_codecs
 
 
 def test_the_codecs_take_no_longer_than_c_that_checks_nothing() -> None:
-    robot = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
+    robot = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
     figures = bench_codecs.nanoseconds()
     assert list(figures) == [message.name for message in robot.messages]
     spent = {

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import steps, toolchain
-from ravenchart.building.toolchain import ToolFailed
+from ravenchart.building import checking, toolchain
+from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
 
 needs_gnatprove = pytest.mark.skipif(
@@ -110,5 +110,5 @@ def test_a_budget_that_cannot_be_met_is_refused_with_the_model_line(
     folder = copy_of("three_components")
     model = folder / "model.yaml"
     model.write_text(model.read_text().replace("wcet: 200 us", "wcet: 9 ms"))
-    with pytest.raises(steps.Refused, match=r"model.yaml:\d+:\d+: error: processor_3"):
-        steps.check(model)
+    with pytest.raises(Refused, match=r"model.yaml:\d+:\d+: error: processor_3"):
+        checking.check(model)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.observed import read_map, read_trace
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, programs, toolchain
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
 from ravenchart.running.running import controller, run_nodes
@@ -25,10 +25,10 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder: Path) -> None:
-    checked = steps.check(folder / "model.yaml")
+    checked = checking.check(folder / "model.yaml")
     assert not checked.warnings
-    steps.write_program(checked)
-    controllers = tuple(controller(made) for made in steps.programs_of(checked))
+    generation.write_program(checked)
+    controllers = tuple(controller(made) for made in programs.programs_of(checked))
     outcome = run_nodes(
         controllers,
         checked.analysis,
@@ -67,10 +67,10 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
 def test_a_region_publishes_and_events_are_brought_without_a_warning(tmp_path: Path) -> None:
     copy = tmp_path / "gripper"
     shutil.copytree(ROOT / "tests" / "nodes" / "gripper", copy)
-    checked = steps.check(copy / "model.yaml")
+    checked = checking.check(copy / "model.yaml")
     assert not checked.warnings
-    assert steps.write_program(checked).missing == ()
-    for made in steps.programs_of(checked):
+    assert generation.write_program(checked).missing == ()
+    for made in programs.programs_of(checked):
         made.build()
     grasp = (copy / "generated" / "board" / "gripper_cell-grasp_1.adb").read_text()
     assert "Link.Send_Grasp_1_Get_Heat (Life_Region.Data.Heat_Now);" in grasp
@@ -84,9 +84,9 @@ def test_both_programs_are_proved_without_a_warning(name: str, tmp_path: Path) -
     if name == "gripper" and "RAVENCHART_LONG_TESTS" not in os.environ:
         pytest.skip("four minutes of proof: `make test-long` proves it")
     copy = shutil.copytree(ROOT / "tests" / "nodes" / name, tmp_path / name)
-    checked = steps.check(copy / "model.yaml")
-    steps.write_program(checked)
-    for made in steps.programs_of(checked):
+    checked = checking.check(copy / "model.yaml")
+    generation.write_program(checked)
+    for made in programs.programs_of(checked):
         proof = proving.prove(made.proof("bus", warnings="error"))
         assert proof.clean, proof.summary()
         assert proof.results.outside == ()

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import can
 import pytest
 
-from ravenchart.__main__ import main
+from ravenchart.command_line import main
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.bus_records import MARK, RECORD_BYTES, Kind, Record, Status, encode
 from tests.support.can_bus import Start, started, starter

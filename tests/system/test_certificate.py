@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.building import steps
+from ravenchart.building import checking
 from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled, numbers, random_system
 from tests.support.systems import shared, system, task
@@ -21,7 +21,9 @@ CLAIMS = ("_R", "_Busy", r"_W(?:_\d+)?", "_Turn", "_Done", "_Reaction", "_Age", 
 
 @pytest.fixture(scope="module")
 def robot_text() -> str:
-    return certificate(steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").analysis)
+    return certificate(
+        checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").analysis
+    )
 
 
 def test_every_claim_of_the_robot_is_exact(robot_text: str, tmp_path: Path) -> None:

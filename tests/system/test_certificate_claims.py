@@ -9,7 +9,7 @@ import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.building import steps
+from ravenchart.building import checking
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.certificate.package import emit_certificate
 from ravenchart.gen.language.terms import Ns
@@ -73,7 +73,7 @@ def test_tasks_of_one_priority_cannot_claim_less_than_no_time(tmp_path: Path) ->
 
 @pytest.fixture(scope="module")
 def robot() -> Analysis:
-    return steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").analysis
+    return checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").analysis
 
 
 def test_a_chain_that_is_not_claimed_is_refused(robot: Analysis, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
 from tests.support.codec_fuzzer import CHECKED, UNCHECKED, fuzzed
@@ -27,8 +27,8 @@ MODELS = [
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda p: p.parent.name)
 def test_what_is_accepted_packs_into_the_same_bits(model: Path, tmp_path: Path) -> None:
-    checked = steps.check(model)
-    for name, text in generate(checked.system, steps.claims(checked)).items():
+    checked = checking.check(model)
+    for name, text in generate(checked.system, generation.claims(checked)).items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     tallies = fuzzed(checked.system, tmp_path, tmp_path / "checked", FRAMES, CHECKED)
     assert [tally.message for tally in tallies] == [m.name for m in checked.system.messages]

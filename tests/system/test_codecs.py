@@ -14,7 +14,7 @@ import pytest
 from cantools.database import Database
 from cantools.database.can import Message as DbcMessage
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.program import folder_of, generate
 from ravenchart.gen.language.terms import IntegerType
@@ -60,8 +60,8 @@ class Peer:
 
 def made(model: Path, folder: Path, machine: Machine = HERE) -> list[Peer]:
     """The peers of a model: one for each node whose program has codecs."""
-    checked = steps.check(model)
-    files = generate(checked.system, steps.claims(checked))
+    checked = checking.check(model)
+    files = generate(checked.system, generation.claims(checked))
     databases = {name: text for name, text in files.items() if name.endswith(".dbc")}
     peers = []
     for part in programs(checked.system):
@@ -303,8 +303,8 @@ def test_the_database_says_units_ranges_and_pages(peers: list[Peer]) -> None:
 def test_a_codec_that_agrees_with_itself_and_not_with_the_table_breaks_its_contract(
     tmp_path: Path,
 ) -> None:
-    checked = steps.check(FEATURES / "signals" / "model.yaml")
-    for name, text in generate(checked.system, steps.claims(checked)).items():
+    checked = checking.check(FEATURES / "signals" / "model.yaml")
+    for name, text in generate(checked.system, generation.claims(checked)).items():
         if "codecs" in name:  # the byte of the load, read and written one further
             assert "16#FF#" in text or "40)" in text
             text = text.replace("Shift_Right (Word, 40)", "Shift_Right (Word, 56)")

@@ -13,9 +13,9 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.command_line import main
 from ravenchart.commands import bus
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
@@ -51,16 +51,16 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
         return real(*words)
 
     monkeypatch.setattr(bus, "running", running)
-    checked = steps.check(folder / "model.yaml")
+    checked = checking.check(folder / "model.yaml")
     assert not checked.warnings
     assert {m.name: (m.fd, m.length) for m in checked.system.messages} == {
         "skin_1_forces": (True, 48),
         "grip_1_order": (False, 1),
         "tuning": (True, 12),
     }
-    steps.write_program(checked)
+    generation.write_program(checked)
     outcome = run_nodes(
-        tuple(controller(made) for made in steps.programs_of(checked)),
+        tuple(controller(made) for made in programs.programs_of(checked)),
         checked.analysis,
         folder / "generated" / "link.dbc",
         folder / "scenario.yaml",
@@ -81,8 +81,8 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
 def test_a_rate_that_the_simulated_bus_cannot_have_is_told(folder: Path) -> None:
     model = folder / "model.yaml"
     model.write_text(model.read_text().replace("data_rate: 4 Mbit/s", "data_rate: 3 Mbit/s"))
-    checked = steps.check(model)
-    steps.write_program(checked)
+    checked = checking.check(model)
+    generation.write_program(checked)
     dbc = folder / "generated" / "link.dbc"
     with pytest.raises(BenchError, match="link: a bit at 3000000 bit/s is no whole number of ns"):
         run_nodes((), checked.analysis, dbc, None, 1.0, folder / "report")
@@ -124,9 +124,9 @@ BAD: dict[str, Callable[[can.Message], can.Message]] = {
 @pytest.fixture
 def palm(folder: Path) -> Callable[[Callable[[RavenchartBus, Codec], None]], Observation]:
     """Runs one node on a bus with a bench that does something; what was seen."""
-    checked = steps.check(folder / "model.yaml")
-    steps.write_program(checked)
-    (made,) = (p for p in steps.programs_of(checked) if p.node == "palm")
+    checked = checking.check(folder / "model.yaml")
+    generation.write_program(checked)
+    (made,) = (p for p in programs.programs_of(checked) if p.node == "palm")
     program = controller(made)
     codec = Codec.from_file(folder / "generated" / "link.dbc")
 
@@ -170,9 +170,9 @@ def test_bad_frames_are_not_delivered(
 def test_one_node_exchanges_both_formats_with_a_bench(tmp_path: Path) -> None:
     copy = tmp_path / "flexible"
     shutil.copytree(ROOT / "tests" / "feature" / "flexible", copy)
-    checked = steps.check(copy / "model.yaml")
-    steps.write_program(checked)
-    (program,) = (controller(made) for made in steps.programs_of(checked))
+    checked = checking.check(copy / "model.yaml")
+    generation.write_program(checked)
+    (program,) = (controller(made) for made in programs.programs_of(checked))
     scenario = copy / "scenario.yaml"
     angles = ", ".join(f"joint_{n}: {n - 12_000_000}" for n in range(1, 20))
     scenario.write_text(

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 import yaml
 
-from ravenchart.__main__ import main
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 
 CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
@@ -37,13 +37,13 @@ def folder(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     return copy
 
 
-def _run(folder: Path, expected: dict[str, Any]) -> tuple[steps.Checked, Observation]:
-    checked = steps.check(folder / "model.yaml")
+def _run(folder: Path, expected: dict[str, Any]) -> tuple[checking.Checked, Observation]:
+    checked = checking.check(folder / "model.yaml")
     assert re.findall(r"\[(RV-\d+)\]", checked.warnings) == expected.get("warnings", [])
-    steps.write_program(checked)
+    generation.write_program(checked)
     trace = folder / "trace"
     process = subprocess.Popen(
-        [steps.programs_of(checked)[0].build()], env={"RAVENCHART_TRACE": str(trace)}
+        [programs.programs_of(checked)[0].build()], env={"RAVENCHART_TRACE": str(trace)}
     )
     time.sleep(expected["seconds"])
     process.send_signal(signal.SIGTERM)

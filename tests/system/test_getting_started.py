@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.building import toolchain
+from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 
 PAGE = (ROOT / "docs" / "getting-started.md").read_text()

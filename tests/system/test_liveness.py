@@ -16,9 +16,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.analysis.system.observed import Observation
-from ravenchart.building import steps
+from ravenchart.building import checking, generation, programs
+from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from ravenchart.running import running as run
 from ravenchart.running.result import RunResult
@@ -95,7 +95,7 @@ class Faulty:
         return self.result.observation
 
 
-Built = tuple[steps.Checked, steps.Program, Path]
+Built = tuple[checking.Checked, programs.Program, Path]
 """A model, its program and the executable."""
 
 Breaking = Callable[..., Faulty]
@@ -127,9 +127,9 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, bool], Bui
                 text, changed = WATCHED.subn("", model.read_text())
                 assert changed == 3
                 model.write_text(text)
-            checked = steps.check(model)
-            steps.write_program(checked)
-            program = steps.programs_of(checked)[0]
+            checked = checking.check(model)
+            generation.write_program(checked)
+            program = programs.programs_of(checked)[0]
             made[mode, supervised] = checked, program, program.build(mode)
         return made[mode, supervised]
 
@@ -283,9 +283,9 @@ class Hit:
 
 def _hit(mode: str, place: int, folder: Path) -> Hit:
     """An exception in the thread with that place by urgency, as a division by zero gives it."""
-    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
-    steps.write_program(checked)
-    program = steps.programs_of(checked)[0].build(mode)
+    checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    generation.write_program(checked)
+    program = programs.programs_of(checked)[0].build(mode)
     trace = folder / "trace"
     told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace)}
     process = subprocess.Popen(
@@ -351,9 +351,9 @@ def test_a_sporadic_processor_that_hangs_is_found_and_the_mission_ends(
 ) -> None:
     """The reception of the Cartesian robot hangs, with a frame in its hands."""
     folder = copy_of("cartesian_robot")
-    checked = steps.check(folder / "model.yaml")
-    steps.write_program(checked)
-    program = steps.programs_of(checked)[0]
+    checked = checking.check(folder / "model.yaml")
+    generation.write_program(checked)
+    program = programs.programs_of(checked)[0]
     reception = program.generated / "cartesian_robot-reception.adb"
     text = reception.read_text()
     call = "            Robot_Bus.Receiver.Run_Receive (Executed);\n"
@@ -408,10 +408,10 @@ def test_of_two_nodes_the_one_whose_task_dies_fails_the_run_of_both(
     copy_of: Callable[[str], Path], tmp_path: Path
 ) -> None:
     folder = copy_of("two_nodes")
-    checked = steps.check(folder / "model.yaml")
-    steps.write_program(checked)
-    programs = {one.node: one for one in steps.programs_of(checked)}
-    table = programs["drive"].generated / "two_nodes-control.adb"
+    checked = checking.check(folder / "model.yaml")
+    generation.write_program(checked)
+    made = {one.node: one for one in programs.programs_of(checked)}
+    table = made["drive"].generated / "two_nodes-control.adb"
     call = "      case Item is\n"
     text = table.read_text()
     assert text.count(call) == 1
@@ -422,7 +422,7 @@ def test_of_two_nodes_the_one_whose_task_dies_fails_the_run_of_both(
 """
     table.write_text(text.replace(call, dies + call))
     result = run.run_nodes(
-        [run.controller(one) for one in programs.values()],
+        [run.controller(one) for one in made.values()],
         checked.analysis,
         folder / "generated" / "link.dbc",
         None,

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.building import toolchain
+from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
@@ -82,5 +83,5 @@ def test_a_program_that_is_not_clean_is_no_subject(
         return {**files, chosen[0].file: chosen[0].applied(files[chosen[0].file])}
 
     monkeypatch.setattr("tests.mutation.workbench.generate", broken)
-    with pytest.raises(toolchain.ToolFailed, match=r"postcondition|assertion"):
+    with pytest.raises(ToolFailed, match=r"postcondition|assertion"):
         tried(subject, chosen, 1, ())

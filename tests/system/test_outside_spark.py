@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import OK, WRONG, main
 from ravenchart.building import toolchain
+from ravenchart.command_line import main
+from ravenchart.failures import OK, WRONG
 from tests import house
 
 MODEL = """\

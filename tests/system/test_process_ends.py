@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building.steps import check, programs_of, write_program
+from ravenchart.building.checking import check
+from ravenchart.building.generation import write_program
+from ravenchart.building.programs import programs_of
 from ravenchart.commands import bus
 from ravenchart.running.running import controller
 from tests.support.faults import shows

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import steps
+from ravenchart.building import checking
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.running import run_controller
 from tests.support.faults import shows
@@ -19,7 +19,7 @@ from tests.support.faults import shows
 HERE = Path("examples/cartesian_robot")
 
 
-def _run(robot: tuple[steps.Checked, Path], scenario: str, folder: Path):  # type: ignore[no-untyped-def]
+def _run(robot: tuple[checking.Checked, Path], scenario: str, folder: Path):  # type: ignore[no-untyped-def]
     checked, executable = robot
     generated = checked.folder / "generated"
     return run_controller(
@@ -35,7 +35,7 @@ def _run(robot: tuple[steps.Checked, Path], scenario: str, folder: Path):  # typ
 
 
 def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
-    robot: tuple[steps.Checked, Path], tmp_path: Path
+    robot: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:
     outcome = _run(robot, "scenario.yaml", tmp_path)
     assert outcome.failures == ()
@@ -56,7 +56,7 @@ def test_it_homes_reaches_its_targets_and_fails_safe_on_a_limit_switch(
     within="200 ms from the last arrival",
 )
 def test_a_bench_that_disappears_leads_to_the_safe_state_and_a_clean_exit(
-    robot: tuple[steps.Checked, Path], tmp_path: Path
+    robot: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:
     outcome = _run(robot, "lost_bench.yaml", tmp_path)
     assert outcome.failures == ()
@@ -67,7 +67,7 @@ def test_a_bench_that_disappears_leads_to_the_safe_state_and_a_clean_exit(
 
 
 def test_sigterm_without_any_bench_ends_it_cleanly_within_its_grace(
-    robot: tuple[steps.Checked, Path], tmp_path: Path
+    robot: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:
     process = ControllerProcess(robot[1], tmp_path / "trace", 0)
     time.sleep(0.6)
@@ -80,7 +80,7 @@ def test_sigterm_without_any_bench_ends_it_cleanly_within_its_grace(
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root to become an ordinary user")
 def test_an_ordinary_user_is_told_that_there_are_no_real_time_priorities(
-    robot: tuple[steps.Checked, Path], tmp_path: Path
+    robot: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:
     program = tmp_path / "controller"
     shutil.copy(robot[1], program)

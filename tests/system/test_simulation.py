@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from ravenchart.__main__ import main
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.command_line import main
 from ravenchart.commands.simulate import build_simulation, run_simulation
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT

@@ -16,7 +16,7 @@ import pytest
 
 from ravenchart.behaviour.interpreter.stimuli import Arrived, Stimuli
 from ravenchart.behaviour.interpreter.traces import Record
-from ravenchart.building import steps
+from ravenchart.building import checking
 from ravenchart.commands.simulate import build_simulation, run_simulation
 from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.system import End
@@ -163,7 +163,7 @@ def problem(records: list[Record], start: int, fault: Fault) -> str:
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Stimuli], list[Record]]:
     """The robot's program in virtual time."""
-    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
     home = tmp_path_factory.mktemp("soak")
     program = build_simulation(checked.system, checked.folder, home)
     return lambda stimuli: run_simulation(checked.system, program, stimuli)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.command_line import main
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
@@ -34,25 +34,25 @@ STAND_INS = {"Follow", "Differ", "Presume"}
 
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 
-Variant = Callable[[str, str, str], steps.Checked]
+Variant = Callable[[str, str, str], checking.Checked]
 
 
 @pytest.fixture
 def variant(tmp_path: Path) -> Variant:
     """The example with one line of one file changed."""
 
-    def make(file: str, old: str, new: str) -> steps.Checked:
+    def make(file: str, old: str, new: str) -> checking.Checked:
         folder = tmp_path / "robot"
         shutil.copytree(HERE, folder)
         text = (folder / file).read_text()
         assert text.count(old) == 1
         (folder / file).write_text(text.replace(old, new))
-        return steps.check(folder / "model.yaml")
+        return checking.check(folder / "model.yaml")
 
     return make
 
 
-def _sources(checked: steps.Checked, *names: str) -> dict[str, str]:
+def _sources(checked: checking.Checked, *names: str) -> dict[str, str]:
     generated = checked.folder / "generated"
     return {name: (generated / f"surgical_robot-{name}").read_text() for name in names}
 
@@ -68,9 +68,9 @@ def test_every_way_to_sense_is_built_with_its_stand_ins_only(sensed: str, varian
     members, needed = SENSED[sensed]
     checked = variant("software_control.yaml", LINE, f"Robot: {{facade: {members}}}")
     assert not checked.warnings
-    written = steps.write_program(checked)
+    written = generation.write_program(checked)
     assert written.missing == ()
-    steps.programs_of(checked)[0].build()
+    programs.programs_of(checked)[0].build()
     everything = "\n".join(
         path.read_text() for path in (checked.folder / "generated").glob("*.ad[sb]")
     )
@@ -85,8 +85,8 @@ def test_the_application_is_the_same_whatever_is_sensed(tmp_path: Path) -> None:
         shutil.copytree(HERE, folder)
         file = folder / "software_control.yaml"
         file.write_text(file.read_text().replace(LINE, f"Robot: {{facade: {members}}}"))
-        checked = steps.check(folder / "model.yaml")
-        steps.write_program(checked)
+        checked = checking.check(folder / "model.yaml")
+        generation.write_program(checked)
         seen.append(_sources(checked, *names))
         users = {
             path.relative_to(folder): path.read_bytes() for path in folder.rglob("user/**/*.ad*")
@@ -100,8 +100,8 @@ def test_the_application_is_the_same_whatever_is_sensed(tmp_path: Path) -> None:
 @pytest.mark.parametrize("level", ["supervisory_control.yaml", "interface_only.yaml"])
 def test_the_level_of_control_is_chosen_by_a_line(level: str, variant: Variant) -> None:
     checked = variant("model.yaml", "software_control.yaml", level)
-    steps.write_program(checked)
-    steps.programs_of(checked)[0].build()
+    generation.write_program(checked)
+    programs.programs_of(checked)[0].build()
     units = {path.name for path in (checked.folder / "generated").glob("*.ads")}
     assert "surgical_robot-drives.ads" in units
     assert "surgical_robot-servo_1.ads" not in units
@@ -123,9 +123,9 @@ def test_every_deployment_is_proved(change: tuple[str, str, str], variant: Varia
     if not toolchain.have("gnatprove"):
         pytest.skip(toolchain.INSTALL_HINT["gnatprove"])
     checked = variant(*change)
-    steps.write_program(checked)
-    (made,) = steps.programs_of(checked)
-    driver = steps.default_driver(checked)
+    generation.write_program(checked)
+    (made,) = programs.programs_of(checked)
+    driver = programs.default_driver(checked)
     proof = proving.prove(made.proof(driver, warnings="error"))
     assert proof.clean, proof.summary()
     assert proof.results.outside == ()
@@ -143,8 +143,8 @@ def test_the_supervisor_is_the_same_over_its_own_servo_loop_and_over_drives(
         shutil.copytree(HERE, folder)
         model = folder / "model.yaml"
         model.write_text(model.read_text().replace("software_control.yaml", level))
-        checked = steps.check(model)
-        steps.write_program(checked)
+        checked = checking.check(model)
+        generation.write_program(checked)
         seen.append(_sources(checked, *names))
         glue += _sources(checked, "supervisor_1.adb").values()
     assert seen[0] == seen[1]
@@ -156,8 +156,8 @@ def test_a_drive_over_can_replaces_the_servo_by_a_line(
 ) -> None:
     checked = variant("model.yaml", "software_control.yaml", "drive_over_can.yaml")
     assert not checked.warnings
-    assert steps.write_program(checked).missing == ()
-    (made,) = steps.programs_of(checked)
+    assert generation.write_program(checked).missing == ()
+    (made,) = programs.programs_of(checked)
     made.build()
     generated = checked.folder / "generated"
     application = ("supervisor.ads", "supervisor-task_of_arm.ads", "supervisor-task_of_arm.adb")
@@ -186,7 +186,7 @@ def test_a_drive_over_can_replaces_the_servo_by_a_line(
 
 
 def test_generated_files_are_those_in_the_repository() -> None:
-    checked = steps.check(HERE / "model.yaml")
-    made = generate(checked.system, steps.claims(checked))
+    checked = checking.check(HERE / "model.yaml")
+    made = generate(checked.system, generation.claims(checked))
     there = {p.name: p.read_text() for p in (HERE / "generated").iterdir()}
-    assert made == {name: text for name, text in there.items() if name != steps.MANIFEST}
+    assert made == {name: text for name, text in there.items() if name != generation.MANIFEST}

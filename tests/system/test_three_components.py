@@ -10,11 +10,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ravenchart.analysis.system.observed import Observation, Record, read_map, read_trace
-from ravenchart.building import steps
+from ravenchart.building import checking, generation, programs
 from ravenchart.gen.model.system import System
 
 
-def _observed(checked: steps.Checked, executable: Path, folder: Path) -> Observation:
+def _observed(checked: checking.Checked, executable: Path, folder: Path) -> Observation:
     """One second of the program, asked to end by SIGTERM."""
     trace = folder / "trace"
     process = subprocess.Popen([executable], env={"RAVENCHART_TRACE": str(trace)})
@@ -35,7 +35,7 @@ def _first(records: list[Record], kind: str, element: str, start: int) -> int:
 
 
 def test_a_token_goes_from_out_port_to_out_port_in_the_order_of_the_framework(
-    stations: tuple[steps.Checked, Path], tmp_path: Path
+    stations: tuple[checking.Checked, Path], tmp_path: Path
 ) -> None:
     records = _observed(*stations, tmp_path).records
     at = 0
@@ -54,7 +54,7 @@ def test_a_token_goes_from_out_port_to_out_port_in_the_order_of_the_framework(
         at = _first(records, kind, element, at) + 1
 
 
-def test_the_token_comes_round(stations: tuple[steps.Checked, Path], tmp_path: Path) -> None:
+def test_the_token_comes_round(stations: tuple[checking.Checked, Path], tmp_path: Path) -> None:
     seen = _observed(*stations, tmp_path)
     assert len(seen.of("arrived", "one.token_in")) >= 3
     assert seen.faults["Queue_Overflow"] == 0
@@ -66,7 +66,7 @@ def _users(system: System, element: str) -> set[str]:
 
 
 def test_processors_2_and_3_both_touch_component_2(
-    stations: tuple[steps.Checked, Path],
+    stations: tuple[checking.Checked, Path],
 ) -> None:
     system = stations[0].system
     assert all(len(c.regions) + 1 == 3 for c in system.components)
@@ -89,11 +89,11 @@ def test_moving_an_activity_is_one_line_and_the_token_still_goes_round(
     assert sorted(moved.splitlines()) == sorted(text.splitlines())
     model.write_text(moved)
     before = {p.name: p.read_text() for p in (folder / "generated").glob("*station*")}
-    checked = steps.check(model)
-    steps.write_program(checked)
+    checked = checking.check(model)
+    generation.write_program(checked)
     after = {p.name: p.read_text() for p in (folder / "generated").glob("*station*")}
     assert before == after, "the component's own code does not know where it runs"
-    seen = _observed(checked, steps.programs_of(checked)[0].build(), tmp_path)
+    seen = _observed(checked, programs.programs_of(checked)[0].build(), tmp_path)
     assert len(seen.of("arrived", "one.token_in")) >= 3
     body = (folder / "generated" / "three_components-processor_2.adb").read_text()
     assert re.search(r"when Two_Work =>\s+Two.Run_Work \(Executed\);", body)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.paths import ROOT
 from ravenchart.running.running import RunRequest, controller, run_model
@@ -24,7 +24,7 @@ SERVO = "servo: {component: Linear_Servo, node: "
 
 def copied(
     to: Path, node: str = "drive", change: Callable[[str], str] = lambda text: text
-) -> steps.Checked:
+) -> checking.Checked:
     """The example with its servo on that node, and its program written."""
     to.mkdir()
     for source in EXAMPLE.glob("*.yaml"):
@@ -32,20 +32,20 @@ def copied(
     text = (to / "model.yaml").read_text()
     assert text.count(f"{SERVO}drive") == 1
     (to / "model.yaml").write_text(text.replace(f"{SERVO}drive", SERVO + node))
-    checked = steps.check(to / "model.yaml")
+    checked = checking.check(to / "model.yaml")
     assert not checked.warnings
-    steps.write_program(checked)
+    generation.write_program(checked)
     return checked
 
 
 @pytest.fixture(scope="module")
-def checked(tmp_path_factory: pytest.TempPathFactory) -> steps.Checked:
+def checked(tmp_path_factory: pytest.TempPathFactory) -> checking.Checked:
     return copied(tmp_path_factory.mktemp("two_nodes") / "apart")
 
 
-def played(checked: steps.Checked, scenario: str, to: Path) -> str:
+def played(checked: checking.Checked, scenario: str, to: Path) -> str:
     """What a run of the scenario prints, which must pass; its traces are in ``to``."""
-    controllers = tuple(controller(made) for made in steps.programs_of(checked))
+    controllers = tuple(controller(made) for made in programs.programs_of(checked))
     shown = io.StringIO()
     request = RunRequest(
         checked.analysis,
@@ -63,7 +63,7 @@ def played(checked: steps.Checked, scenario: str, to: Path) -> str:
 
 @pytest.mark.parametrize(("scenario", "chains"), [("scenario", True), ("cut_bus", False)])
 def test_both_nodes_do_what_the_scenario_expects(
-    checked: steps.Checked, tmp_path: Path, scenario: str, *, chains: bool
+    checked: checking.Checked, tmp_path: Path, scenario: str, *, chains: bool
 ) -> None:
     shown = played(checked, scenario, tmp_path)
     assert ("longest reactions of chains" in shown) == chains
@@ -76,7 +76,7 @@ def faults(to: Path, node: str) -> tuple[int, int]:
     return found["can_error_passive"], found["can_bus_off"]
 
 
-def noted(checked: steps.Checked, to: Path, node: str, kind: str, element: str) -> list[int]:
+def noted(checked: checking.Checked, to: Path, node: str, kind: str, element: str) -> list[int]:
     """When the trace of a node notes something of an element, in ns."""
     folder = checked.folder / "generated" / node
     rows = json.loads((folder / "trace.json").read_text())["elements"]
@@ -96,7 +96,7 @@ def noted(checked: steps.Checked, to: Path, node: str, kind: str, element: str) 
     within="100 ms from silence to the safe state",
 )
 def test_who_is_alone_is_error_passive_and_never_bus_off(
-    checked: steps.Checked, tmp_path: Path
+    checked: checking.Checked, tmp_path: Path
 ) -> None:
     played(checked, "cut_bus", tmp_path)
     # the panel starts alone too; the bench acknowledges what the drive sends
@@ -112,7 +112,7 @@ def test_who_is_alone_is_error_passive_and_never_bus_off(
     within="50 ms from silence to the safe state",
 )
 def test_a_bus_that_is_held_dominant_makes_both_error_passive(
-    checked: steps.Checked, tmp_path: Path
+    checked: checking.Checked, tmp_path: Path
 ) -> None:
     played(checked, "held_dominant", tmp_path)
     assert faults(tmp_path, "drive") == (1, 0)
@@ -127,7 +127,7 @@ def test_a_bus_that_is_held_dominant_makes_both_error_passive(
     within="70 ms from silence to the safe state; the event within 5 ms of the fault",
 )
 def test_a_bus_that_is_held_recessive_makes_both_bus_off_again_and_again(
-    checked: steps.Checked, tmp_path: Path
+    checked: checking.Checked, tmp_path: Path
 ) -> None:
     played(checked, "held_recessive", tmp_path)
     for node, component in (("panel", "supervisor"), ("drive", "servo")):
@@ -161,11 +161,11 @@ def test_charts_that_request_recovery_bring_both_nodes_back(tmp_path: Path) -> N
 
 
 def test_one_line_moves_the_servo_and_no_component_changes(
-    checked: steps.Checked, tmp_path: Path
+    checked: checking.Checked, tmp_path: Path
 ) -> None:
     one = copied(tmp_path / "together", "panel")
     apart, together = (c.folder / "generated" for c in (checked, one))
-    assert [p.node for p in steps.programs_of(one)] == ["panel"]
+    assert [p.node for p in programs.programs_of(one)] == ["panel"]
     compared = 0
     for component, node in (("linear_servo", "drive"), ("traveller", "panel")):
         for source in (apart / node).glob(f"two_nodes-{component}*"):
@@ -173,11 +173,11 @@ def test_one_line_moves_the_servo_and_no_component_changes(
             compared += 1
     assert compared >= 8
     assert not list((together / "panel").glob("*link*"))
-    steps.programs_of(one)[0].build()
+    programs.programs_of(one)[0].build()
 
 
 def test_a_simulation_does_the_same_on_one_node_and_on_two(
-    checked: steps.Checked, tmp_path: Path
+    checked: checking.Checked, tmp_path: Path
 ) -> None:
     one = copied(tmp_path / "together", "panel")
     events = tmp_path / "events.yaml"
@@ -191,7 +191,7 @@ def test_a_simulation_does_the_same_on_one_node_and_on_two(
 
 
 def test_a_simulation_raises_the_events_of_the_bus_from_its_events_file(
-    checked: steps.Checked, tmp_path: Path
+    checked: checking.Checked, tmp_path: Path
 ) -> None:
     events = tmp_path / "events.yaml"
     events.write_text(

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import OK, main
 from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.command_line import main
 from ravenchart.commands import allocate
+from ravenchart.failures import OK
 from ravenchart.gen.pipeline import load
 
 ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"

@@ -8,7 +8,7 @@ import pytest
 
 from ravenchart.analysis.present.report import render
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
 from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.system import System
@@ -61,8 +61,8 @@ def test_a_frame_of_up_to_eight_bytes_may_be_fd_too() -> None:
 def files_of(text: str, tmp_path: Path) -> dict[str, str]:
     model = tmp_path / "model.yaml"
     model.write_text(text, encoding="utf-8")
-    checked = steps.check(model)
-    return generate(checked.system, steps.claims(checked))
+    checked = checking.check(model)
+    return generate(checked.system, generation.claims(checked))
 
 
 @pytest.mark.parametrize(("text", "rate"), [(FAST, "Switched"), (WIDE, "Constant")])

@@ -10,7 +10,7 @@ import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.building import steps
+from ravenchart.building import checking
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
@@ -140,7 +140,7 @@ def test_facts_that_the_sums_contradict_are_refused(
 def test_the_longest_call_of_a_device_blocks(tmp_path: Path) -> None:
     """It is longer than the sections of the runtime, and the sum has it."""
     model_file = ROOT / "tests" / "feature" / "devices" / "model.yaml"
-    text = certificate(steps.check(model_file).analysis)
+    text = certificate(checking.check(model_file).analysis)
     assert "Fast_B : constant := Board_1_Section;" in text
     assert "Slow_B : constant := Board_Critical_Section;" in text
     assert compiled(text, tmp_path, "Devices_Feature") == ""

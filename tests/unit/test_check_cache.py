@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.behaviour import rules
-from ravenchart.building import check_cache, kept, steps
+from ravenchart.building import check_cache, checking, kept
+from ravenchart.command_line import main
+from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.model.system import System
 from tests.bench.random_models import random_model
@@ -49,14 +50,14 @@ def test_check_generate_and_build_look_once(
 
 
 def test_another_content_is_looked_at(looked: list[str], path: Path) -> None:
-    before = steps.check(path)
+    before = checking.check(path)
     text = path.read_text(encoding="utf-8")
     guard = "guard: count > 99 and count < 9\n            'on': E"
     path.write_text(text.replace("'on': E", guard, 1), encoding="utf-8")
-    with pytest.raises(steps.Refused, match="RV-1102"):
-        steps.check(path)
+    with pytest.raises(Refused, match="RV-1102"):
+        checking.check(path)
     path.write_text(text, encoding="utf-8")
-    assert steps.check(path).warnings == before.warnings
+    assert checking.check(path).warnings == before.warnings
     assert len(looked) == 2
 
 
@@ -71,19 +72,19 @@ def test_unfinished_check_is_kept_and_finished_by_check_alone(
     looked: list[str], path: Path
 ) -> None:
     for _ in range(2):
-        assert "RV-1110" in steps.check(path, patience=0.0).warnings
+        assert "RV-1110" in checking.check(path, patience=0.0).warnings
     assert len(looked) == 1
-    assert "RV-1110" in steps.check(path, patience=0.0, finish=True).warnings
+    assert "RV-1110" in checking.check(path, patience=0.0, finish=True).warnings
     assert len(looked) == 2
-    assert "RV-1110" not in steps.check(path).warnings
-    assert "RV-1110" not in steps.check(path, patience=0.0).warnings
+    assert "RV-1110" not in checking.check(path).warnings
+    assert "RV-1110" not in checking.check(path, patience=0.0).warnings
     assert len(looked) == 3
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"found": [[1]]}', '{"found": 3}'])
 def test_an_entry_that_cannot_be_read_is_none(looked: list[str], path: Path, text: str) -> None:
-    first = steps.check(path)
+    first = checking.check(path)
     (entry,) = kept.folder(check_cache.KIND).glob("*.json")
     entry.write_text(text, encoding="utf-8")
-    assert steps.check(path).warnings == first.warnings
+    assert checking.check(path).warnings == first.warnings
     assert len(looked) == 2

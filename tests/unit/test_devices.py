@@ -10,8 +10,9 @@ import pytest
 from ravenchart.analysis.present.figures import figures
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.behaviour.rules import findings
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
 from ravenchart.commands import simulate
+from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.emit.program import generate, program, simulated_drivers, user_units
 from ravenchart.gen.model.claims import Claims
@@ -178,8 +179,8 @@ def test_a_command_may_give_anything_in_its_type() -> None:
 
 def test_the_interpreter_refuses_a_model_with_bindings(tmp_path: Path) -> None:
     (tmp_path / "model.yaml").write_text(MODEL)
-    checked = steps.check(tmp_path / "model.yaml")
-    with pytest.raises(steps.Refused) as refused:
+    checked = checking.check(tmp_path / "model.yaml")
+    with pytest.raises(Refused) as refused:
         simulate.simulated(checked, tmp_path / "events", interpreter=True, as_json=False)
     line = MODEL.splitlines().index("bindings:") + 2
     path = tmp_path / "model.yaml"
@@ -192,15 +193,15 @@ def test_the_interpreter_refuses_a_model_with_bindings(tmp_path: Path) -> None:
 
 def test_a_simulated_device_is_the_users_once_it_is_written(tmp_path: Path) -> None:
     (tmp_path / "model.yaml").write_text(MODEL)
-    checked = steps.check(tmp_path / "model.yaml")
+    checked = checking.check(tmp_path / "model.yaml")
     drivers = [tmp_path / name for name in simulated_drivers(checked.system)]
     drivers[0].parent.mkdir(parents=True)
     drivers[0].write_text("--  mine\n")
-    steps.write_program(checked)
+    generation.write_program(checked)
     assert drivers[0].read_text() == "--  mine\n"
     assert all("starting point" in driver.read_text() for driver in drivers[1:])
     drivers[1].write_text("--  mine, too\n")
-    steps.write_program(checked)
+    generation.write_program(checked)
     assert drivers[1].read_text() == "--  mine, too\n"
 
 

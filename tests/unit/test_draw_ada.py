@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import WRONG, main
+from ravenchart.command_line import main
+from ravenchart.failures import WRONG
 from ravenchart.gen.draw.ada_chart import picture_of_ada
 from ravenchart.gen.draw.ada_text import NotDeclaredError
 from ravenchart.gen.draw.chart import chart_dot

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import OK, main
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
+from ravenchart.command_line import main
+from ravenchart.failures import OK
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
 from tests import house
@@ -18,17 +19,17 @@ EXAMPLES = house.EXAMPLES
 
 
 def _files(name: str) -> dict[str, str]:
-    checked = steps.check(ROOT / "examples" / name / "model.yaml")
-    return generate(checked.system, steps.claims(checked))
+    checked = checking.check(ROOT / "examples" / name / "model.yaml")
+    return generate(checked.system, generation.claims(checked))
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_generated_files_are_those_in_the_repository(name: str) -> None:
     folder = ROOT / "examples" / name / "generated"
-    files = [p for p in folder.rglob("*") if p.is_file() and p.name != steps.MANIFEST]
+    files = [p for p in folder.rglob("*") if p.is_file() and p.name != generation.MANIFEST]
     there = {p.relative_to(folder).as_posix(): p.read_text() for p in files}
     assert _files(name) == there
-    listed = (folder / steps.MANIFEST).read_text().splitlines()
+    listed = (folder / generation.MANIFEST).read_text().splitlines()
     assert listed == [
         f"{hashlib.sha256(text.encode()).hexdigest()}  {name}"
         for name, text in sorted(there.items())
@@ -48,10 +49,10 @@ def test_regenerating_replaces_nothing_and_leaves_user_code_alone(tmp_path: Path
     shutil.copytree(ROOT / "examples" / "cartesian_robot", folder)
     own = folder / "user" / "notes.txt"
     own.write_text("mine")
-    checked = steps.check(folder / "model.yaml")
-    first = steps.write_program(checked)
+    checked = checking.check(folder / "model.yaml")
+    first = generation.write_program(checked)
     stamps = {p: p.stat().st_mtime_ns for p in folder.rglob("*") if p.is_file()}
-    second = steps.write_program(checked)
+    second = generation.write_program(checked)
     assert (first.missing, second.changed) == ((), 0)
     assert stamps == {p: p.stat().st_mtime_ns for p in folder.rglob("*") if p.is_file()}
     assert own.read_text() == "mine"
@@ -60,14 +61,14 @@ def test_regenerating_replaces_nothing_and_leaves_user_code_alone(tmp_path: Path
 def test_a_file_that_is_no_longer_generated_goes_and_a_strange_one_stays(tmp_path: Path) -> None:
     folder = tmp_path / "three"
     shutil.copytree(ROOT / "examples" / "three_components", folder)
-    checked = steps.check(folder / "model.yaml")
-    steps.write_program(checked)
+    checked = checking.check(folder / "model.yaml")
+    generation.write_program(checked)
     generated = folder / "generated"
     (generated / "old_unit.ads").write_text("package Old_Unit is end Old_Unit;")
     (generated / "keep.txt").write_text("keep")
-    manifest = generated / steps.MANIFEST
+    manifest = generated / generation.MANIFEST
     manifest.write_text(manifest.read_text() + "old_unit.ads\n../user/evil.adb\n")
-    steps.write_program(checked)
+    generation.write_program(checked)
     assert not (generated / "old_unit.ads").exists()
     assert (generated / "keep.txt").read_text() == "keep"
 
@@ -97,8 +98,8 @@ def test_an_edit_of_a_generated_file_is_named_and_kept(
 def test_a_generation_that_was_cut_short_leaves_no_edits(tmp_path: Path) -> None:
     folder = tmp_path / "three"
     shutil.copytree(ROOT / "examples" / "three_components", folder)
-    checked = steps.check(folder / "model.yaml")
-    steps.write_program(checked)
-    manifest = folder / "generated" / steps.MANIFEST
+    checked = checking.check(folder / "model.yaml")
+    generation.write_program(checked)
+    manifest = folder / "generated" / generation.MANIFEST
     manifest.write_text(manifest.read_text().replace(manifest.read_text()[:64], "0" * 64))
-    assert steps.write_program(checked).edited == ()
+    assert generation.write_program(checked).edited == ()

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.behaviour.rules.invariants import Broken, _not_inductive
-from ravenchart.building import steps
+from ravenchart.building import checking
+from ravenchart.command_line import main
+from ravenchart.failures import Refused
 from ravenchart.gen.language.terms import BUILT_IN
 from ravenchart.gen.model.component import Invariant
 from ravenchart.paths import ROOT
@@ -72,8 +73,8 @@ def _refused(folder: Path, text: str) -> str:
     path = folder / "model.yaml"
     path.write_text(text)
     try:
-        return steps.check(path).warnings
-    except steps.Refused as refused:
+        return checking.check(path).warnings
+    except Refused as refused:
         return str(refused)
 
 

@@ -16,7 +16,8 @@ from ravenchart.analysis.core.assignment import audsley_frames
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.system.identifiers import Places
 from ravenchart.analysis.system.timing import Verdict, analyse
-from ravenchart.building.steps import Refused, check, identified
+from ravenchart.building.checking import check, identified
+from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.model.system import System
 from tests.support.pump import changed, codes, loaded, system_of

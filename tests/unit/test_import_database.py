@@ -10,9 +10,9 @@ import pytest
 import yaml
 from cantools.database import Database
 
-from ravenchart.__main__ import OK, WRONG, main
-from ravenchart.building.steps import Refused
+from ravenchart.command_line import main
 from ravenchart.databases.database import Periods, imported
+from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.behaviour.interpreter.stimuli import Raised, read
 from ravenchart.behaviour.interpreter.traces import Record, seconds
+from ravenchart.command_line import main
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from tests.support.interpreted import component_system

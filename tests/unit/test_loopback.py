@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import can
 import pytest
 
-from ravenchart.__main__ import main
+from ravenchart.command_line import main
 from ravenchart.commands import loopback_files
 from ravenchart.commands.loopback import verdict_line
 from ravenchart.hw_can.bench.bus_records import NO_DATA, Flag, Kind, Record

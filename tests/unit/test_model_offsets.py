@@ -19,7 +19,8 @@ from ravenchart.analysis.present.report import render
 from ravenchart.analysis.present.table import show
 from ravenchart.analysis.system.critical import schedule
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
+from ravenchart.failures import Refused
 from ravenchart.gen.derive import instants
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.certificate import offsets as certificate_offsets
@@ -172,8 +173,8 @@ def test_what_the_certificate_cannot_show_is_not_generated(
     assert gap.message.endswith("us but for offsets, and the certificate cannot show that yet")
     model = tmp_path / "model.yaml"
     model.write_text(LOOPS.replace(*TIGHT))
-    with pytest.raises(steps.Refused, match=r"seldom needs over 3 ms.*RV-0804"):
-        steps.write_program(steps.check(model))
+    with pytest.raises(Refused, match=r"seldom needs over 3 ms.*RV-0804"):
+        generation.write_program(checking.check(model))
     assert list(uncertified(analysed(LOOPS, TOGETHER))) == []
 
 

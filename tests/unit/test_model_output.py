@@ -8,9 +8,10 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from ravenchart.__main__ import OK, main
 from ravenchart.analysis.exchange.mast_text import parse
 from ravenchart.analysis.system.timing import analyse
+from ravenchart.command_line import main
+from ravenchart.failures import OK
 from ravenchart.gen.pipeline import load
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
 from ravenchart.gen.emit.program import generate, simulation
 from ravenchart.paths import ROOT
 from tests.mutation.catalogue import KINDS, mutants_of
@@ -49,8 +49,8 @@ end P;
 @pytest.fixture(scope="module")
 def rich() -> Files:
     """The rich chart's program."""
-    checked = steps.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
-    files = generate(checked.system, steps.claims(checked))
+    checked = checking.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
+    files = generate(checked.system, generation.claims(checked))
     return {n: t for n, t in files.items() if n.endswith((".ads", ".adb"))}
 
 
@@ -80,15 +80,15 @@ def test_every_kind_but_codecs_and_frames_has_mutants_in_the_rich_chart(rich: Fi
 
 
 def test_codecs_have_mutants_in_the_robot() -> None:
-    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
-    files = generate(checked.system, steps.claims(checked))
+    checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    files = generate(checked.system, generation.claims(checked))
     rules = {(m.kind, m.rule) for m in mutants_of(files) if m.kind == "codec"}
     assert rules == {("codec", "bit"), ("codec", "offset"), ("codec", "width")}
 
 
 def test_frames_have_mutants_in_the_robot() -> None:
-    checked = steps.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
-    files = generate(checked.system, steps.claims(checked))
+    checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    files = generate(checked.system, generation.claims(checked))
     found = [m for m in mutants_of(files) if m.kind == "frame"]
     sizes = {"identifier", "format", "short", "long"}
     assert {m.rule for m in found if m.place == "Frame_Of_X_Set_Point"} == sizes
@@ -107,7 +107,7 @@ def test_each_mutant_is_another_text_and_the_same_every_time(rich: Files) -> Non
 
 
 def test_each_mutant_of_a_region_is_found_in_the_program_for_simulation(rich: Files) -> None:
-    checked = steps.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
+    checked = checking.check(ROOT / "tests" / "feature" / "rich" / "model.yaml")
     noted = simulation(checked.system)
     twins = {m.key: m for m in mutants_of(noted)}
     for mutant in mutants_of(rich):
@@ -170,8 +170,8 @@ def test_the_report_counts_by_kind_and_shows_what_survived(rich: Files) -> None:
 
 
 def test_that_a_region_has_started_is_exchanged_with_nothing() -> None:
-    checked = steps.check(ROOT / "examples" / "three_components" / "model.yaml")
-    files = generate(checked.system, steps.claims(checked))
+    checked = checking.check(ROOT / "examples" / "three_components" / "model.yaml")
+    files = generate(checked.system, generation.claims(checked))
     order = [m for m in mutants_of(files) if m.kind == "order"]
     assert order
     diffs = [mutant.diff(files[mutant.file]) for mutant in order]

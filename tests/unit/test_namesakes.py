@@ -6,7 +6,7 @@ from itertools import product
 
 import pytest
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation
 from ravenchart.gen.emit.ada.naming import _unit_names
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
@@ -33,8 +33,8 @@ def test_the_first_unit_keeps_its_plain_name(first: str, second: str) -> None:
 
 
 def test_no_declaration_of_the_codecs_has_the_name_of_another() -> None:
-    checked = steps.check(ROOT / "tests" / "feature" / "namesakes" / "model.yaml")
-    spec = generate(checked.system, steps.claims(checked))["namesake_feature-codecs.ads"]
+    checked = checking.check(ROOT / "tests" / "feature" / "namesakes" / "model.yaml")
+    spec = generate(checked.system, generation.claims(checked))["namesake_feature-codecs.ads"]
     packages = [line.split()[1] for line in spec.splitlines() if line.startswith("   package ")]
     assert packages == [
         "Message_Joint", "Type_Joint_Position", "Message_Signal", "Type_Signal", "Type_Mode",

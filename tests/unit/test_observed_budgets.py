@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import OK, WRONG, main
-from ravenchart.building import steps
+from ravenchart.building import checking
+from ravenchart.command_line import main
+from ravenchart.failures import OK, WRONG
 
 PUMP = Path(__file__).parents[2] / "examples" / "pump"
 MODEL = PUMP / "model.yaml"
@@ -22,7 +23,7 @@ def rows() -> dict[str, int]:
 
 def digest() -> str:
     """That of the pump's model."""
-    return steps.check(MODEL).system.digest
+    return checking.check(MODEL).system.digest
 
 
 def trace(folder: Path, text: str, model: str | None = None) -> str:

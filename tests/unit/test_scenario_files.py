@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import main
 from ravenchart.behaviour.interpreter.stimuli import FORMS
-from ravenchart.building import steps, toolchain
+from ravenchart.building import checking, toolchain
+from ravenchart.command_line import main
 from ravenchart.hw_can.bench.scenario import (
     BUS_EVENTS,
     STEPS,
@@ -90,12 +90,12 @@ def test_what_the_model_does_not_have_is_told_before_anything_is_built(
     [(ROBOT, "scenario"), (ROBOT, "lost_bench"), (TWO_NODES, "scenario"), (TWO_NODES, "cut_bus")],
 )
 def test_the_scenarios_of_the_examples_fit_their_models(folder: Path, name: str) -> None:
-    system = steps.check(folder / "model.yaml", deadlines=False).system
+    system = checking.check(folder / "model.yaml", deadlines=False).system
     assert scenarios.checked(folder / f"{name}.yaml", system).steps
 
 
 def test_only_nodes_behind_the_first_are_cut_off() -> None:
-    system = steps.check(TWO_NODES / "model.yaml", deadlines=False).system
+    system = checking.check(TWO_NODES / "model.yaml", deadlines=False).system
     text = "scenario: x\nbus: [{at: 1 s, cut: panel}]\nsteps: [{wait: 1 s}]\n"
     (one,) = scenarios.problems(parse_scenario(text), system)
     assert one.message == "`panel` cannot be cut off"
@@ -138,7 +138,7 @@ def test_the_examples_of_the_page_are_valid(tmp_path: Path) -> None:
     events = re.findall(r"```yaml\n(- \{at.*?)```", PAGE, re.S)
     assert len(plans) == 2 and len(events) == 1
     for plan, folder in zip(plans, (ROBOT, TWO_NODES), strict=True):
-        system = steps.check(folder / "model.yaml", deadlines=False).system
+        system = checking.check(folder / "model.yaml", deadlines=False).system
         assert scenarios.problems(parse_scenario(plan), system) == []
     shutil.copytree(ROOT / "examples" / "pump", tmp_path / "pump")
     (tmp_path / "events.yaml").write_text(events[0])

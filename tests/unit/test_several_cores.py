@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.__main__ import OK, WRONG, main
 from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.command_line import main
 from ravenchart.commands import allocate
+from ravenchart.failures import OK, WRONG
 from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
 

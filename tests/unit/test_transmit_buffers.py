@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.building import steps
+from ravenchart.building import checking, programs
+from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
@@ -85,8 +86,8 @@ def test_a_message_must_be_gone_before_it_comes_again() -> None:
 def test_a_driver_without_buffers_by_priority_is_refused(driver: str, tmp_path: Path) -> None:
     model = tmp_path / "model.yaml"
     model.write_text(MODEL.read_text().replace(*PRIORITY))
-    checked = steps.check(model)
-    with pytest.raises(steps.Refused, match=f"the driver {driver} sends frames in the order"):
-        steps.check_driver(checked, driver)
-    steps.check_driver(checked, "bus")
-    assert steps.default_driver(checked) == "bus"
+    checked = checking.check(model)
+    with pytest.raises(Refused, match=f"the driver {driver} sends frames in the order"):
+        programs.check_driver(checked, driver)
+    programs.check_driver(checked, "bus")
+    assert programs.default_driver(checked) == "bus"

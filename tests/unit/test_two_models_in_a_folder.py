@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ravenchart.building import steps
+from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 
 
-def _put(folder: Path, name: str, text: str) -> steps.Checked:
+def _put(folder: Path, name: str, text: str) -> checking.Checked:
     (folder / name).write_text(text)
-    checked = steps.check(folder / name)
-    steps.write_program(checked)
+    checked = checking.check(folder / name)
+    generation.write_program(checked)
     return checked
 
 
@@ -30,7 +30,7 @@ def test_each_main_file_has_its_own_folder_of_generated_files(tmp_path: Path) ->
     assert homes == [tmp_path / n for n in ("generated", "generated-slow", "generated-third")]
     assert _files(homes[1]).keys() == before.keys()
     assert _files(homes[1]) != before
-    programs = [steps.programs_of(one)[0] for one in (usual, other, third)]
+    programs = [programs.programs_of(one)[0] for one in (usual, other, third)]
     assert len({one.home("slcan") for one in programs}) == 3
     assert [one.project.parent for one in programs] == homes
 
@@ -38,7 +38,7 @@ def test_each_main_file_has_its_own_folder_of_generated_files(tmp_path: Path) ->
 def test_a_second_main_file_builds_beside_the_first(tmp_path: Path) -> None:
     text = (ROOT / "tests" / "feature" / "conflicts" / "model.yaml").read_text()
     built = [
-        steps.programs_of(_put(tmp_path, name, text))[0].build()
+        programs.programs_of(_put(tmp_path, name, text))[0].build()
         for name in ("model.yaml", "slow.yaml")
     ]
     assert all(path.is_file() for path in built)

@@ -1,0 +1,127 @@
+"""A model checked: its rules, its behaviour, its timing; nothing is written."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.system.identifiers import order_of
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.behaviour import rules
+from ravenchart.failures import Refused
+from ravenchart.gen.derive.identifiers import with_order
+from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
+
+from . import check_cache
+
+
+def is_usual(path: Path) -> bool:
+    """Has the main file of a model its usual name?"""
+    return path.name.lower() == "model.yaml"
+
+
+def generated_folder(path: Path) -> str:
+    """The folder, beside the main file at ``path``, in which its program is written."""
+    return "generated" if is_usual(path) else f"generated-{path.name.removesuffix('.yaml')}"
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A valid, schedulable model, with the warnings that remain."""
+
+    path: Path
+    system: System
+    analysis: Analysis
+    warnings: str
+    sources: Sources
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the model file: generated/ and user/ are beside it."""
+        return self.path.parent
+
+    @property
+    def generated(self) -> Path:
+        """Where its program is written: no two main files of a folder have the same place."""
+        return self.folder / generated_folder(self.path)
+
+    @property
+    def stem(self) -> str:
+        """The system's name as its files carry it."""
+        return ada_case(self.system.name).lower()
+
+
+@contextmanager
+def without_collector() -> Iterator[None]:
+    """No search for garbage in circles: a large model is searched again whenever it has grown."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+@without_collector()
+def check(
+    path: Path,
+    *,
+    deadlines: bool = True,
+    patience: float = rules.SECONDS,
+    finish: bool = False,
+) -> Checked:
+    """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
+
+    ``patience`` is how many seconds the rules of behaviour may take. What they found in the
+    same content before is taken again; with ``finish``, unless it was not finished.
+    """
+    loaded = load(path)
+    system = loaded.system
+    if system is None:
+        raise Refused(_rendered(loaded, loaded.diagnostics))
+    system, unordered = identified(system)
+    analysis = analyse(system)
+    late = (unordered or findings(analysis)) if deadlines else ()
+    everything = (*loaded.diagnostics, *_behaviour(loaded, system, patience, finish), *late)
+    if any(d.is_error for d in everything):
+        raise Refused(_rendered(loaded, everything))
+    return Checked(path, system, analysis, _rendered(loaded, everything), loaded.sources)
+
+
+def _behaviour(
+    loaded: Loaded, system: System, patience: float, finish: bool
+) -> tuple[Diagnostic, ...]:
+    """What the rules of behaviour find, or have found before in the same content."""
+    key = check_cache.key(loaded.sources)
+    found = check_cache.load(key, patience, finished=finish)
+    if found is None:
+        found = rules.findings(system, patience)
+        check_cache.store(key, patience, found)
+    return found
+
+
+def identified(system: System) -> tuple[System, tuple[Diagnostic, ...]]:
+    """The system with the identifiers that the analysis finds for buses that ask for it.
+
+    A bus without a good order keeps that by deadline, and there is a diagnostic of it.
+    """
+    failed: list[Diagnostic] = []
+    for bus in system.buses:
+        found = order_of(bus, system) if bus.audsley else ()
+        if isinstance(found, Diagnostic):
+            failed.append(found)
+        else:
+            system = with_order(system, found)
+    return system, tuple(failed)
+
+
+def _rendered(loaded: Loaded, diagnostics: tuple[Diagnostic, ...]) -> str:
+    return render_all(diagnostics, loaded.sources)

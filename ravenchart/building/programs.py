@@ -1,0 +1,171 @@
+"""The program of each node: where it is built, how it is compiled and proved, with which driver."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravenchart.failures import Refused
+from ravenchart.gen.derive.completion import programs
+from ravenchart.gen.emit.program import (
+    folder_of,
+    source_folders,
+)
+from ravenchart.paths import ROOT, work
+from ravenchart.proof.proving import Task
+
+from . import toolchain
+from .checking import Checked, is_usual
+
+DRIVER_FOLDERS = {
+    "loopback": ("loopback",),
+    "slcan": ("drivers/slcan", "drivers/tcp"),
+    "bus": ("drivers/bus", "drivers/tcp"),
+    "socketcan": ("drivers/socketcan",),
+    "ctucanfd": ("drivers/ctucanfd",),
+}
+"""The folders of hw_can/ that ravenchart.gpr adds for each driver."""
+
+
+DRIVERS = tuple(DRIVER_FOLDERS)
+RUNTIME_FOLDERS = (
+    "spark_runtime/src",
+    "spark_runtime/native",
+    "hw_can/hal",
+    "hw_can/protocol",
+    "hw_can/simulator",
+)
+"""The source folders of ravenchart.gpr that every driver has."""
+
+
+def runtime_folders(driver: str) -> tuple[Path, ...]:
+    """Where the sources, projects and configuration pragmas of the runtime and the HAL are."""
+    chosen = (f"hw_can/{folder}" for folder in DRIVER_FOLDERS[driver])
+    return tuple(ROOT / f for f in (".", "spark_runtime", *RUNTIME_FOLDERS, *chosen))
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What runs on one node: where its sources are, its objects, itself and its proof.
+
+    ``folder`` is below generated/ and below the place of the objects: "" of the only node.
+    """
+
+    checked: Checked
+    node: str
+    folder: str
+
+    @property
+    def generated(self) -> Path:
+        """Its generated sources and its trace map."""
+        return self.checked.generated / self.folder
+
+    @property
+    def project(self) -> Path:
+        """Its GNAT project."""
+        return self.generated / f"{self.checked.stem}.gpr"
+
+    def home(self, driver: str) -> Path:
+        """Where its objects and the program itself go."""
+        return build_home(self.checked, driver) / self.folder
+
+    def scenario(self, mode: str, driver: str) -> dict[str, str]:
+        """The scenario variables of a build: mode, CAN driver, and where objects go."""
+        return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(self.home(driver))}
+
+    def build(self, mode: str = "checks", driver: str | None = None) -> Path:
+        """Compile it; the path of the executable. ToolFailed with the compiler's words.
+
+        Refused where ``driver`` cannot do what the model wants.
+        """
+        chosen = driver or default_driver(self.checked)
+        check_driver(self.checked, chosen)
+        variables = self.scenario(mode, chosen)
+        options = ["-p", "-q", "-j0", "-P", self.project.name]
+        warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
+        if warnings.strip():
+            print(warnings.rstrip(), file=sys.stderr)
+        return self.home(chosen) / f"{self.checked.stem}_main"
+
+    def proved_units(self) -> tuple[str, ...]:
+        """The files that are proved, where bodies of components of other programs lie beside them.
+
+        Empty where there are none of these: then all are. A build takes only what it needs.
+        """
+        folders = (self.generated, *self._user_folders())
+        files = {p.name: p for home in folders for p in home.glob("*.ad[sb]")}
+        bodies = {name for name in files if name.endswith(".adb")}
+        specs = {name for name in files.keys() - bodies if f"{name[:-1]}b" not in bodies}
+        others = {
+            name
+            for name in bodies
+            if f"{name[:-1]}s" not in files
+            and re.search(r"^package body", files[name].read_text(encoding="utf-8"), re.M)
+        }
+        return tuple(sorted((bodies | specs) - others)) if others else ()
+
+    def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> Task:
+        """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""
+        own = self.home(driver) / "checks" / "gnatprove"
+        runtime = work() / "obj" / f"checks-{driver}" / "gnatprove"
+        return Task(
+            self.project,
+            self.scenario("checks", driver),
+            (own, runtime) if whole else (own,),
+            (self.generated, *self._user_folders(), *runtime_folders(driver)),
+            warnings=warnings,
+            whole=whole,
+            units=self.proved_units(),
+        )
+
+    def _user_folders(self) -> tuple[Path, ...]:
+        part = next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
+        return tuple(self.checked.folder / place for place in source_folders(part))
+
+
+def programs_of(checked: Checked) -> tuple[Program, ...]:
+    """The program of each node that runs something."""
+    return tuple(
+        Program(checked, part.nodes[0].name, folder_of(part, checked.system).rstrip("/"))
+        for part in programs(checked.system)
+    )
+
+
+def build_home(checked: Checked, driver: str) -> Path:
+    """What is built of a model, below build/ of the place of work, apart for each driver."""
+    place = checked.folder if is_usual(checked.path) else checked.path
+    known = hashlib.sha256(str(place.resolve()).encode()).hexdigest()[:8]
+    return work() / "build" / f"{checked.stem}-{known}-{driver}"
+
+
+def default_driver(checked: Checked) -> str:
+    """For one node with a bus slcan: python-can talks to it. For several what joins a bus.
+
+    So does one whose transmit buffers are by priority: an slcan adapter has none.
+    """
+    if len(checked.system.nodes) > 1 or _by_priority(checked):
+        return "bus"
+    return "slcan" if checked.system.buses else "loopback"
+
+
+BY_PRIORITY = ("loopback", "bus")
+"""Drivers behind which a controller can offer the most urgent of its frames."""
+
+
+def _by_priority(checked: Checked) -> str | None:
+    """A bus whose controllers have transmit buffers by priority, if there is one."""
+    return next((bus.name for bus in checked.system.buses if bus.by_priority), None)
+
+
+def check_driver(checked: Checked, driver: str) -> None:
+    """Refused where the driver cannot do what the model wants."""
+    bus = _by_priority(checked)
+    if bus is not None and driver not in BY_PRIORITY:
+        raise Refused(
+            f"ravenchart: error: the driver {driver} sends frames in the order in which they come, "
+            f"and {bus} has `buffers: priority`\n  hint: take one of "
+            f"{', '.join(BY_PRIORITY)}, or write `buffers: fifo`"
+        )

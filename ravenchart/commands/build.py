@@ -1,0 +1,29 @@
+"""`ravenchart build`: generated and compiled."""
+
+from __future__ import annotations
+
+import argparse
+
+from ravenchart.building import generation, programs
+from ravenchart.failures import OK
+
+from . import common
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    common.add_model(sub)
+    sub.add_argument("--driver", choices=programs.DRIVERS, help="the CAN driver")
+    sub.add_argument(
+        "--mode", choices=("checks", "release"), default="checks",
+        help="checks: every contract is executed; release: -O2, proof stands for checks",
+    )  # fmt: skip
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Build every program of the model; the exit status."""
+    checked = common.checked(options)
+    common.tell_written(generation.write_program(checked))
+    for made in programs.programs_of(checked):
+        print(f"built {made.build(options.mode, options.driver)}")
+    return OK

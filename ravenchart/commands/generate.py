@@ -1,0 +1,18 @@
+"""`ravenchart generate`: the program of a model, written beside it."""
+
+from __future__ import annotations
+
+import argparse
+
+from ravenchart.building import generation
+from ravenchart.failures import OK
+
+from . import common
+
+add_arguments = common.add_model
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Write it; the exit status."""
+    common.tell_written(generation.write_program(common.checked(options)))
+    return OK

@@ -1,0 +1,42 @@
+"""`ravenchart import`: the messages of a CAN database as parts of a model."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ravenchart.databases import database
+from ravenchart.failures import OK, WRONG
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    sub.add_argument(
+        "database", type=Path, metavar="FILE", help="the database: DBC, KCD, SYM or ARXML"
+    )
+    seen = sub.add_mutually_exclusive_group(required=True)
+    seen.add_argument("--node", help="the node of the database that the model is of")
+    seen.add_argument("--all", action="store_true", help="a node that receives every message")
+    sub.add_argument(
+        "--period", metavar="TIME",
+        help="least time between frames of a message whose database has no cycle time: `100 ms`",
+    )  # fmt: skip
+    sub.add_argument(
+        "--periods", type=Path, metavar="FILE",
+        help="the same for single messages, in YAML: `message: 20 ms`",
+    )  # fmt: skip
+    sub.add_argument(
+        "--lenient", action="store_true",
+        help="read a database whose signals share bits or reach beyond their frame",
+    )  # fmt: skip
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Print it; the exit status."""
+    given = database.periods(options.period, options.periods)
+    found = database.imported(options.database, options.node, given, lenient=options.lenient)
+    print(found.text, end="")
+    for problem in found.problems:
+        print(problem, file=sys.stderr)
+    return WRONG if found.problems else OK

@@ -1,0 +1,54 @@
+"""`ravenchart prove`: generated, and proved with gnatprove."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ravenchart.building import generation, programs
+from ravenchart.failures import OK, WRONG, Refused
+from ravenchart.proof import outside_spark, proving
+from ravenchart.proof.spark_results import Outside
+
+from . import common
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    common.add_model(sub)
+    sub.add_argument("--driver", choices=programs.DRIVERS, help="the CAN driver")
+    sub.add_argument(
+        "--whole", action="store_true",
+        help="prove the runtime and the HAL again, which `make prove` proves by themselves",
+    )  # fmt: skip
+    sub.add_argument(
+        "--fresh", action="store_true",
+        help="run gnatprove also where the same content was proved before",
+    )  # fmt: skip
+    sub.add_argument("--record", type=Path, help="write the proof record to this file")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Prove every program of the model; the exit status."""
+    checked = common.checked(options)
+    common.tell_written(generation.write_program(checked))
+    driver = options.driver or programs.default_driver(checked)
+    programs.check_driver(checked, driver)
+    made = programs.programs_of(checked)
+    if options.record is not None and len(made) > 1:
+        raise Refused("ravenchart: error: --record is for a system with one node")
+    reasons = outside_spark.reasons_for_model(checked.folder)
+    clean = True
+    outside: dict[Outside, None] = {}
+    for one in made:
+        proof = proving.prove(one.proof(driver, whole=options.whole), fresh=options.fresh)
+        where = f" on {one.node}" if len(made) > 1 else ""
+        print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
+        clean = clean and proof.clean
+        outside |= dict.fromkeys(proof.results.outside)
+        if options.record is not None:
+            options.record.write_text(proving.record_text(proof), encoding="utf-8")
+    for line in outside_spark.lines(tuple(outside), reasons):
+        print(line, file=sys.stderr if line.startswith("error") else sys.stdout)
+    return OK if clean and outside_spark.agree(tuple(outside), reasons) else WRONG

@@ -1,0 +1,56 @@
+"""`ravenchart run`: the controller built and run on this machine, judged and reported."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ravenchart.building import generation, programs
+from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
+from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.running import scenarios
+from ravenchart.running.running import RunRequest, controller, run_model
+
+from . import common
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    common.add_model(sub)
+    sub.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
+    sub.add_argument(
+        "--seconds", type=float, default=10.0, help="how long without a scenario (default 10)"
+    )
+    sub.add_argument(
+        "--strict", action="store_true",
+        help="exit status 3 where the run passed, but its timing could not be judged",
+    )  # fmt: skip
+    sub.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Run it; the exit status."""
+    checked = common.checked(options)
+    if options.scenario is not None:
+        scenarios.checked(options.scenario, checked.system)
+    common.tell_written(generation.write_program(checked))
+    controllers = []
+    for made in programs.programs_of(checked):
+        controllers.append(controller(made))
+        print(f"built {controllers[-1].executable}")
+    home = programs.build_home(checked, programs.default_driver(checked))
+    request = RunRequest(
+        checked.analysis,
+        tuple(controllers),
+        checked.generated,
+        options.scenario,
+        options.seconds,
+        options.report or home / "report",
+    )
+    try:
+        outcome = run_model(request)
+    except BenchError as problem:
+        raise Unusable(str(problem)) from problem
+    if outcome is None or not outcome.passed:
+        return WRONG
+    return NOT_JUDGED if options.strict and outcome.not_judged else OK

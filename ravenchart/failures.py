@@ -1,0 +1,42 @@
+"""How a command fails: what it says, and its exit status."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+OK = 0
+"""Done; every deadline and limit is kept, the proof or the run passed."""
+WRONG = 1
+"""The model, its proof, its timing or its run has errors."""
+UNUSABLE = 2
+"""The call is wrong, or something that it needs is missing."""
+NOT_JUDGED = 3
+"""The run passed, and its timing could not be judged (``run --strict``)."""
+
+
+class Failure(Exception):  # noqa: N818
+    """A command cannot go on; the text is what is printed."""
+
+    status: ClassVar[int] = WRONG
+
+    def shown(self) -> str:
+        """What is printed."""
+        return str(self).rstrip()
+
+
+class Refused(Failure):
+    """What was given has errors; the text is the rendered diagnostics."""
+
+
+class ToolFailed(Failure):
+    """An outside program ended with an error; the text is what it printed."""
+
+
+class Unusable(Failure):
+    """Something that the command needs is missing, or cannot be used."""
+
+    status = UNUSABLE
+
+    def shown(self) -> str:
+        """One line that names who says it."""
+        return f"ravenchart: error: {self}"
