@@ -11,8 +11,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
-from . import start
-from .failures import UNUSABLE, Failure
+from .failures import STATUSES, UNUSABLE, Failure
 
 COMMANDS = {
     "check": ("check", "check the model: its rules and its deadlines"),
@@ -75,7 +74,7 @@ def _parser(told: Sequence[str]) -> argparse.ArgumentParser:
         prog="ravenchart",
         description="From one model of a real-time controller to a proved SPARK Ada program, "
         "its timing analysis and its CAN bench.",
-        epilog=start.STATUSES,
+        epilog=STATUSES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     called = next((word for word in told if not word.startswith("-")), None)

@@ -40,3 +40,14 @@ class Unusable(Failure):
     def shown(self) -> str:
         """One line that names who says it."""
         return f"ravenchart: error: {self}"
+
+
+STATUSES = """\
+exit status:
+  0    done; every deadline and limit is kept, the proof or the run passed
+  1    the model, its proof, its timing or its run has errors
+  2    the call is wrong, or a file, program or bus that it needs is missing
+  70   internal error: a fault of Ravenchart, shown with its traceback
+  129, 130, 143   stopped by SIGHUP, SIGINT (Ctrl-C) or SIGTERM
+  141  nobody reads the output any more, as in `| head`
+"""

@@ -13,11 +13,12 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ravenchart.building import checking, generation, programs, toolchain
-from ravenchart.building.toolchain import ToolMissing
+from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark, proving
+from ravenchart.tools import toolchain
+from ravenchart.tools.toolchain import ToolMissing
 
 RECORDS = ROOT / "proofs" / "records"
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"

@@ -23,7 +23,7 @@ from ravenchart.gen.derive.instants import instants, phased
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import ChainClaim, Claim, Claims
-from ravenchart.gen.rules.unready import UNREADY
+from ravenchart.gen.model.system import UNREADY
 
 from .deadlines import findings
 

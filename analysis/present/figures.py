@@ -73,6 +73,6 @@ def figures(analysis: Analysis) -> Json:
             for item in system.objects
         ],
         "commands": [asdict(cost) for cost in costs(analysis)],
-        "changes": advice.figures(analysis.advice),
+        "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

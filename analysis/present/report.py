@@ -220,7 +220,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "good": analysis.schedulable,
         "growth": growth_line(analysis),
         "binding": binding_lines(analysis),
-        "advice": advice.lines(analysis.advice),
+        "advice": advice.lines(advice.of_model(analysis)),
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "commands": tuple(costs(analysis)),

@@ -43,7 +43,7 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
     out.print(Text(LEGEND, style="dim"))
     for line in offset_lines(analysis.responses):
         out.print(Text(line))
-    for line in advice.lines(analysis.advice):
+    for line in advice.lines(advice.of_model(analysis)):
         out.print(Text(line))
 
 

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravenchart.gen.derive.calls import published_by
-from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server
-from ravenchart.gen.resolve.devices import wcet_of
+from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server, wcet_of
 
 if TYPE_CHECKING:
     from .timing import Analysis

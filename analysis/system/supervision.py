@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.derive.completion import SUPERVISOR
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import SUPERVISOR
 
 from .timing import Analysis
 

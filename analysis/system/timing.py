@@ -14,7 +14,6 @@ from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
 from ravenchart.analysis.core.tasks import plain
-from ravenchart.analysis.findings.advice import Advice, of_model
 from ravenchart.gen.model.system import Bus, Chain, Message, System
 from ravenchart.gen.model.system import Task as ModelTask
 from ravenchart.gen.origins import Origin
@@ -141,11 +140,6 @@ class Analysis:
     def short_queues(self) -> tuple[Depth, ...]:
         """The queues that may lose what does not fit."""
         return tuple(one for one in depths(self) if not one.holds)
-
-    @cached_property
-    def advice(self) -> Advice | None:
-        """What to change; None where there is room enough, or too much to look at."""
-        return of_model(self)
 
     @property
     def undelivered(self) -> tuple[Message, ...]:

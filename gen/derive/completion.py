@@ -14,6 +14,8 @@ from ravenchart.gen.model.commands import Remote, RemoteRead
 from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import (
+    PROBE,
+    SUPERVISOR,
     Bus,
     Instance,
     Message,
@@ -38,12 +40,6 @@ from .calls import (
 )
 from .distribution import as_one, part_of
 from .ways import routed
-
-PROBE = "probe"
-"""A node's host probe, as a task."""
-
-SUPERVISOR = "supervisor"
-"""The liveness supervision of a node, as a task."""
 
 MAIN = "main"
 """The environment task: priority 0, below all tasks, and not among them."""

@@ -248,3 +248,8 @@ class Binding:
     provider: Device | Server | Remote | RemoteRead | None
     time_limit: Ns | None = None
     """Of a reply from another node, and of the age of what is read there."""
+
+
+def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
+    """What a call adds to the budget of its caller; only a driver's work is counted apart."""
+    return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)

@@ -24,6 +24,15 @@ from .statechart import Timing
 
 NO_TIME = Ns(0)
 
+PROBE = "probe"
+"""A node's host probe, as a task."""
+
+SUPERVISOR = "supervisor"
+"""The liveness supervision of a node, as a task."""
+
+UNREADY = "RV-0804"
+"""The model is checked and analysed, but not generated yet."""
+
 # --- Deployment --------------------------------------------------------------
 
 

@@ -15,7 +15,7 @@ from ravenchart.gen.files.schema_devices import BindingForm
 from ravenchart.gen.language.names import Findings, Scope, meant
 from ravenchart.gen.language.quantities import LONGEST
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.commands import Binding, Device, Need
+from ravenchart.gen.model.commands import Binding, Device, Need, wcet_of
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Connection, End, Instance, Processor, Slot, System
@@ -31,7 +31,6 @@ from .devices import (
     tells,
     told_by,
     ungathered,
-    wcet_of,
 )
 
 Given = dict[tuple[str, str], tuple[BindingForm, Provider | None]]

@@ -20,8 +20,6 @@ from ravenchart.gen.model.commands import (
     InterfaceEvent,
     Provided,
     Published,
-    Remote,
-    RemoteRead,
     Server,
 )
 from ravenchart.gen.model.system import Instance
@@ -316,11 +314,6 @@ def has_tasks(provider: Provider) -> bool:
     """Whether a task provides something of it."""
     members = provider.members if isinstance(provider, Facade) else ()
     return isinstance(provider, Server) or any(has_tasks(one) for one in members)
-
-
-def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
-    """What a call adds to the budget of its caller; only a driver's work is counted apart."""
-    return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)
 
 
 def is_queued(provider: Device | Server | None, command: str) -> bool:

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.model.system import System
-
-UNREADY = "RV-0804"
-"""The model is checked and analysed, but not generated yet."""
+from ravenchart.gen.model.system import UNREADY, System
 
 
 def unready(system: System) -> Iterator[Diagnostic]:

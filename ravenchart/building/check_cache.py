@@ -18,8 +18,7 @@ from ravenchart.behaviour.rules import UNFINISHED
 from ravenchart.gen.diagnostics import Diagnostic, Severity
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import PACKAGE
-
-from . import kept
+from ravenchart.tools import kept
 
 KIND = "checks"
 FORMAT = 1

@@ -16,8 +16,8 @@ from ravenchart.gen.emit.program import (
 )
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
+from ravenchart.tools import toolchain
 
-from . import toolchain
 from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {

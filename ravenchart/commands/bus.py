@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import subprocess
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from functools import cache
-from pathlib import Path
+from collections.abc import Callable, Sequence
 
-from ravenchart.building import children, toolchain
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
-from ravenchart.paths import ROOT, work
-
-PROJECT = ROOT / "hw_can" / "bus" / "can_bus.gpr"
-SECOND = 10**9
-"""Of the simulated bus, in its own ticks: a bit must be a number of them."""
+from ravenchart.running import server
 
 FAULTS = (
     "disturbed_bit",
@@ -81,35 +72,6 @@ def words(options: argparse.Namespace) -> list[str]:
     return told + [f"event={event}" for event in options.event]
 
 
-@cache
-def built() -> Path:
-    """The server's program, compiled if need be, and once; ToolMissing or ToolFailed."""
-    options = ["-p", "-q", "-j0", "-P", PROJECT.name]
-    toolchain.run("gprbuild", options, PROJECT.parent, {"MODE": "release"})
-    return work() / "obj" / "bus-release" / "can_bus"
-
-
-@contextmanager
-def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A bus server for the time of a block, and its channel, ``host:port``."""
-    with children.running(
-        [built(), *told], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
-    ) as server:
-        assert server.stdout is not None
-        yield server, server.stdout.readline().split()[-1]
-
-
-def serve(told: Sequence[str]) -> int:
-    """Run the server until it is interrupted; its exit status."""
-    with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
-        return server.wait()
-
-
-def uneven(rate: int) -> str:
-    """Why the server refuses a bit rate."""
-    return f"a bit at {rate} bit/s is no whole number of ns"
-
-
 def _number(first: int, last: int) -> Callable[[str], int]:
     def read(text: str) -> int:
         if not (text.isascii() and text.isdigit() and first <= int(text) <= last):
@@ -122,8 +84,8 @@ def _number(first: int, last: int) -> Callable[[str], int]:
 def _rate(first: int, last: int) -> Callable[[str], int]:
     def read(text: str) -> int:
         rate = _number(first, last)(text)
-        if rate and SECOND % rate:
-            raise argparse.ArgumentTypeError(uneven(rate))
+        if rate and server.SECOND % rate:
+            raise argparse.ArgumentTypeError(server.uneven(rate))
         return rate
 
     return read
@@ -152,4 +114,4 @@ def _words(most: int, kinds: Sequence[str] = ()) -> Callable[[str], str]:
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
-    return serve(words(options))
+    return server.serve(words(options))

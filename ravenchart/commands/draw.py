@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.building import toolchain
 from ravenchart.failures import OK, Refused
 from ravenchart.gen.draw import structure_text
 from ravenchart.gen.draw.ada_chart import picture_of_ada
@@ -19,6 +18,7 @@ from ravenchart.gen.draw.plantuml import plantuml
 from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.draw.svg import finished
 from ravenchart.gen.model.system import System
+from ravenchart.tools import toolchain
 
 from . import common
 

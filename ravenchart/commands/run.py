@@ -9,7 +9,7 @@ from ravenchart.building import generation, programs
 from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running import scenarios
-from ravenchart.running.running import RunRequest, controller, run_model
+from ravenchart.running.runs import RunRequest, controller, run_model
 
 from . import common
 

@@ -17,7 +17,6 @@ from ravenchart.behaviour.interpreter.region import Stuck
 from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read
 from ravenchart.behaviour.interpreter.traces import Record, parsed
 from ravenchart.behaviour.rules.outside import external_events
-from ravenchart.building import children, toolchain
 from ravenchart.building.checking import Checked
 from ravenchart.building.generation import replace_file, without_clashes, write_first_versions
 from ravenchart.building.programs import build_home
@@ -31,6 +30,7 @@ from ravenchart.gen.files.load import LARGEST, read_file
 from ravenchart.gen.files.located import lines_of
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
+from ravenchart.tools import children, toolchain
 
 from . import common
 

@@ -14,8 +14,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ravenchart.building import kept
 from ravenchart.paths import ROOT
+from ravenchart.tools import kept
 
 from .spark_results import Entity, Outside, Results
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
-from ravenchart.building import children
+from ravenchart.tools import children
 
 ERROR = "error: "
 """How a controller begins a line about a failure of its own."""

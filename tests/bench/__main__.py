@@ -14,10 +14,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ravenchart.behaviour import rules as behaviour_rules
-from ravenchart.building import checking, generation, toolchain
+from ravenchart.building import checking, generation
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 from . import buses as bench_buses
 from . import charts as bench_charts

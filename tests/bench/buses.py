@@ -18,10 +18,10 @@ from dataclasses import dataclass
 
 import can
 
-from ravenchart.building import toolchain
-from ravenchart.commands import bus
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
+from ravenchart.running import server as bus
+from ravenchart.tools import toolchain
 
 PINGS = 500
 """Frames whose latency is taken, one by one."""

@@ -7,11 +7,12 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from ravenchart.building import checking, generation, toolchain
+from ravenchart.building import checking, generation
 from ravenchart.building.generation import replace_file
 from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 HERE = ROOT / "tests" / "ada" / "charts"
 MOST = 1.1

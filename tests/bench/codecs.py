@@ -19,13 +19,14 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building import checking, generation, programs
 from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.buses.codecs import codec_name
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.signals import Signal
 from ravenchart.gen.model.system import Message, System
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 VALUES = 256
 """Different values of each message, packed and unpacked one after the other."""

@@ -10,8 +10,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 MOST_OF_PLAIN = 1.05
 """What a direct call may cost, as a multiple of a plain call."""

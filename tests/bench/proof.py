@@ -16,8 +16,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.building.toolchain import ToolMissing
 from ravenchart.failures import ToolFailed
+from ravenchart.tools.toolchain import ToolMissing
 from tests.mutation.observing import Observer
 from tests.mutation.workbench import Workbench
 

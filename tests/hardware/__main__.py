@@ -21,10 +21,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from ravenchart.building import toolchain
-from ravenchart.building.toolchain import ToolMissing
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
+from ravenchart.tools.toolchain import ToolMissing
 
 from . import machines
 

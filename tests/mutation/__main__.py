@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
 
-from ravenchart.building.toolchain import ToolMissing
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
+from ravenchart.tools.toolchain import ToolMissing
 
 from .catalogue import KINDS, mutants_of
 from .mutants import Mutant, sampled

@@ -34,7 +34,7 @@ from ravenchart.gen.language.terms import (
 from ravenchart.gen.model.component import Event, Port
 from ravenchart.gen.model.system import End, System
 from ravenchart.paths import ROOT
-from ravenchart.running.running import controller, run_controller, run_nodes
+from ravenchart.running.runs import controller, run_controller, run_nodes
 
 from .catalogue import mutants_of
 from .mutants import Mutant

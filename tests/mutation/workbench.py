@@ -15,10 +15,10 @@ from threading import Lock
 import yaml
 
 from ravenchart.building import checking, generation, programs
-from ravenchart.building.toolchain import ToolMissing, have
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.gen.emit.program import generate, user_units
 from ravenchart.paths import ROOT
+from ravenchart.tools.toolchain import ToolMissing, have
 
 from .mutants import Files, Mutant
 from .observing import Observer, Simulated

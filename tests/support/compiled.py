@@ -12,10 +12,10 @@ from pathlib import Path
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.building import toolchain
 from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.program import generate
+from ravenchart.tools import toolchain
 from tests.support.interpreted import system_of
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 MAINS = (
     "test_store",

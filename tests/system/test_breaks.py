@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking, toolchain
+from ravenchart.building import checking
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 needs_gnatprove = pytest.mark.skipif(
     not toolchain.have("gnatprove"), reason="gnatprove is not on PATH: nothing is proved"

@@ -12,8 +12,8 @@ import pytest
 from ravenchart.analysis.core.bus import Bus, Errors, Frame
 from ravenchart.analysis.core.can import analyse, load
 from ravenchart.analysis.core.frames import classic_bits, rank
-from ravenchart.building import toolchain
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 BIT = 2_000
 SECOND = 10**9

@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.observed import read_map, read_trace
-from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
-from ravenchart.running.running import controller, run_nodes
+from ravenchart.running.runs import controller, run_nodes
+from ravenchart.tools import toolchain
 
 
 @pytest.fixture

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 from tests.hardware.driver_cases import LIMIT, Driver, started
 
 SPAN = 0x4000

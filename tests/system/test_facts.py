@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 from tests.mutation.__main__ import Subject, mutants, tried
 from tests.mutation.mutants import Mutant
 from tests.mutation.observing import Observer, PlayedTogether

@@ -14,14 +14,15 @@ import can
 import pytest
 
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
-from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
-from ravenchart.commands import bus
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.paths import ROOT
+from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.running import controller, run_controller, run_nodes
+from ravenchart.running.runs import controller, run_controller, run_nodes
+from ravenchart.tools import toolchain
 
 TUNING: dict[str, int | str] = {
     "gain": 4711,

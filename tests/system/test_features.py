@@ -14,9 +14,10 @@ import pytest
 import yaml
 
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
-from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
 

@@ -10,7 +10,7 @@ import os
 
 import pytest
 
-from ravenchart.building import toolchain
+from ravenchart.tools import toolchain
 from tests.mutation.catalogue import mutants_of
 from tests.mutation.mutants import Mutant
 from tests.mutation.observing import Observer

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 PAGE = (ROOT / "docs" / "getting-started.md").read_text()
 

@@ -20,7 +20,7 @@ from ravenchart.analysis.system.observed import Observation
 from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
-from ravenchart.running import running as run
+from ravenchart.running import runs as run
 from ravenchart.running.result import RunResult
 from tests.support.faults import shows
 

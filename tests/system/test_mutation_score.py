@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.failures import ToolFailed
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
+from ravenchart.tools import toolchain
 from tests.mutation.__main__ import Subject, mutants, tried
 from tests.mutation.observing import Simulated
 from tests.support.chart_models import chart_text

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.command_line import main
 from ravenchart.failures import OK, WRONG
+from ravenchart.tools import toolchain
 from tests import house
 
 MODEL = """\

@@ -14,8 +14,8 @@ import pytest
 from ravenchart.building.checking import check
 from ravenchart.building.generation import write_program
 from ravenchart.building.programs import programs_of
-from ravenchart.commands import bus
-from ravenchart.running.running import controller
+from ravenchart.running import server
+from ravenchart.running.runs import controller
 from tests.support.faults import shows
 from tests.support.processes import LAUNCHER, PYTHON, ROOT, Marked
 
@@ -30,7 +30,7 @@ def programs() -> set[str]:
     checked = check(TWO_NODES)
     write_program(checked)
     built = [controller(made).executable.name for made in programs_of(checked)]
-    return {name[:15] for name in (*built, bus.built().name)}
+    return {name[:15] for name in (*built, server.built().name)}
 
 
 @contextmanager

@@ -13,7 +13,7 @@ import pytest
 
 from ravenchart.building import checking
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.running import run_controller
+from ravenchart.running.runs import run_controller
 from tests.support.faults import shows
 
 HERE = Path("examples/cartesian_robot")

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking, generation, programs, toolchain
+from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.gen.emit.program import generate
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
+from ravenchart.tools import toolchain
 
 HERE = ROOT / "examples" / "surgical_robot"
 LINE = "Robot: {facade: [Boards, Wrist]}"

@@ -14,7 +14,7 @@ from rich.console import Console
 from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.paths import ROOT
-from ravenchart.running.running import RunRequest, controller, run_model
+from ravenchart.running.runs import RunRequest, controller, run_model
 from tests.support.faults import shows
 from tests.support.two_nodes import by_chart
 

@@ -7,8 +7,8 @@ import subprocess
 import pytest
 
 from ravenchart.analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits
-from ravenchart.building import toolchain
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
 
 CASES = [
     (kind, extended, length)

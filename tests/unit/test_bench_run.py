@@ -17,7 +17,7 @@ from ravenchart.hw_can.bench.scenario import ScenarioError, TraceCheck, parse_sc
 from ravenchart.running import expected, judge, summary
 from ravenchart.running.process import Ended
 from ravenchart.running.result import RunResult
-from ravenchart.running.running import (
+from ravenchart.running.runs import (
     Controller,
     RunRequest,
     print_summary,

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from ravenchart.behaviour import rules
-from ravenchart.building import check_cache, checking, kept
+from ravenchart.building import check_cache, checking
 from ravenchart.command_line import main
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.model.system import System
+from ravenchart.tools import kept
 from tests.bench.random_models import random_model
 
 

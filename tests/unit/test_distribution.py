@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.derive.completion import on_one_node, programs
@@ -139,7 +140,8 @@ def test_each_node_has_its_program_and_sees_the_other_as_outside() -> None:
 def test_advice_is_given_where_a_chain_between_nodes_is_late() -> None:
     found = analyse(system_of(("reaction: 60 ms, age: 50 ms", "reaction: 10 ms")))
     assert not found.schedulable
-    assert found.advice is not None
+    given = advice.of_model(found)
+    assert given is not None
 
 
 def test_objects_of_the_same_name_on_two_nodes_are_told_apart() -> None:

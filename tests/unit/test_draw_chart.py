@@ -11,8 +11,6 @@ from xml.etree import ElementTree
 
 import pytest
 
-from ravenchart.building import toolchain
-from ravenchart.building.toolchain import ToolMissing
 from ravenchart.commands import draw
 from ravenchart.gen.draw import structure_text
 from ravenchart.gen.draw.chart import chart_dot
@@ -24,6 +22,8 @@ from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.draw.wrapping import wrapped
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
+from ravenchart.tools.toolchain import ToolMissing
 from tests.support.every_construct import every_construct
 from tests.support.plant_model import plant
 from tests.support.random_charts import model_of

@@ -10,10 +10,10 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart.building import toolchain
 from ravenchart.hw_can.bench.echo import Echo, Standing
 from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
 from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, run
+from ravenchart.tools import toolchain
 from tests.hardware import __main__ as hw_test
 from tests.hardware.__main__ import Step, Total, load_order, missing, script, steps, total
 from tests.hardware.driver_cases import Driver, cases

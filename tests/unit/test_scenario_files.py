@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.behaviour.interpreter.stimuli import FORMS
-from ravenchart.building import checking, toolchain
+from ravenchart.building import checking
 from ravenchart.command_line import main
 from ravenchart.hw_can.bench.scenario import (
     BUS_EVENTS,
@@ -20,6 +20,7 @@ from ravenchart.hw_can.bench.scenario import (
     parse_scenario,
 )
 from ravenchart.running import scenarios
+from ravenchart.tools import toolchain
 from tests.support.processes import ROOT
 
 ROBOT = ROOT / "examples" / "cartesian_robot"

@@ -10,10 +10,9 @@ import pytest
 from ravenchart.analysis.present.report import Comparison, render
 from ravenchart.analysis.system.observed import Observation, Releases, TraceMap, read_trace
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.gen.derive.completion import SUPERVISOR
 from ravenchart.gen.emit.nodes.supervision import END_MARGIN
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import System
+from ravenchart.gen.model.system import SUPERVISOR, System
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from ravenchart.running import judge

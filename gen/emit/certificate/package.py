@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Set
 
-from ravenchart.gen.derive.completion import SUPERVISOR
 from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.emit.ada.naming import ada_case, priority
 from ravenchart.gen.emit.ada.syntax import (
@@ -29,7 +28,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.model.claims import ChainClaim, Claims
-from ravenchart.gen.model.system import Node, SharedObject, System, Task
+from ravenchart.gen.model.system import SUPERVISOR, Node, SharedObject, System, Task
 
 from .buses import bus_claims, bus_terms
 from .chains import chain_claims

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.derive.completion import SUPERVISOR
 from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.emit.ada.naming import ada_case, priority, processor_package, root_package
 from ravenchart.gen.emit.ada.syntax import (
@@ -31,7 +30,7 @@ from ravenchart.gen.emit.ada.syntax import (
 )
 from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.tables.trace_calls import note, traced
-from ravenchart.gen.model.system import Node, Processor, Supervision, System
+from ravenchart.gen.model.system import SUPERVISOR, Node, Processor, Supervision, System
 
 STACK = 32_768
 """Bytes of stack for the supervisor."""

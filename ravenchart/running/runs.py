@@ -23,14 +23,13 @@ from ravenchart.analysis.system.observed import (
 )
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.building.programs import Program
-from ravenchart.commands import bus
 from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
 
-from . import expected, judge, plots, result, summary
+from . import expected, judge, plots, result, server, summary
 from .process import ControllerProcess, Ended, StartError, separate_cores
 from .result import RunResult
 
@@ -368,7 +367,7 @@ def run_nodes(
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
     words = _bus_words(analysis, controllers, plan)
-    with separate_cores(), bus.running("port=0", *words) as (_, channel):
+    with separate_cores(), server.running("port=0", *words) as (_, channel):
         running: list[ControllerProcess] = []
         try:
             for number, (one, trace) in enumerate(zip(controllers, traces, strict=True)):
@@ -412,8 +411,8 @@ def _bus_words(
     line = analysis.system.buses[0]
     data_rate = (line.data_rate or line.bit_rate) if line.takes_fd else 0
     for rate in (line.bit_rate, data_rate):
-        if rate and bus.SECOND % rate:
-            raise BenchError(f"error: {line.name}: {bus.uneven(rate)}")
+        if rate and server.SECOND % rate:
+            raise BenchError(f"error: {line.name}: {server.uneven(rate)}")
     words = [f"bitrate={line.bit_rate}", f"data_bitrate={data_rate}"]
     if line.by_priority:
         words.append("buffer=priority")

@@ -1,0 +1,45 @@
+"""The bus server as a process: built when it is first needed, and started."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+
+from ravenchart.paths import ROOT, work
+from ravenchart.tools import children, toolchain
+
+PROJECT = ROOT / "hw_can" / "bus" / "can_bus.gpr"
+SECOND = 10**9
+"""Of the simulated bus, in its own ticks: a bit must be a number of them."""
+
+
+@cache
+def built() -> Path:
+    """The server's program, compiled if need be, and once; ToolMissing or ToolFailed."""
+    options = ["-p", "-q", "-j0", "-P", PROJECT.name]
+    toolchain.run("gprbuild", options, PROJECT.parent, {"MODE": "release"})
+    return work() / "obj" / "bus-release" / "can_bus"
+
+
+@contextmanager
+def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A bus server for the time of a block, and its channel, ``host:port``."""
+    with children.running(
+        [built(), *told], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
+    ) as server:
+        assert server.stdout is not None
+        yield server, server.stdout.readline().split()[-1]
+
+
+def serve(told: Sequence[str]) -> int:
+    """Run the server until it is interrupted; its exit status."""
+    with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
+        return server.wait()
+
+
+def uneven(rate: int) -> str:
+    """Why the server refuses a bit rate."""
+    return f"a bit at {rate} bit/s is no whole number of ns"

@@ -1,0 +1,1 @@
+"""Programs outside, as children that end with us; and what is kept between calls."""
