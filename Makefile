@@ -41,6 +41,7 @@ check: setup
 	@$(PYTHON) -P -m ruff check .
 	@$(PYTHON) -P -m ruff format --check .
 	@$(PYTHON) -P -m mypy
+	@.venv/bin/lint-imports --no-cache --no-logo
 	@$(PYTHON) -P -m tests.house check
 
 prove: setup
