@@ -10,10 +10,14 @@ import argparse
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import NoReturn
 
 from .failures import STATUSES, UNUSABLE, Failure
+from .paths import version
 
 COMMANDS = {
+    "new": ("new", "make a project that checks, builds, runs and is proved as it stands"),
+    "doctor": ("doctor", "say what is installed, what is missing, and what mends it"),
     "check": ("check", "check the model: its rules and its deadlines"),
     "generate": ("generate", "write generated/ beside the model"),
     "build": ("build", "generate, and compile the controller"),
@@ -35,6 +39,8 @@ COMMANDS = {
         "print the messages of a CAN database as types, ports and messages of a model",
     ),
     "simulate": ("simulate", "run the model in virtual time, step by step"),
+    "explain": ("explain", "say what the code of a message means"),
+    "clean": ("clean", "delete what was built"),
 }
 """Name to the module that does it, and what it does."""
 
@@ -61,6 +67,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
+class _Version(argparse.Action):
+    """Prints the version; it is looked up only then."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        print(f"ravenchart {version()}")
+        parser.exit()
+
+
 def said_of(problem: OSError) -> str:
     """What the system says of a file, with its name and without a number."""
     reason = problem.strerror or str(problem)
@@ -77,6 +91,7 @@ def _parser(told: Sequence[str]) -> argparse.ArgumentParser:
         epilog=STATUSES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and end")
     called = next((word for word in told if not word.startswith("-")), None)
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for name, (module, help_text) in COMMANDS.items():

@@ -34,3 +34,10 @@ def work() -> Path:
     import hashlib  # only here: the start of every command imports this module
 
     return cache() / f"work-{hashlib.sha256(str(ROOT).encode()).hexdigest()[:8]}"
+
+
+def version() -> str:
+    """The version of this installation, as pyproject.toml has it."""
+    from importlib import metadata
+
+    return metadata.version("ravenchart")

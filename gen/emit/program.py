@@ -18,8 +18,8 @@ from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.certificate.package import emit_certificate
 from ravenchart.gen.emit.charts.declared import emit_region
 from ravenchart.gen.emit.commands.devices import emit_devices, simulated_driver
+from ravenchart.gen.emit.components.first_bodies import first_bodies
 from ravenchart.gen.emit.components.packages import (
-    activity_package,
     emit_activities,
     emit_component,
 )
@@ -49,6 +49,11 @@ HEADER = (
 SIMULATED = (
     "A simulated device of the model of {system}, written once by ravenchart as a starting "
     "point: it is yours."
+)
+
+FIRST = (
+    "A first version for the model of {system}, written once by ravenchart: it does nothing yet, "
+    "and it is yours."
 )
 
 T = TypeVar("T")
@@ -241,21 +246,31 @@ def _program_files(part: System, claims: Claims, whole: System) -> dict[str, str
 
 
 def user_units(system: System) -> tuple[str, ...]:
-    """The bodies that the user writes, below the model's folder."""
+    """The units that the user writes, below the model's folder."""
+    return tuple(name for name, _ in _users(system))
+
+
+def first_versions(system: System) -> dict[str, str]:
+    """File name below the model's folder to a first version of what the user writes.
+
+    Each compiles and is proved as it stands.
+    """
+    units = {name: print_unit(unit) for name, unit in _users(system)}
+    return {**units, **simulated_drivers(system)}
+
+
+def _users(system: System) -> Iterator[tuple[str, Unit]]:
     used = {i.component.name for i in system.instances}
-    root = ada_case(system.name).lower()
-    units: list[str] = []
+    header = FIRST.format(system=system.name)
     for c in system.components:
-        homes = dict.fromkeys(activity_package(c, a) for a in c.activities if a.flow is None)
-        for home in homes if c.name in used else ():
-            name = f"{c.name}-{home}".lower()
-            folder = "user" if home == "Activities" else f"user/{name}"
-            units.append(f"{folder}/{root}-{name}.adb")
+        for unit in first_bodies(system, c, header) if c.name in used else ():
+            home = unit.item.name.rpartition(".")[2]
+            folder = "user" if home == "Activities" else f"user/{c.name}-{home}".lower()
+            yield f"{folder}/{unit.file_name}", unit
     for kind in device_types(system):
         if not kind.simulated:
-            name = kind.name.lower()
-            units += [f"user/{root}-{name}_states.ads", f"user/{root}-{name}.adb"]
-    return tuple(units)
+            for unit in simulated_driver(system, kind, header):
+                yield f"user/{unit.file_name}", unit
 
 
 def source_folders(system: System) -> tuple[str, ...]:

@@ -241,10 +241,14 @@ def errors() -> str:
     return "\n".join(lines) + "\n"
 
 
+def json_schema() -> str:
+    """The JSON Schema of a model's files, for editors."""
+    return json.dumps(schema(), indent=2, ensure_ascii=False) + "\n"
+
+
 def pages() -> dict[str, str]:
     """File name to text of each page."""
-    text = json.dumps(schema(), indent=2, ensure_ascii=False) + "\n"
-    return {SCHEMA: text, REFERENCE: reference(), ERRORS: errors()}
+    return {SCHEMA: json_schema(), REFERENCE: reference(), ERRORS: errors()}
 
 
 def write(directory: Path, made: Iterable[tuple[str, str]]) -> None:

@@ -14,8 +14,8 @@ from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import in_order, render, render_all
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import (
+    first_versions,
     generate,
-    simulated_drivers,
     source_folders,
     user_units,
 )
@@ -59,14 +59,16 @@ class Written:
 
     ``files`` were generated, the manifest not counted; of these ``changed`` have other bytes
     than before. ``edited`` had been changed by hand: their copies lie beside them.
-    ``missing`` are the bodies still to write.
+    ``first`` are units of the user that were not there and got a first version; ``untouched``
+    are those that are still as first written, and do nothing.
     """
 
     folder: Path
     files: int
     changed: int
     edited: tuple[str, ...]
-    missing: tuple[Path, ...]
+    first: tuple[Path, ...]
+    untouched: tuple[Path, ...]
 
 
 @without_collector()
@@ -100,10 +102,8 @@ def write_program(checked: Checked) -> Written:
         if (folder / gone).parent != folder:
             with suppress(OSError):  # it is not empty, or was never there
                 (folder / gone).parent.rmdir()
-    write_first_versions(checked)
-    units = (checked.folder / name for name in user_units(checked.system))
-    missing = tuple(unit for unit in units if not unit.is_file())
-    return Written(folder, len(files), changed, edited, missing)
+    first = write_first_versions(checked)
+    return Written(folder, len(files), changed, edited, first, _untouched(checked))
 
 
 def _manifest(folder: Path) -> dict[str, str]:
@@ -130,13 +130,23 @@ def _digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def write_first_versions(checked: Checked) -> None:
-    """Make the folders of what the user writes, and simulated devices that are not there yet."""
+def write_first_versions(checked: Checked) -> tuple[Path, ...]:
+    """Write what is the user's and not there yet; the files that were written."""
+    written = []
     for place in source_folders(checked.system):
         (checked.folder / place).mkdir(parents=True, exist_ok=True)
-    for name, text in simulated_drivers(checked.system).items():
+    for name, text in first_versions(checked.system).items():
         if not (checked.folder / name).exists():
             replace_file(checked.folder / name, text)
+            written.append(checked.folder / name)
+    return tuple(written)
+
+
+def _untouched(checked: Checked) -> tuple[Path, ...]:
+    """The units of the user that still do nothing: they are as first written."""
+    texts = first_versions(checked.system)
+    units = ((checked.folder / name, texts[name]) for name in user_units(checked.system))
+    return tuple(unit for unit, text in units if unit.read_bytes() == text.encode("utf-8"))
 
 
 def _is_inside(name: str) -> bool:

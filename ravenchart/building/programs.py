@@ -136,9 +136,18 @@ def programs_of(checked: Checked) -> tuple[Program, ...]:
 
 def build_home(checked: Checked, driver: str) -> Path:
     """What is built of a model, below build/ of the place of work, apart for each driver."""
-    place = checked.folder if is_usual(checked.path) else checked.path
-    known = hashlib.sha256(str(place.resolve()).encode()).hexdigest()[:8]
-    return work() / "build" / f"{checked.stem}-{known}-{driver}"
+    return work() / "build" / f"{checked.stem}-{_mark(checked.path)}-{driver}"
+
+
+def homes_of(model: Path) -> list[Path]:
+    """All that is built of the model whose main file is at that path, with any driver."""
+    return sorted((work() / "build").glob(f"*-{_mark(model)}-*"))
+
+
+def _mark(model: Path) -> str:
+    """What tells models of one name apart: where their main files are."""
+    place = model.parent if is_usual(model) else model
+    return hashlib.sha256(str(place.resolve()).encode()).hexdigest()[:8]
 
 
 def default_driver(checked: Checked) -> str:

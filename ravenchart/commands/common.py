@@ -45,8 +45,6 @@ def tell_written(written: Written) -> None:
             f"your version is kept as {name}{EDITED}",
             file=sys.stderr,
         )
-    for path in written.missing:
-        where = f"its spec is in {written.folder}, the body is yours"
-        if path.suffix == ".ads":
-            where = "both spec and body of what a device remembers are yours"
-        print(f"note: {path} is not there yet; {where}", file=sys.stderr)
+    for path in written.untouched:
+        known = "is new: a first version, which" if path in written.first else "still"
+        print(f"note: {path} {known} does nothing: it is yours to write", file=sys.stderr)

@@ -70,7 +70,7 @@ def test_a_region_publishes_and_events_are_brought_without_a_warning(tmp_path: P
     shutil.copytree(ROOT / "tests" / "nodes" / "gripper", copy)
     checked = checking.check(copy / "model.yaml")
     assert not checked.warnings
-    assert generation.write_program(checked).missing == ()
+    assert generation.write_program(checked).untouched == ()
     for made in programs.programs_of(checked):
         made.build()
     grasp = (copy / "generated" / "board" / "gripper_cell-grasp_1.adb").read_text()

@@ -30,13 +30,20 @@ def tank(tmp_path: Path) -> Path:
     return folder
 
 
-def test_before_the_body_is_written_generate_says_which_one_is_missing(
+def test_a_first_body_is_written_once_and_named_until_it_is_changed(
     tank: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    model = str(tank / "model.yaml")
     body = tank / "user" / "tank_system-plant-activities.adb"
     body.unlink()
-    assert main(["generate", str(tank / "model.yaml")]) == 0
-    assert f"note: {body} is not there yet" in capsys.readouterr().err
+    assert main(["build", model]) == 0
+    assert f"note: {body} is new: a first version, which does nothing" in capsys.readouterr().err
+    assert main(["generate", model]) == 0
+    assert f"note: {body} still does nothing" in capsys.readouterr().err
+    body.write_text(_block("ada"))
+    assert main(["generate", model]) == 0
+    assert capsys.readouterr().err == ""
+    assert body.read_text() == _block("ada")
 
 
 def test_the_tank_builds_runs_and_keeps_its_level(

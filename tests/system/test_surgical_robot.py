@@ -70,7 +70,7 @@ def test_every_way_to_sense_is_built_with_its_stand_ins_only(sensed: str, varian
     checked = variant("software_control.yaml", LINE, f"Robot: {{facade: {members}}}")
     assert not checked.warnings
     written = generation.write_program(checked)
-    assert written.missing == ()
+    assert written.untouched == ()
     programs.programs_of(checked)[0].build()
     everything = "\n".join(
         path.read_text() for path in (checked.folder / "generated").glob("*.ad[sb]")
@@ -157,7 +157,7 @@ def test_a_drive_over_can_replaces_the_servo_by_a_line(
 ) -> None:
     checked = variant("model.yaml", "software_control.yaml", "drive_over_can.yaml")
     assert not checked.warnings
-    assert generation.write_program(checked).missing == ()
+    assert generation.write_program(checked).untouched == ()
     (made,) = programs.programs_of(checked)
     made.build()
     generated = checked.folder / "generated"

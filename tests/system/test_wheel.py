@@ -1,0 +1,133 @@
+"""The wheel, installed in an environment of its own and used in a folder far from the checkout."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ravenchart.paths import ROOT
+
+SOURCES = (
+    *("ravenchart", "gen", "analysis", "behaviour", "hw_can", "spark_runtime"),
+    *("pyproject.toml", "README.md", "LICENSE", "ravenchart.gpr", "switches.gpr"),
+)
+WITHOUT = shutil.ignore_patterns("__pycache__")
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, made of a copy: setuptools leaves files behind."""
+    folder = tmp_path_factory.mktemp("wheel")
+    for name in SOURCES:
+        source, target = ROOT / name, folder / "source" / name
+        if source.is_dir():
+            shutil.copytree(source, target, symlinks=True, ignore=WITHOUT)
+        else:
+            shutil.copy(source, target)
+    options = ["--quiet", "--no-deps", "--no-build-isolation", "--disable-pip-version-check"]
+    words = [sys.executable, "-m", "pip", "wheel", *options, "-w", "made", "./source"]
+    subprocess.run(words, cwd=folder, check=True)
+    (made,) = (folder / "made").glob("*.whl")
+    return made
+
+
+@pytest.fixture(scope="module")
+def away(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A folder with an environment `env` that has the wheel, none of whose files may change.
+
+    The packages it depends on are those of this environment.
+    """
+    folder = tmp_path_factory.mktemp("far away")
+    subprocess.run([sys.executable, "-m", "venv", "env"], cwd=folder, check=True)
+    python = folder / "env" / "bin" / "python"
+    options = ["--quiet", "--no-deps", "--no-index", "--disable-pip-version-check"]
+    subprocess.run([python, "-m", "pip", "install", *options, wheel], cwd=folder, check=True)
+    home = next((folder / "env" / "lib").glob("python*/site-packages"))
+    (home / "others.pth").write_text(f"{sysconfig.get_path('purelib')}\n", encoding="utf-8")
+    before = _files(home / "ravenchart")
+    yield folder
+    assert _files(home / "ravenchart") == before
+
+
+def _files(folder: Path) -> set[Path]:
+    return {path for path in folder.rglob("*") if "__pycache__" not in path.parts}
+
+
+def _called(away: Path, *words: str, status: int = 0) -> str:
+    """What a command prints, called in a folder of the user."""
+    home = away / "work"
+    home.mkdir(exist_ok=True)
+    done = subprocess.run(
+        [away / "env" / "bin" / "ravenchart", *words],
+        cwd=home,
+        env={**os.environ, "XDG_CACHE_HOME": str(away / "cache"), "PYTHONPATH": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == status, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path) -> None:
+    names = zipfile.ZipFile(wheel).namelist()
+    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"ravenchart"}
+    ada = {path.relative_to(ROOT) for path in ROOT.glob("spark_runtime/*/*.ad[bsc]")}
+    ada |= {path.relative_to(ROOT) for path in ROOT.glob("hw_can/**/*.ad[bs]")}
+    assert {f"ravenchart/{path}" for path in ada} <= set(names)
+    assert not [name for name in names if "/tests/" in name or "mutation" in name]
+
+
+def test_a_new_project_is_checked_built_run_and_drawn(away: Path) -> None:
+    _called(away, "new", "tank")
+    assert "every deadline is met" in _called(away, "check", "tank/model.yaml")
+    built = _called(away, "build", "tank/model.yaml")
+    assert f"built {away / 'cache' / 'ravenchart'}" in built and "warning" not in built
+    assert "verdict: PASS" in _called(away, "run", "tank/model.yaml", "--seconds", "2")
+    assert "drawings" in _called(away, "draw", "tank/model.yaml", "--format", "mermaid")
+    _called(away, "analyse", "tank/model.yaml", "--html", "out/report.html")
+    assert (away / "work" / "out" / "report.html").is_file()
+    (away / "work" / "events.yaml").write_text("- {until: 1 s}\n")
+    assert "Idle.entry" in _called(away, "simulate", "tank/model.yaml", "--events", "events.yaml")
+    assert " MB freed" in _called(away, "clean", "tank/model.yaml")
+    assert not list((away / "cache" / "ravenchart").glob("work-*/build/tank_system-*"))
+
+
+@pytest.mark.skipif(shutil.which("gnatprove") is None, reason="gnatprove is not on PATH")
+def test_a_new_project_is_proved(away: Path) -> None:
+    _called(away, "new", "proved")
+    told = _called(away, "prove", "proved/model.yaml")
+    assert "justified 0, assumed 0, outside SPARK 0" in told
+
+
+def test_the_bus_serves_and_the_loopback_test_passes(away: Path) -> None:
+    server = subprocess.Popen(
+        [away / "env" / "bin" / "ravenchart", "bus", "--port", "0"],
+        env={**os.environ, "XDG_CACHE_HOME": str(away / "cache")},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert server.stdout is not None
+        channel = server.stdout.readline().split()[-1]
+        told = _called(away, "loopback", "--interface", "ravenchart", "--channel", channel)
+        assert "PASS" in told and "0 failed" in told
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def test_doctor_tells_where_it_is_and_the_version_is_one(away: Path) -> None:
+    told = _called(away, "doctor")
+    assert f"an installation: {away / 'env'}" in told
+    version = _called(away, "--version").split()[1]
+    assert f'version = "{version}"' in (ROOT / "alire.toml").read_text()
+    assert f'version = "{version}"' in (ROOT / "pyproject.toml").read_text()
