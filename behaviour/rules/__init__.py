@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.behaviour.limits import SECONDS, UNFINISHED
 from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
@@ -17,11 +18,6 @@ from .invariants import invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
 from .reach import Clock, OutOfTime, Reach
-
-SECONDS = 10.0
-"""What the check of a model may take."""
-UNFINISHED = "RV-1110"
-"""The code of a check that was not finished."""
 
 
 def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]:

@@ -10,11 +10,10 @@ import hashlib
 import sys
 from collections.abc import Mapping, Sequence
 from functools import cache
+from importlib import metadata
 from typing import Any
 
-import z3
-
-from ravenchart.behaviour.rules import UNFINISHED
+from ravenchart.behaviour.limits import UNFINISHED
 from ravenchart.gen.diagnostics import Diagnostic, Severity
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import PACKAGE
@@ -33,7 +32,7 @@ def _tool() -> list[object]:
     sources = [
         (str(p.relative_to(PACKAGE)), hashlib.sha256(p.read_bytes()).hexdigest()) for p in paths
     ]
-    return [FORMAT, sys.version, z3.get_version_string(), sources]
+    return [FORMAT, sys.version, metadata.version("z3-solver"), sources]
 
 
 def key(sources: Mapping[str, Sequence[str]]) -> str:

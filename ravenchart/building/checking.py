@@ -11,7 +11,7 @@ from pathlib import Path
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.identifiers import order_of
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.behaviour import rules
+from ravenchart.behaviour.limits import SECONDS
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
@@ -75,7 +75,7 @@ def check(
     path: Path,
     *,
     deadlines: bool = True,
-    patience: float = rules.SECONDS,
+    patience: float = SECONDS,
     finish: bool = False,
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
@@ -103,6 +103,8 @@ def _behaviour(
     key = check_cache.key(loaded.sources)
     found = check_cache.load(key, patience, finished=finish)
     if found is None:
+        from ravenchart.behaviour import rules  # imports a solver
+
         found = rules.findings(system, patience)
         check_cache.store(key, patience, found)
     return found

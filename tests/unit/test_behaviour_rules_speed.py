@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 
-from ravenchart.behaviour.rules import SECONDS, findings
+from ravenchart.behaviour.limits import SECONDS
+from ravenchart.behaviour.rules import findings
 from ravenchart.gen.model.system import System
 from tests.support.behaviour_models import model, region
 

@@ -7,7 +7,8 @@ from time import process_time
 
 import pytest
 
-from ravenchart.behaviour.rules import SECONDS, UNFINISHED, findings
+from ravenchart.behaviour.limits import SECONDS, UNFINISHED
+from ravenchart.behaviour.rules import findings
 from ravenchart.behaviour.rules.reach import Clock, Reach
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims
