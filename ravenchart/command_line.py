@@ -16,8 +16,8 @@ from .failures import STATUSES, UNUSABLE, Failure
 from .paths import version
 
 COMMANDS = {
-    "new": ("new", "make a project that checks, builds, runs and is proved as it stands"),
-    "doctor": ("doctor", "say what is installed, what is missing, and what mends it"),
+    "new": ("new", "create a project that checks, builds, runs and proves"),
+    "doctor": ("doctor", "report installed and missing tools, with the command that installs each"),
     "check": ("check", "check the model: its rules and its deadlines"),
     "generate": ("generate", "write generated/ beside the model"),
     "build": ("build", "generate, and compile the controller"),
@@ -39,8 +39,8 @@ COMMANDS = {
         "print the messages of a CAN database as types, ports and messages of a model",
     ),
     "simulate": ("simulate", "run the model in virtual time, step by step"),
-    "explain": ("explain", "say what the code of a message means"),
-    "clean": ("clean", "delete what was built"),
+    "explain": ("explain", "explain the code of an error or warning"),
+    "clean": ("clean", "delete build results"),
 }
 """Name to the module that does it, and what it does."""
 

@@ -46,5 +46,9 @@ def tell_written(written: Written) -> None:
             file=sys.stderr,
         )
     for path in written.untouched:
-        known = "is new: a first version, which" if path in written.first else "still"
-        print(f"note: {path} {known} does nothing: it is yours to write", file=sys.stderr)
+        state = (
+            "new; its bodies do nothing yet"
+            if path in written.first
+            else "its bodies do nothing yet"
+        )
+        print(f"note: {path}: {state}. Write them: the file is yours", file=sys.stderr)

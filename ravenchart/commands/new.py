@@ -29,7 +29,7 @@ FILES = {
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     sub.add_argument(
-        "folder", type=Path, metavar="FOLDER", help="made anew; its name names the system"
+        "folder", type=Path, metavar="FOLDER", help="a new folder; the system is named after it"
     )
 
 
@@ -42,9 +42,7 @@ def execute(options: argparse.Namespace) -> int:
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    print(
-        f"{folder}: {len(files)} files; go on with `make check`, `make run` and `make prove` there"
-    )
+    print(f"{folder}: {len(files)} files. Next, there: `make check`, `make run`, `make prove`")
     return OK
 
 

@@ -2,7 +2,7 @@
 
 The program is the generated one without tasks and buses: a main that holds the
 processors' tables, reads numbered stimuli from standard input, calls the rows in the
-order of `behaviour.machine` and prints the lines of `Record.text`.
+order of `behaviour.interpreter.machine` and prints the lines of `Record.text`.
 """
 
 from __future__ import annotations

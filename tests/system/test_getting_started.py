@@ -37,9 +37,9 @@ def test_a_first_body_is_written_once_and_named_until_it_is_changed(
     body = tank / "user" / "tank_system-plant-activities.adb"
     body.unlink()
     assert main(["build", model]) == 0
-    assert f"note: {body} is new: a first version, which does nothing" in capsys.readouterr().err
+    assert f"note: {body}: new; its bodies do nothing yet" in capsys.readouterr().err
     assert main(["generate", model]) == 0
-    assert f"note: {body} still does nothing" in capsys.readouterr().err
+    assert f"note: {body}: its bodies do nothing yet" in capsys.readouterr().err
     body.write_text(_block("ada"))
     assert main(["generate", model]) == 0
     assert capsys.readouterr().err == ""

@@ -1,0 +1,31 @@
+"""What the docs name is there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ravenchart.paths import ROOT
+
+PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "proofs/assumptions.md")
+SOURCE = re.compile(
+    r"`((?:gen|analysis|behaviour|hw_can|ravenchart|spark_runtime|tests|proofs|scripts)"
+    r"/[\w./-]+\.(?:py|toml|ad[bs]|gpr|sh|md))`"
+)
+MODULE = re.compile(r"`((?:gen|analysis|behaviour|hw_can|ravenchart)(?:\.[a-z_]+)+)`")
+LINK = re.compile(r"\]\((?!https?:)([^)#]+)(?:#[^)]*)?\)")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_modules_and_links_of_a_page_exist(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    files = [ROOT / name for name in SOURCE.findall(text)]
+    files += [page.parent / name for name in LINK.findall(text)]
+    lost = [str(path) for path in files if not path.exists()]
+    for name in MODULE.findall(text):
+        place = ROOT / name.replace(".", "/")
+        if not place.is_dir() and not place.with_suffix(".py").exists():
+            lost.append(name)
+    assert lost == []
