@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-from hw_can.bench.bus_records import NAME_LENGTH
+from hw_can.bench.bus_records import NAME_LENGTH, RESTART_LAST
 
 from . import children, toolchain
 from .toolchain import ROOT
@@ -40,6 +40,11 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--data-bitrate", type=_rate(0, 20_000_000), default=2_000_000, metavar="BIT/S",
         help="of the data phase; 0: no CAN FD (default 2000000)",
+    )  # fmt: skip
+    sub.add_argument(
+        "--restart-ms", type=_number(0, RESTART_LAST), default=0, metavar="MS",
+        help="from bus-off to the request for recovery, for nodes that do not say; 0 (default): "
+        "a node requests it itself",
     )  # fmt: skip
     sub.add_argument(
         "--virtual", action="store_true",
@@ -73,6 +78,7 @@ def words(options: argparse.Namespace) -> list[str]:
         f"name={options.name}",
         f"bitrate={options.bitrate}",
         f"data_bitrate={options.data_bitrate}",
+        f"restart_ms={options.restart_ms}",
         f"time={'virtual' if options.virtual else 'paced'}",
         f"buffer={options.buffers}",
     ]

@@ -22,6 +22,7 @@ from .bus_records import (
     MARK,
     NUMBER_LAST,
     RECORD_BYTES,
+    RESTART_LAST,
     VERSION,
     Flag,
     Greeting,
@@ -68,17 +69,22 @@ class RavenchartBus(can.BusABC):
         fd: bool = False,
         bitrate: int = 0,
         data_bitrate: int = 0,
+        restart_ms: int = 0,
         name: str = "python-can",
         **kwargs: Any,
     ) -> None:
         """Join the bus at ``channel``, "HOST:PORT".
 
         ``fd``: send and receive FD frames; the bus must carry them. ``bitrate`` and
-        ``data_bitrate`` in bit/s, 0 for those of the bus. ``name`` is shown by the server.
-        Raises ValueError for a channel or name of another form, CanInitializationError
+        ``data_bitrate`` in bit/s, 0 for those of the bus. ``restart_ms``: milliseconds from
+        bus-off to the request for recovery, 0 .. 600,000; 0 for that of the bus, which
+        requests none unless it was told. ``name`` is shown by the server.
+        Raises ValueError for an argument of another form or range, CanInitializationError
         when there is no such server or it refuses.
         """
         address = _address(channel)
+        if not 0 <= restart_ms <= RESTART_LAST:
+            raise ValueError(f"restart_ms is {restart_ms}, not 0 .. {RESTART_LAST}")
         greeting = Greeting(name, bitrate, data_bitrate)
         try:
             hello = encode(
@@ -88,6 +94,7 @@ class RavenchartBus(can.BusABC):
                     length=len(name),
                     code=VERSION,
                     identifier=MARK,
+                    number=restart_ms,
                     data=greeting_data(greeting),
                 )
             )

@@ -27,6 +27,8 @@ NO_DATA = bytes(DATA_BYTES)
 FD_LENGTHS = frozenset((*range(9), 12, 16, 20, 24, 32, 48, 64))
 """Bytes that a frame of the FD format can carry (ISO 11898-1, data length code)."""
 
+RESTART_LAST = 600_000
+"""The longest time from bus-off to the request for recovery, in ms."""
 TIME_LAST = 2**63 - 1
 NUMBER_LAST = 2**32 - 1
 ERROR_PASSIVE = 128
@@ -75,6 +77,7 @@ class Status(IntEnum):
     NOT_SUPPORTED = 5
     WRONG_BIT_RATE = 6
     CLOSING = 7
+    NO_HELLO_IN_TIME = 8
 
     @property
     def words(self) -> str:
@@ -114,7 +117,12 @@ _NUMBER = (0, NUMBER_LAST)
 _COUNTER = (0, BUS_OFF)
 
 _RANGES: dict[Kind, dict[str, tuple[int, int]]] = {
-    Kind.HELLO: {"length": (1, NAME_LENGTH), "code": (1, 255), "identifier": (MARK, MARK)},
+    Kind.HELLO: {
+        "length": (1, NAME_LENGTH),
+        "code": (1, 255),
+        "identifier": (MARK, MARK),
+        "number": (0, RESTART_LAST),
+    },
     Kind.WELCOME: {
         "length": (1, NAME_LENGTH),
         "code": (1, 255),

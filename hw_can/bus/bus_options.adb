@@ -146,6 +146,8 @@ package body Bus_Options is
          Bus.Profile.Nominal := Rate (Value);
       elsif Name = "data_bitrate" then
          Bus.Profile.Data := Rate (Value);
+      elsif Name = "restart_ms" then
+         Bus.Profile.Restart := Nanoseconds'Value (Value) * 1_000_000;
       elsif Name = "time" and then Value in "paced" | "virtual" then
          Paced := Value = "paced";
       elsif Name = "buffer" and then Value in "fifo" | "priority" then

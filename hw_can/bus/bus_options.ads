@@ -4,6 +4,7 @@
 --     name=can0        1 to 16 characters from ! to ~
 --     bitrate=500000, data_bitrate=2000000
 --                      bit/s; a data bit rate of 0 is a classic bus
+--     restart_ms=0     from bus-off to the request for recovery; 0: by hand
 --     time=paced       or virtual
 --     buffer=fifo      or priority
 --     seed=7:1000000   a bit is disturbed, at least so many ns apart

@@ -53,7 +53,7 @@ procedure Can_Bus is
       while Bus_Servers.Is_Room (Bus.Clients)
         and then Bus_Sockets.Somebody_Knocks
       loop
-         Bus_Servers.Connect (Bus.Clients, C);
+         Bus_Servers.Connect (Bus.Clients, Bus_Sockets.Clock, C);
          Bus_Sockets.Welcome (C);
       end loop;
    end Greet;
@@ -132,6 +132,7 @@ begin
 
    while not Bus_Sockets.Stop_Requested loop
       Greet;
+      Bus_Servers.Expire (Bus.Clients, Bus_Sockets.Clock);
       for C in Node_Index loop
          if Bus.Clients (C).State /= Bus_Clients.Unconnected then
             Listen (C);

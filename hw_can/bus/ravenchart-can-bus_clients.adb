@@ -51,10 +51,11 @@ is
    -- Welcome --
    -------------
 
-   procedure Welcome (To : in out Client) is
+   procedure Welcome (To : in out Client; Limit : Nanoseconds) is
    begin
       To.State := Greeting;
       To.Last  := 0;
+      To.Limit := Limit;
       Bus_Queues.Clear (To.Queue);
    end Welcome;
 

@@ -44,13 +44,6 @@ is
    with Global => null;
    --  Did node C see an error frame?
 
-   procedure Recover (N : in out Networks.Network; C : Node_Index)
-   with
-     Global => null,
-     Pre    => Networks.Is_Sound (N),
-     Post   => Networks.Is_Sound (N);
-   --  Node C shall come back from bus-off.
-
    procedure Ask
      (To  : in out Bus_Clients.Client;
       N   : in out Networks.Network;
@@ -100,15 +93,6 @@ is
       Line_Events.Apply (N, A.Events (A.Next));
       A.Next := A.Next + 1;
    end Apply_Next;
-
-   -------------
-   -- Recover --
-   -------------
-
-   procedure Recover (N : in out Networks.Network; C : Node_Index) is
-   begin
-      N.Bus.Nodes (C).Way_Back := Recovers;
-   end Recover;
 
    ---------
    -- Ask --
@@ -197,7 +181,9 @@ is
    -- Connect --
    -------------
 
-   procedure Connect (Clients : in out Client_List; C : out Node_Index) is
+   procedure Connect
+     (Clients : in out Client_List; Clock : Nanoseconds; C : out Node_Index)
+   is
    begin
       C := 1;
       while Clients (C).State /= Bus_Clients.Unconnected loop
@@ -206,8 +192,28 @@ is
               Clients (D).State /= Bus_Clients.Unconnected);
          C := C + 1;
       end loop;
-      Bus_Clients.Welcome (Clients (C));
+      Bus_Clients.Welcome (Clients (C), Clock + Hello_Limit);
    end Connect;
+
+   ------------
+   -- Expire --
+   ------------
+
+   procedure Expire (Clients : in out Client_List; Clock : Nanoseconds) is
+   begin
+      for C in Node_Index loop
+         if Clients (C).State = Bus_Clients.Greeting
+           and then Clients (C).Limit <= Clock
+         then
+            Bus_Clients.End_With
+              (Clients (C), Bus_Records.No_Hello_In_Time);
+         end if;
+         pragma Loop_Invariant
+           (for all D in 1 .. C =>
+              (if Clients (D).State = Bus_Clients.Greeting
+               then Clock < Clients (D).Limit));
+      end loop;
+   end Expire;
 
    ----------------
    -- Disconnect --
@@ -237,13 +243,15 @@ is
             Bus_Clients.Greet (S.Clients (C), C, S.Profile, R, Now, Joins);
             if Joins then
                Line_Events.Join (S.Net, C);
+               S.Net.Bus.Nodes (C).Restart :=
+                 Bus_Clients.Restart_For (R, S.Profile);
             end if;
          when Bus_Clients.Joined   =>
             case R.Kind is
                when Bus_Records.Frame_Request    =>
                   Ask (S.Clients (C), S.Net, C, R, Now);
                when Bus_Records.Recovery_Request =>
-                  Recover (S.Net, C);
+                  Buses.Recover (S.Net.Bus, C, Now);
                when others                       =>
                   Bus_Clients.End_With
                     (S.Clients (C), Bus_Records.Malformed);

@@ -62,12 +62,27 @@ is
    with Global => null;
    --  May one more connect?
 
-   procedure Connect (Clients : in out Client_List; C : out Node_Index)
+   Hello_Limit : constant Nanoseconds := 2_000_000_000;
+   --  From the connection to hello.
+
+   procedure Connect
+     (Clients : in out Client_List; Clock : Nanoseconds; C : out Node_Index)
    with
      Global => null,
-     Pre    => Is_Room (Clients),
+     Pre    =>
+       Is_Room (Clients) and then Clock <= Nanoseconds'Last - Hello_Limit,
      Post   => Clients (C).State = Bus_Clients.Greeting;
-   --  Somebody has connected, and is client C from now on.
+   --  Somebody has connected, and is client C from now on. The Clock is not
+   --  that of the bus, whose time may stand still.
+
+   procedure Expire (Clients : in out Client_List; Clock : Nanoseconds)
+   with
+     Global => null,
+     Post   =>
+       (for all C in Node_Index =>
+          (if Clients (C).State = Bus_Clients.Greeting
+           then Clock < Clients (C).Limit));
+   --  The connection of a client that has not said hello in time ends.
 
    procedure Disconnect (S : in out Server; C : Node_Index)
    with

@@ -162,7 +162,9 @@ is
       B.Free_At (S) := Now;
       for N in Node_Index loop
          if B.Nodes (N).Segment = S and then B.Line /= Held_Dominant then
-            Rest (B.Nodes (N), Bits);
+            Rest
+              (B.Nodes (N),
+               Quiet_Bits (B.Nodes (N), Now, Bits, B.Times.Nominal));
          end if;
          pragma Loop_Invariant
            (for all M in Node_Index =>
@@ -192,11 +194,18 @@ is
                B.Nodes (N).Ready_At :=
                  B.Free_At (S) + Suspended * B.Times.Nominal;
             end if;
+            if B.Nodes (N).Restart > 0 then
+               Request_Recovery
+                 (B.Nodes (N), B.Free_At (S) + B.Nodes (N).Restart);
+            end if;
          elsif B.Nodes (N).Segment = S and then Roles (N) = Outside then
             if Noisy then
                Interrupt (B.Nodes (N));
             end if;
-            Rest (B.Nodes (N), Quiet);
+            Rest
+              (B.Nodes (N),
+               Quiet_Bits
+                 (B.Nodes (N), B.Free_At (S), Quiet, B.Times.Nominal));
          end if;
          pragma Loop_Invariant
            (for all M in Node_Index =>
@@ -207,6 +216,25 @@ is
                then B.Nodes (M) = B.Nodes'Loop_Entry (M)));
       end loop;
    end Conclude;
+
+   -------------
+   -- Recover --
+   -------------
+
+   procedure Recover (B : in out Bus; N : Node_Index; Now : Nanoseconds) is
+      Node : Bus_Node renames B.Nodes (N);
+      Free : constant Nanoseconds := B.Free_At (Node.Segment);
+   begin
+      Request_Recovery (Node, Now);
+      if Comes_Back (Node)
+        and then Node.Ready_At = Now
+        and then Now < Free
+        and then B.Line /= Held_Dominant
+      then
+         Rest
+           (Node, Quiet_Bits (Node, Free, After_Dominant, B.Times.Nominal));
+      end if;
+   end Recover;
 
    -----------
    -- Carry --

@@ -117,6 +117,20 @@ is
    --  The segment was idle up to now: nodes that are bus-off and shall come
    --  back have counted its recessive bits.
 
+   procedure Recover (B : in out Bus; N : Node_Index; Now : Nanoseconds)
+   with
+     Global => null,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then B.Free_At = B.Free_At'Old
+       and then
+         (for all M in Node_Index =>
+            (if M /= N then B.Nodes (M) = B.Nodes'Old (M)));
+   --  The user of node N requests recovery from bus-off. The node counts the
+   --  recessive bits behind Now: those of an idle bus before count nothing,
+   --  those at the end of a frame that is being sent do.
+
    procedure Contest
      (B      : in out Bus;
       S      : Segment;

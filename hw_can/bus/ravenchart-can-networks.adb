@@ -32,9 +32,11 @@ is
          return
            Later
              (Later (Free, Node.Ready_At), N.Buffers (I).Slots (1).Since);
-      elsif Comes_Back (Node) and then Free <= Buses.Last_Start then
+      elsif Comes_Back (Node)
+        and then Later (Free, Node.Ready_At) <= Buses.Last_Start
+      then
          return
-           Free
+           Later (Free, Node.Ready_At)
            + Nanoseconds
                (Fault_Confinement.Bits_To_Recovery (Node.Confinement))
              * N.Bus.Times.Nominal;

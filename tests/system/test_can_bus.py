@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -82,12 +83,53 @@ def test_a_bus_held_recessive_drives_the_sender_off_and_it_comes_back(start: Sta
         assert a.state is can.BusState.ERROR
         assert b.state is can.BusState.ACTIVE
         a.state = can.BusState.ACTIVE
-        end = time.monotonic() + WAIT
-        while a.state is not can.BusState.ACTIVE and time.monotonic() < end:
-            time.sleep(0.01)
+        becomes_active(a)
         a.send(can.Message(arbitration_id=3), timeout=WAIT)
         message = b.recv(WAIT)
         assert message is not None and message.arbitration_id == 3
+
+
+BIT = 2e-6
+"""Seconds, at the default bit rate."""
+
+
+@pytest.mark.parametrize(("words", "own"), [((), 100), (("restart_ms=100",), 0)])
+def test_a_node_with_a_restart_delay_comes_back_by_itself(
+    start: Start, words: tuple[str, ...], own: int
+) -> None:
+    """Not before the delay and 128 times 11 recessive bits have passed."""
+    channel = start("time=virtual", "event=0:hold_recessive", "event=2500000:let_go", *words)
+    with RavenchartBus(channel, restart_ms=own) as a, RavenchartBus(channel) as b:
+        with pytest.raises(can.CanOperationError, match="bus off"):
+            a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        becomes_active(a)
+        a.send(can.Message(arbitration_id=2), timeout=WAIT)
+        message = b.recv(WAIT)
+        assert message is not None and message.arbitration_id == 2
+        assert 0.1 + 1408 * BIT < message.timestamp < 0.1 + 0.0025 + 1600 * BIT
+
+
+def test_recovery_counts_from_its_request_and_not_from_an_idle_bus_before(start: Start) -> None:
+    """Bus time goes by the clock here: the bus is idle for longer than a recovery takes."""
+    channel = start("event=0:hold_recessive", "event=300000000:let_go")
+    with RavenchartBus(channel, fd=True) as a, RavenchartBus(channel) as b:
+        with pytest.raises(can.CanOperationError, match="bus off"):
+            a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        time.sleep(0.4)
+        asked = time.time()
+        a.state = can.BusState.ACTIVE
+        becomes_active(a)
+        a.send(can.Message(arbitration_id=2), timeout=WAIT)
+        message = b.recv(WAIT)
+        assert message is not None and message.timestamp >= asked + 1408 * BIT
+
+
+def becomes_active(bus: RavenchartBus) -> None:
+    """Wait until the node is error-active."""
+    end = time.monotonic() + WAIT
+    while bus.state is not can.BusState.ACTIVE:
+        assert time.monotonic() < end
+        time.sleep(0.001)
 
 
 def test_a_bus_that_is_cut_and_mended(start: Start) -> None:
@@ -191,6 +233,24 @@ def test_who_may_not_join_is_told_why(start: Start) -> None:
         node.shutdown()
 
 
+def test_who_says_no_hello_is_told_so_and_holds_up_nobody(start: Start) -> None:
+    """Silent clients take every place, one with half a hello; two seconds later all are free."""
+    channel = start()
+    with ExitStack() as stack:
+        silent = [stack.enter_context(RawClient(channel)) for _ in range(13)]
+        silent[0].send(b"\1" * 40)
+        began = time.monotonic()
+        with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+            a.send(can.Message(arbitration_id=1), timeout=1)
+            assert b.recv(1) is not None
+        assert time.monotonic() - began < 1
+        for one in silent:
+            assert one.last() == Record(Kind.STATUS, code=Status.NO_HELLO_IN_TIME)
+        assert 1.5 < time.monotonic() - began < 4
+        nodes = [stack.enter_context(RavenchartBus(channel)) for _ in range(15)]
+        nodes[0].send(can.Message(arbitration_id=2), timeout=1)
+
+
 def test_the_end_of_the_server_is_told() -> None:
     with started() as channel:
         bus = RavenchartBus(channel)
@@ -219,6 +279,7 @@ def test_a_client_that_never_reads_is_given_up(start: Start) -> None:
         ["--name", "a b"],
         ["--fault", "1:nothing"],
         ["--event", "x:mend"],
+        ["--restart-ms", "600001"],
         ["--disturb", "1"],
     ],
 )
