@@ -20,6 +20,8 @@ SECOND = 10**9
 
 FAULTS = (
     "disturbed_bit",
+    "disturbed_end",
+    "overload",
     "lost_acknowledgement",
     "dropped",
     "delayed",
@@ -41,6 +43,11 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--data-bitrate", type=_rate(0, 20_000_000), default=2_000_000, metavar="BIT/S",
         help="of the data phase; 0: no CAN FD (default 2000000)",
     )  # fmt: skip
+    for name, bit in (("--sample-point", "nominal"), ("--data-sample-point", "data")):
+        sub.add_argument(
+            name, type=_percent, default=80.0, metavar="PERCENT",
+            help=f"of a {bit} bit: where an FD frame switches its rate (default 80)",
+        )  # fmt: skip
     sub.add_argument(
         "--restart-ms", type=_number(0, RESTART_LAST), default=0, metavar="MS",
         help="from bus-off to the request for recovery, for nodes that do not say; 0 (default): "
@@ -61,8 +68,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--fault", type=_words(5, FAULTS), action="append", default=[],
         metavar="FRAME:KIND[:NODE[:FIGURE[:MASK]]]",
-        help=f"what frame FRAME, from 1, meets at NODE (0: at all): {', '.join(FAULTS)}; FIGURE "
-        "is the bit that is disturbed, the delay in ns, or the byte that MASK changes",
+        help=f"inject KIND into frame FRAME (counted from 1) at NODE (0: all nodes): "
+        f"{', '.join(FAULTS)}; FIGURE is the bit that is disturbed (of disturbed_end: 1 .. 7 the end "
+        "of frame, 8 .. 10 the intermission), the number of overload frames, the delay in ns, or "
+        "the byte that MASK changes",
     )  # fmt: skip
     sub.add_argument(
         "--event", type=_words(4, EVENTS), action="append", default=[],
@@ -78,6 +87,8 @@ def words(options: argparse.Namespace) -> list[str]:
         f"name={options.name}",
         f"bitrate={options.bitrate}",
         f"data_bitrate={options.data_bitrate}",
+        f"sample_point={round(10 * options.sample_point)}",
+        f"data_sample_point={round(10 * options.data_sample_point)}",
         f"restart_ms={options.restart_ms}",
         f"time={'virtual' if options.virtual else 'paced'}",
         f"buffer={options.buffers}",
@@ -134,6 +145,16 @@ def _rate(first: int, last: int) -> Callable[[str], int]:
         return rate
 
     return read
+
+
+def _percent(text: str) -> float:
+    try:
+        found = float(text)
+    except ValueError:
+        found = -1.0
+    if not 0 <= found <= 100:
+        raise argparse.ArgumentTypeError(f"{text!r} is not 0 .. 100")
+    return found
 
 
 def _name(text: str) -> str:

@@ -17,6 +17,11 @@ package body Bus_Options is
 
    Paced : Boolean := True;
 
+   subtype Thousandths is Nanoseconds range 0 .. 1_000;
+
+   Nominal_Sample : Thousandths := 800;
+   Data_Sample    : Thousandths := 800;
+
    function Part (Text : String; Number : Positive) return String;
    --  What stands between the colons, from 1; "0" where nothing does.
 
@@ -85,8 +90,16 @@ package body Bus_Options is
       Figure : String renames Part (Value, 4);
    begin
       case Kind is
-         when Disturbed_Bit =>
+         when Disturbed_Bit | Overload =>
             Result.Position := Positive'Value (Figure);
+         when Disturbed_End =>
+            Result.Position := Positive'Value (Figure);
+            if Result.Position > 10
+              or else (Result.Position = 10
+                       and then Result.Node /= Bus_Faults.Everyone)
+            then
+               raise Constraint_Error;
+            end if;
          when Delayed       =>
             Result.Late := Nanoseconds'Value (Figure);
          when Corrupted     =>
@@ -146,6 +159,10 @@ package body Bus_Options is
          Bus.Profile.Nominal := Rate (Value);
       elsif Name = "data_bitrate" then
          Bus.Profile.Data := Rate (Value);
+      elsif Name = "sample_point" then
+         Nominal_Sample := Nanoseconds'Value (Value);
+      elsif Name = "data_sample_point" then
+         Data_Sample := Nanoseconds'Value (Value);
       elsif Name = "restart_ms" then
          Bus.Profile.Restart := Nanoseconds'Value (Value) * 1_000_000;
       elsif Name = "time" and then Value in "paced" | "virtual" then
@@ -203,6 +220,11 @@ package body Bus_Options is
         Second / Nanoseconds (Bus.Profile.Nominal);
       if Bus.Profile.Data > 0 then
          Bus.Net.Bus.Times.Data := Second / Nanoseconds (Bus.Profile.Data);
+         Bus.Net.Bus.Times.Switch :=
+           Nanoseconds'Max
+             (0,
+              (Bus.Net.Bus.Times.Nominal * Nominal_Sample
+               - Bus.Net.Bus.Times.Data * Data_Sample) / 1_000);
       end if;
    end Read;
 

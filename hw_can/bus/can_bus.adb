@@ -15,14 +15,10 @@ procedure Can_Bus is
    use Ravenchart.Can;
    use Ravenchart.Can.Bus_Nodes;
    use type Bus_Clients.Phase;
-   use type Bus_Sockets.Reading;
    use type Bus_Sockets.Writing;
 
    Patience : constant Nanoseconds := 100_000_000;
    --  A signal is seen within this.
-
-   Most_Records : constant := 64;
-   --  Read of one client before the others have their turn.
 
    Bus   : Bus_Servers.Server renames Bus_Options.Bus;
    Bytes : Bus_Records.Image;
@@ -50,12 +46,12 @@ procedure Can_Bus is
    procedure Greet is
       C : Node_Index;
    begin
-      while Bus_Servers.Is_Room (Bus.Clients)
+      if Bus_Servers.Is_Room (Bus.Clients)
         and then Bus_Sockets.Somebody_Knocks
-      loop
+      then
          Bus_Servers.Connect (Bus.Clients, Bus_Sockets.Clock, C);
          Bus_Sockets.Welcome (C);
-      end loop;
+      end if;
    end Greet;
 
    ------------
@@ -63,15 +59,18 @@ procedure Can_Bus is
    ------------
 
    procedure Listen (C : Node_Index) is
-      Read : Bus_Sockets.Reading;
+      Gone  : Boolean;
+      Whole : Boolean;
    begin
-      for I in 1 .. Most_Records loop
-         Bus_Sockets.Receive (C, Bytes, Read);
-         if Read = Bus_Sockets.Gone then
-            Bus_Servers.Disconnect (Bus, C);
-            Bus_Sockets.Close (C);
-         end if;
-         exit when Read /= Bus_Sockets.Whole;
+      Bus_Sockets.Receive (C, Gone);
+      if Gone then
+         Bus_Servers.Disconnect (Bus, C);
+         Bus_Sockets.Close (C);
+         return;
+      end if;
+      loop
+         Bus_Sockets.Take (C, Bytes, Whole);
+         exit when not Whole;
          Bus_Servers.Take (Bus, C, Bytes, Now);
       end loop;
    end Listen;
@@ -86,11 +85,15 @@ procedure Can_Bus is
       Writing : Bus_Sockets.Writing;
    begin
       loop
-         Writing := Bus_Sockets.Ready (C);
+         while Bus_Sockets.Has_Room (C)
+           and then Bus_Clients.Has_Due (Bus.Clients (C), Horizon)
+         loop
+            Bus_Clients.Hand_Over (Bus.Clients (C), Bytes);
+            Bus_Sockets.Send (C, Bytes);
+         end loop;
+         Writing := Bus_Sockets.Flush (C);
          exit when Writing /= Bus_Sockets.Done
            or else not Bus_Clients.Has_Due (Bus.Clients (C), Horizon);
-         Bus_Clients.Hand_Over (Bus.Clients (C), Bytes);
-         Bus_Sockets.Send (C, Bytes);
       end loop;
       if Writing = Bus_Sockets.Lost
         or else Bus.Clients (C).State = Bus_Clients.Given_Up
@@ -149,10 +152,11 @@ begin
       end loop;
       if not Busy then
          Horizon := (if Bus_Options.Is_Paced then Now else 0);
-         Bus_Sockets.Await
-           (if Next <= Horizon then 0
-            else Nanoseconds'Min (Next - Horizon, Patience));
       end if;
+      Bus_Sockets.Await
+        ((if Busy or else Next <= Horizon then 0
+          else Nanoseconds'Min (Next - Horizon, Patience)),
+         Welcomes => Bus_Servers.Is_Room (Bus.Clients));
    end loop;
 
    Bus_Servers.Close_All (Bus.Clients);

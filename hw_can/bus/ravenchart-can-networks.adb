@@ -26,6 +26,8 @@ is
          return Free;
       elsif N.Bus.Line = Buses.Held_Dominant then
          return Nanoseconds'Last;
+      elsif Takes_Part (Node) and then N.Bus.Called (Node.Segment) then
+         return Free;
       elsif Takes_Part (Node) and then N.Babble (I).Present then
          return Later (Free, Node.Ready_At);
       elsif Takes_Part (Node) and then Waiting (N, I) > 0 then

@@ -166,6 +166,27 @@ def test_faults_of_a_list_come_with_the_frames_they_name(start: Start) -> None:
     assert [m.arbitration_id for m in got if m.is_error_frame] == [8, 0x20]
 
 
+def test_the_end_of_a_frame_is_disturbed_on_demand(start: Start) -> None:
+    """Node 2 loses frame 1 and node 3 has it twice; overload frames follow frames 3 and 4."""
+    channel = start(
+        "time=virtual", "fault=1:disturbed_end:2:6", "fault=3:disturbed_end:2:7",
+        "fault=4:overload:2:2",
+    )  # fmt: skip
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b, RavenchartBus(channel) as c:
+        for _ in range(4):
+            a.send(can.Message(arbitration_id=0x155, is_extended_id=False), timeout=WAIT)
+        at_b, at_c = taken(b, 5), taken(c, 5)
+    assert [m.is_error_frame for m in at_b] == [True, False, False, False, False]
+    assert not any(m.is_error_frame for m in at_c)
+    spent = [round((late.timestamp - early.timestamp) / BIT) for early, late in pairwise(at_c[1:])]
+    assert [bits - spent[0] for bits in spent] == [0, 15, 30]
+
+
+def test_a_fault_that_cannot_be_placed_is_refused(capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["bus", "--port", "0", "--fault", "1:disturbed_end:2:10"]) == 2
+    assert "the bus cannot be told fault=1:disturbed_end:2:10" in capfd.readouterr().err
+
+
 def test_chance_is_the_same_again(start: Start) -> None:
     runs = []
     for _ in range(2):
@@ -280,6 +301,7 @@ def test_a_client_that_never_reads_is_given_up(start: Start) -> None:
         ["--fault", "1:nothing"],
         ["--event", "x:mend"],
         ["--restart-ms", "600001"],
+        ["--sample-point", "101"],
         ["--disturb", "1"],
     ],
 )
