@@ -383,7 +383,7 @@ def _loopback(options: argparse.Namespace) -> int:
 
 
 def _bus(options: argparse.Namespace) -> int:
-    return bus.serve(bus.words(options))
+    return bus.serve(bus.words(options), options.log)
 
 
 def _import_dbc(options: argparse.Namespace) -> int:

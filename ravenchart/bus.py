@@ -11,7 +11,7 @@ from pathlib import Path
 
 from hw_can.bench.bus_records import NAME_LENGTH, RESTART_LAST
 
-from . import children, toolchain
+from . import bus_log, children, toolchain
 from .toolchain import ROOT
 
 PROJECT = ROOT / "hw_can" / "bus" / "can_bus.gpr"
@@ -69,9 +69,13 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--fault", type=_words(5, FAULTS), action="append", default=[],
         metavar="FRAME:KIND[:NODE[:FIGURE[:MASK]]]",
         help=f"inject KIND into frame FRAME (counted from 1) at NODE (0: all nodes): "
-        f"{', '.join(FAULTS)}; FIGURE is the bit that is disturbed (of disturbed_end: 1 .. 7 the end "
-        "of frame, 8 .. 10 the intermission), the number of overload frames, the delay in ns, or "
-        "the byte that MASK changes",
+        f"{', '.join(FAULTS)}; FIGURE is the bit that is disturbed (of disturbed_end: 1 .. 7 the "
+        "end of frame, 8 .. 10 the intermission), the number of overload frames, the delay in ns, "
+        "or the byte that MASK changes",
+    )  # fmt: skip
+    sub.add_argument(
+        "--log", type=_log, metavar="FILE",
+        help=f"write all frames and error frames there, as its suffix says: {bus_log.suffixes()}",
     )  # fmt: skip
     sub.add_argument(
         "--event", type=_words(4, EVENTS), action="append", default=[],
@@ -117,10 +121,21 @@ def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
         yield server, server.stdout.readline().split()[-1]
 
 
-def serve(told: Sequence[str]) -> int:
-    """Run the server until it is interrupted; its exit status."""
-    with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
-        return server.wait()
+def serve(told: Sequence[str], log: Path | None = None) -> int:
+    """Run the server until it is interrupted; its exit status.
+
+    With ``log`` all frames and error frames of the bus are written there. Raises OSError
+    where that cannot be.
+    """
+    if log is None:
+        with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
+            return server.wait()
+    program = built()
+    with bus_log.written(log) as descriptor:
+        words = [program, *told, f"log=/dev/fd/{descriptor}"]
+        options = {"stdin": subprocess.DEVNULL, "pass_fds": (descriptor,)}
+        with children.running(words, **options) as server:
+            return server.wait()
 
 
 def uneven(rate: int) -> str:
@@ -145,6 +160,12 @@ def _rate(first: int, last: int) -> Callable[[str], int]:
         return rate
 
     return read
+
+
+def _log(text: str) -> Path:
+    if Path(text).suffix not in bus_log.suffixes().split(", "):
+        raise argparse.ArgumentTypeError(f"{text!r} has no suffix of {bus_log.suffixes()}")
+    return Path(text)
 
 
 def _percent(text: str) -> float:

@@ -1,4 +1,5 @@
 with Ada.Command_Line;
+with Ada.Strings.Unbounded;
 with Ada.Text_IO;
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
@@ -16,6 +17,8 @@ package body Bus_Options is
    Second : constant := 1_000_000_000;
 
    Paced : Boolean := True;
+
+   Log : Ada.Strings.Unbounded.Unbounded_String;
 
    subtype Thousandths is Nanoseconds range 0 .. 1_000;
 
@@ -41,6 +44,13 @@ package body Bus_Options is
 
    function Is_Paced return Boolean
    is (Paced);
+
+   --------------
+   -- Log_File --
+   --------------
+
+   function Log_File return String
+   is (Ada.Strings.Unbounded.To_String (Log));
 
    ----------
    -- Part --
@@ -178,6 +188,9 @@ package body Bus_Options is
          Bus.Plan.Seed :=
            Interfaces.Unsigned_32'Value (Part (Value, 1));
          Bus.Plan.Separation := Nanoseconds'Value (Part (Value, 2));
+      elsif Name = "log" then
+         Log := Ada.Strings.Unbounded.To_Unbounded_String (Value);
+         Bus.Log.Kept := True;
       elsif Name = "fault" then
          Add_Fault (Value);
       elsif Name = "event" then

@@ -9,6 +9,8 @@
 --     restart_ms=0     from bus-off to the request for recovery; 0: by hand
 --     time=paced       or virtual
 --     buffer=fifo      or priority
+--     log=FILE         writes what is on the bus there: a welcome record, then
+--                      a record for each frame and error frame
 --     seed=7:1000000   a bit is disturbed, at least so many ns apart
 --     fault=F:K:N:A:B  frame F meets fault K at node N, 0 for all. A: the
 --                      bit, the number of overload frames, the ns of delay
@@ -27,6 +29,9 @@ package Bus_Options is
 
    procedure Read (Port : out Natural);
    --  Read the command line.
+
+   function Log_File return String;
+   --  Where to write what is on the bus; empty for nowhere.
 
    function Is_Paced return Boolean;
    --  Does bus time go with the clock?

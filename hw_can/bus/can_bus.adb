@@ -3,6 +3,7 @@
 
 with Ada.Command_Line;
 with Ada.Text_IO;
+with Bus_Logs;
 with Bus_Options;
 with Ravenchart.Can.Bus_Clients;
 with Ravenchart.Can.Bus_Nodes;
@@ -128,6 +129,7 @@ begin
    if Bus_Options.Is_Paced then
       Bus.Profile.Began := Bus_Sockets.Date;
    end if;
+   Bus_Logs.Open;
    Ada.Text_IO.Put_Line
      ("bus " & Bus.Profile.Name (1 .. Bus.Profile.Length) & " at 127.0.0.1:"
       & Port'Image (2 .. Port'Image'Last));
@@ -144,6 +146,7 @@ begin
       Horizon :=
         (if Bus_Options.Is_Paced then Now else Nanoseconds'Last);
       Bus_Servers.Run (Bus, Horizon, Busy);
+      Bus_Logs.Write;
       Next := Bus_Servers.Next_Start (Bus);
       for C in Node_Index loop
          if Bus.Clients (C).State /= Bus_Clients.Unconnected then
@@ -159,6 +162,7 @@ begin
          Welcomes => Bus_Servers.Is_Room (Bus.Clients));
    end loop;
 
+   Bus_Logs.Close;
    Bus_Servers.Close_All (Bus.Clients);
    for C in Node_Index loop
       if Bus.Clients (C).State /= Bus_Clients.Unconnected then

@@ -1,8 +1,6 @@
 package body Ravenchart.Can.Bus_Clients
   with SPARK_Mode
 is
-   use type Error_Frames.Error_Kind;
-
    procedure Say
      (To : in out Client; Bytes : Bus_Records.Image; Due : Nanoseconds)
    with
@@ -186,12 +184,7 @@ is
    procedure Tell_Error
      (To : in out Client; Kind : Error_Frames.Error_Kind) is
    begin
-      Say
-        (To,
-         (if Kind = Error_Frames.Acknowledgement_Error
-          then Bus_Records.Error_Report (16#20#, 0, To.Last)
-          else Bus_Records.Error_Report (16#08#, 16#1_0000#, To.Last)),
-         To.Last);
+      Say (To, Report (Kind, To.Last), To.Last);
    end Tell_Error;
 
    ----------------

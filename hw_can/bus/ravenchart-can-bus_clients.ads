@@ -22,6 +22,7 @@ is
    use Bus_Nodes;
    use type Bus_Frames.Frame_Family;
    use type Bus_Records.Request_Kind;
+   use type Error_Frames.Error_Kind;
    use type Interfaces.Unsigned_32;
 
    Most_Nodes : constant := 15;
@@ -155,6 +156,16 @@ is
    with Global => null, Post => To.Last >= To.Last'Old;
    --  Client C is told of a frame, if it was sent or heard there. Tag: of the
    --  request that is done; 0 when it was none.
+
+   function Report
+     (Kind : Error_Frames.Error_Kind; Now : Nanoseconds)
+      return Bus_Records.Image
+   is (if Kind = Error_Frames.Acknowledgement_Error
+       then Bus_Records.Error_Report (16#20#, 0, Now)
+       else Bus_Records.Error_Report (16#08#, 16#1_0000#, Now))
+   with Global => null;
+   --  An error frame, as in Linux's can/error.h: nobody acknowledged, or a
+   --  bit error.
 
    procedure Tell_Error
      (To : in out Client; Kind : Error_Frames.Error_Kind)

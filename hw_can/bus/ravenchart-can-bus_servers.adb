@@ -70,10 +70,15 @@ is
    --  What client C is told of what happened on the bus. When it is bus-off,
    --  what it had asked for is refused.
 
+   procedure Write_Down (Log : in out Journal; Result : Buses.Outcome)
+   with Global => null;
+   --  Keep what was on the bus: a frame that somebody took, an error frame.
+
    procedure Carry
      (Clients : in out Client_List;
       N       : in out Networks.Network;
       Plan    : in out Fault_Plans.Plan;
+      Log     : in out Journal;
       M       : Networks.Moment)
    with
      Global => null,
@@ -150,6 +155,34 @@ is
       end if;
    end Publish;
 
+   ----------------
+   -- Write_Down --
+   ----------------
+
+   procedure Write_Down (Log : in out Journal; Result : Buses.Outcome) is
+
+      procedure Put (Bytes : Bus_Records.Image)
+      with Global => (Input => Result, In_Out => Log);
+
+      procedure Put (Bytes : Bus_Records.Image) is
+      begin
+         if Log.Kept and then Log.Records.Count < Bus_Queues.Depth then
+            Bus_Queues.Put
+              (Log.Records, (Bytes => Bytes, Due => Result.Finish));
+         end if;
+      end Put;
+
+   begin
+      if Result.Ended = Buses.Whole
+        or else (for some Heard of Result.Heard => Heard)
+      then
+         Put (Bus_Records.Frame_Record (Result.Frame, Result.Finish));
+      end if;
+      if Result.Ended = Buses.Broken then
+         Put (Bus_Clients.Report (Result.Error.Kind, Result.Finish));
+      end if;
+   end Write_Down;
+
    -----------
    -- Carry --
    -----------
@@ -158,6 +191,7 @@ is
      (Clients : in out Client_List;
       N       : in out Networks.Network;
       Plan    : in out Fault_Plans.Plan;
+      Log     : in out Journal;
       M       : Networks.Moment)
    is
       Fault    : Bus_Faults.Fault;
@@ -169,6 +203,7 @@ is
       if Result.Ended = Buses.Broken then
          Fault_Plans.Note (Plan, Result.Struck);
       end if;
+      Write_Down (Log, Result);
       for C in Node_Index loop
          pragma Loop_Invariant (Networks.Is_Sound (N));
          if Clients (C).State = Bus_Clients.Joined then
@@ -284,7 +319,7 @@ is
            and then Moment.Start <= Horizon
            and then Moment.Start <= Buses.Last_Start
          then
-            Carry (S.Clients, S.Net, S.Plan, Moment);
+            Carry (S.Clients, S.Net, S.Plan, S.Log, Moment);
          else
             Busy := False;
             return;

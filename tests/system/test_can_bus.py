@@ -50,6 +50,16 @@ def test_the_loopback_suite_passes_on_it(
     assert not any(word in html for word in ("http:", "https:", "src=", "<link"))
 
 
+def test_an_echo_that_nobody_acknowledges_is_said_at_once(
+    start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    channel, began = start(), time.monotonic()
+    assert main(["loopback", "--interface", "ravenchart", "--channel", channel, "--echo"]) == 1
+    assert time.monotonic() - began < 1.9, "it waits no 2 s for a frame that cannot come"
+    said = " ".join(capsys.readouterr().out.split())
+    assert "no other node acknowledges a frame: connect one, or check the cable" in said
+
+
 def test_bus_time_is_that_of_the_bits(start: Start) -> None:
     """500 frames of 111 bits and stuff bits, at 500 kbit/s, back to back."""
     channel = start("time=virtual")
