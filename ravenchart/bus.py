@@ -132,9 +132,10 @@ def serve(told: Sequence[str], log: Path | None = None) -> int:
             return server.wait()
     program = built()
     with bus_log.written(log) as descriptor:
-        words = [program, *told, f"log=/dev/fd/{descriptor}"]
-        options = {"stdin": subprocess.DEVNULL, "pass_fds": (descriptor,)}
-        with children.running(words, **options) as server:
+        words: list[str | Path] = [program, *told, f"log=/dev/fd/{descriptor}"]
+        with children.running(
+            words, stdin=subprocess.DEVNULL, pass_fds=(descriptor,)
+        ) as server:
             return server.wait()
 
 
