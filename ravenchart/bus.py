@@ -133,9 +133,7 @@ def serve(told: Sequence[str], log: Path | None = None) -> int:
     program = built()
     with bus_log.written(log) as descriptor:
         words: list[str | Path] = [program, *told, f"log=/dev/fd/{descriptor}"]
-        with children.running(
-            words, stdin=subprocess.DEVNULL, pass_fds=(descriptor,)
-        ) as server:
+        with children.running(words, stdin=subprocess.DEVNULL, pass_fds=(descriptor,)) as server:
             return server.wait()
 
 
