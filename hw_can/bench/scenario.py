@@ -450,8 +450,8 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
     known = ", ".join(scenario.drives)
     hint = f"the drives are {known}" if known else "the scenario has no `drives`"
     for index, step in enumerate(scenario.steps):
-        if isinstance(step, Replay) and (fault := fault_of_log(scenario.file_of(step))):
-            source.wrong(VALUES, ("steps", index, "replay"), fault)
+        if isinstance(step, Replay) and (told := fault_of_log(scenario.file_of(step))):
+            source.wrong(VALUES, ("steps", index, "replay"), told)
         for path, name in _drives_of(step):
             if name not in scenario.drives:
                 message = f"there is no drive `{name}`"
