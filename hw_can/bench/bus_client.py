@@ -8,7 +8,6 @@ from __future__ import annotations
 import copy
 import os
 import select
-import selectors
 import socket
 import threading
 import time
@@ -22,6 +21,7 @@ from .bus_records import (
     MARK,
     NUMBER_LAST,
     RECORD_BYTES,
+    RESTART_LAST,
     VERSION,
     Flag,
     Greeting,
@@ -29,12 +29,16 @@ from .bus_records import (
     Record,
     State,
     Status,
+    confirmed_in,
     decode,
     encode,
+    frame_in,
     greeting_data,
     greeting_of,
     message_of,
-    record_of,
+    record_in,
+    request_of,
+    split,
 )
 
 PATIENCE = 5.0
@@ -45,6 +49,12 @@ SLICE = 0.01
 
 CHUNK = 512 * RECORD_BYTES
 """Bytes that are read at once."""
+
+READING = 0.001
+"""Seconds after which a sender looks whether its frames were confirmed or refused."""
+
+MOST_OPEN = 1_000
+"""Requests that may be open: the server has room for 1,024 of each node."""
 
 LINGER = 0.5
 """Seconds for which the end of a bus waits for what is still to be transmitted."""
@@ -68,17 +78,22 @@ class RavenchartBus(can.BusABC):
         fd: bool = False,
         bitrate: int = 0,
         data_bitrate: int = 0,
+        restart_ms: int = 0,
         name: str = "python-can",
         **kwargs: Any,
     ) -> None:
         """Join the bus at ``channel``, "HOST:PORT".
 
         ``fd``: send and receive FD frames; the bus must carry them. ``bitrate`` and
-        ``data_bitrate`` in bit/s, 0 for those of the bus. ``name`` is shown by the server.
-        Raises ValueError for a channel or name of another form, CanInitializationError
+        ``data_bitrate`` in bit/s, 0 for those of the bus. ``restart_ms``: milliseconds from
+        bus-off to the request for recovery, 0 .. 600,000; 0 for that of the bus, which
+        requests none unless it was told. ``name`` is shown by the server.
+        Raises ValueError for an argument of another form or range, CanInitializationError
         when there is no such server or it refuses.
         """
         address = _address(channel)
+        if not 0 <= restart_ms <= RESTART_LAST:
+            raise ValueError(f"restart_ms is {restart_ms}, not 0 .. {RESTART_LAST}")
         greeting = Greeting(name, bitrate, data_bitrate)
         try:
             hello = encode(
@@ -88,6 +103,7 @@ class RavenchartBus(can.BusABC):
                     length=len(name),
                     code=VERSION,
                     identifier=MARK,
+                    number=restart_ms,
                     data=greeting_data(greeting),
                 )
             )
@@ -100,11 +116,13 @@ class RavenchartBus(can.BusABC):
         self._signalling = threading.Lock()
         self._is_signalled = False
         self._arrived: deque[can.Message] = deque()
-        self._open: dict[int, can.Message] = {}
+        self._open: dict[int, can.Message | None] = {}
+        """Requests that are neither confirmed nor refused; with their frame for an echo."""
+        self._looked = 0.0
         self._awaited: dict[int, str | None] = {}
         self._refusals: list[str] = []
         self._broken: str | None = None
-        self._unread = bytearray()
+        self._unread = b""
         self._number = 0
         self._start = 0
         self._errors = (0, 0)
@@ -113,12 +131,10 @@ class RavenchartBus(can.BusABC):
         self._channel = channel
         self._input = self._link.dup()
         self._input.setblocking(False)
-        self._selector = selectors.DefaultSelector()
-        self._selector.register(self._input, selectors.EVENT_READ)
-        self._signal = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
-        self._ready = select.epoll()
-        for descriptor in (self._input.fileno(), self._signal):
-            self._ready.register(descriptor, select.EPOLLIN)
+        self._poll = select.poll()
+        self._poll.register(self._input, select.POLLIN)
+        self._ready: select.epoll | None = None
+        self._signal = -1
         try:
             self._greet(channel, hello, fd)
         except BaseException:
@@ -129,6 +145,13 @@ class RavenchartBus(can.BusABC):
 
     def fileno(self) -> int:
         """Readable while a frame waits for `recv`, or something has come that nobody has read."""
+        with self._signalling:
+            if self._ready is None:
+                self._signal = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
+                self._ready = select.epoll()
+                for descriptor in (self._input.fileno(), self._signal):
+                    self._ready.register(descriptor, select.EPOLLIN)
+        self._signal_frames()
         return self._ready.fileno()
 
     @property
@@ -154,11 +177,18 @@ class RavenchartBus(can.BusABC):
         """Ask for ``msg`` to be transmitted; with a ``timeout`` > 0 s, wait until it was.
 
         Raises CanOperationError when it is no frame, was refused, or the bus is gone, and
-        CanTimeoutError after ``timeout``. Without one, the next send raises for all frames that
-        were refused by then. Confirmations are read here: who only sends need not call `recv`.
+        CanTimeoutError after ``timeout``. Without one, a later send raises for all frames that
+        were refused by then. Confirmations are read here: a sender need not call `recv`. With
+        MOST_OPEN frames still to be transmitted, a send without ``timeout`` waits for the first
+        of them, at most PATIENCE s.
         """
         waits = timeout is not None and timeout > 0
-        self._take_all()
+        now = time.monotonic()
+        if now - self._looked > READING or len(self._open) >= MOST_OPEN:
+            self._looked = now
+            self._take_all()
+            if timeout is None and len(self._open) >= MOST_OPEN:
+                self._await_room(now + PATIENCE)
         with self._writing:
             refusals, self._refusals = self._refusals, []
             if refusals:
@@ -166,9 +196,9 @@ class RavenchartBus(can.BusABC):
             if msg.is_fd and self._can_protocol is not can.CanProtocol.CAN_FD:
                 raise can.CanOperationError("the bus was not opened for FD frames")
             number = self._number % NUMBER_LAST + 1
-            octets = encode(record_of(msg, number))
+            octets = request_of(msg, number)
             self._number = number
-            self._open[number] = copy.deepcopy(msg)
+            self._open[number] = copy.deepcopy(msg) if self._echo else None
             if waits:
                 self._awaited[number] = None
             self._send(octets)
@@ -195,6 +225,16 @@ class RavenchartBus(can.BusABC):
             rest = None if end is None else max(0.0, end - time.monotonic())
             if not self._take(rest, receiving=True) and rest == 0 and not self._arrived:
                 return None, False
+
+    def _await_room(self, end: float) -> None:
+        """Until fewer requests are open, or ``end``; CanOperationError then."""
+        while len(self._open) >= MOST_OPEN:
+            rest = end - time.monotonic()
+            if rest <= 0:
+                raise can.CanOperationError(
+                    f"no room: {len(self._open)} frames were not transmitted within {PATIENCE:g} s"
+                )
+            self._take(min(rest, SLICE))
 
     def _await(self, number: int, timeout: float) -> None:
         """Until request ``number`` is settled; other threads may read meanwhile."""
@@ -234,12 +274,16 @@ class RavenchartBus(can.BusABC):
             octets = self._bytes(timeout, CHUNK)
             if octets is None:
                 return False
-            self._unread += octets
-            whole = len(self._unread) - len(self._unread) % RECORD_BYTES
-            records = bytes(self._unread[:whole])
-            del self._unread[:whole]
-            for start in range(0, whole, RECORD_BYTES):
-                self._act_on(decode(records[start : start + RECORD_BYTES]))
+            if self._unread:
+                octets = self._unread + octets
+            part = len(octets) % RECORD_BYTES
+            self._unread = octets[-part:] if part else b""
+            for fields in split(octets[:-part] if part else octets):
+                frame = frame_in(fields, self._start, self._channel)
+                if frame is not None:
+                    self._arrived.append(frame)
+                elif self._echo or self._awaited or not self._confirm(confirmed_in(fields)):
+                    self._act_on(record_in(fields))
             return True
         except can.CanOperationError as fault:
             self._broken = self._broken or str(fault)
@@ -247,11 +291,18 @@ class RavenchartBus(can.BusABC):
         finally:
             self._signal_frames()
             self._reading.release()
-            with self._settled:
-                self._settled.notify_all()
+            if self._awaited:
+                with self._settled:
+                    self._settled.notify_all()
+
+    def _confirm(self, number: int) -> bool:
+        """Close the open request of this number; False when there is none."""
+        return number != 0 and self._open.pop(number, self) is None
 
     def _signal_frames(self) -> None:
-        """Let `fileno` be readable while frames wait."""
+        """Let `fileno` be readable while frames wait, once it was asked for."""
+        if self._ready is None:
+            return
         with self._signalling:
             if self._is_signalled == bool(self._arrived):
                 return
@@ -264,12 +315,9 @@ class RavenchartBus(can.BusABC):
     def _bytes(self, timeout: float | None, most: int) -> bytes | None:
         """At most so many of the bytes that come; None after ``timeout`` s."""
         try:
-            try:
-                octets = self._input.recv(most)
-            except BlockingIOError:
-                if not self._selector.select(timeout):
-                    return None
-                octets = self._input.recv(most)
+            if timeout != 0 and not self._poll.poll(None if timeout is None else 1e3 * timeout):
+                return None
+            octets = self._input.recv(most)
         except BlockingIOError:
             return None
         except (OSError, ValueError) as fault:
@@ -290,7 +338,7 @@ class RavenchartBus(can.BusABC):
                 self._errors = (record.transmit_errors, record.receive_errors)
             case Kind.CONFIRMATION:
                 message = self._close(record.number)
-                if self._echo:
+                if message is not None:
                     message.timestamp = (self._start + record.time) / 1e9
                     message.is_rx = False
                     message.channel = self._channel
@@ -309,12 +357,11 @@ class RavenchartBus(can.BusABC):
             case _:
                 raise can.CanOperationError(f"bus protocol: a {record.kind.name.lower()} came")
 
-    def _close(self, number: int) -> can.Message:
-        """The open request of this number, which is open no more."""
-        message = self._open.pop(number, None)
-        if message is None:
+    def _close(self, number: int) -> can.Message | None:
+        """Close the open request of this number; its frame for an echo."""
+        if number not in self._open:
             raise can.CanOperationError(f"bus protocol: no request {number} is open")
-        return message
+        return self._open.pop(number)
 
     def _greet(self, channel: str, hello: bytes, fd: bool) -> None:
         """Say hello and take the welcome; CanInitializationError when there is none."""
@@ -375,9 +422,9 @@ class RavenchartBus(can.BusABC):
         with suppress(OSError):  # the server may have been faster
             self._link.shutdown(socket.SHUT_RDWR)
         with self._reading:
-            self._selector.close()
-            self._ready.close()
-            os.close(self._signal)
+            if self._ready is not None:
+                self._ready.close()
+                os.close(self._signal)
             self._input.close()
             self._link.close()
 

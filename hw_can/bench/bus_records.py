@@ -7,6 +7,7 @@ with the same bytes again, or a `can.CanOperationError` that says which rule is 
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum, IntFlag
 
@@ -27,6 +28,8 @@ NO_DATA = bytes(DATA_BYTES)
 FD_LENGTHS = frozenset((*range(9), 12, 16, 20, 24, 32, 48, 64))
 """Bytes that a frame of the FD format can carry (ISO 11898-1, data length code)."""
 
+RESTART_LAST = 600_000
+"""The longest time from bus-off to the request for recovery, in ms."""
 TIME_LAST = 2**63 - 1
 NUMBER_LAST = 2**32 - 1
 ERROR_PASSIVE = 128
@@ -75,6 +78,7 @@ class Status(IntEnum):
     NOT_SUPPORTED = 5
     WRONG_BIT_RATE = 6
     CLOSING = 7
+    NO_HELLO_IN_TIME = 8
 
     @property
     def words(self) -> str:
@@ -114,7 +118,12 @@ _NUMBER = (0, NUMBER_LAST)
 _COUNTER = (0, BUS_OFF)
 
 _RANGES: dict[Kind, dict[str, tuple[int, int]]] = {
-    Kind.HELLO: {"length": (1, NAME_LENGTH), "code": (1, 255), "identifier": (MARK, MARK)},
+    Kind.HELLO: {
+        "length": (1, NAME_LENGTH),
+        "code": (1, 255),
+        "identifier": (MARK, MARK),
+        "number": (0, RESTART_LAST),
+    },
     Kind.WELCOME: {
         "length": (1, NAME_LENGTH),
         "code": (1, 255),
@@ -179,12 +188,7 @@ def decode(octets: bytes) -> Record:
     """The record in ``octets``; CanOperationError when they are none."""
     if len(octets) != RECORD_BYTES:
         raise _broken(f"{len(octets)} bytes are no record of {RECORD_BYTES}")
-    kind, *fields = _LAYOUT.unpack(octets)
-    if kind not in _RANGES:
-        raise _broken(f"there is no kind {kind}")
-    record = Record(Kind(kind), *fields)
-    _check(record)
-    return record
+    return record_in(_LAYOUT.unpack(octets))
 
 
 def greeting_data(greeting: Greeting) -> bytes:
@@ -252,6 +256,104 @@ def message_of(record: Record, start: int) -> can.Message:
         bitrate_switch=Flag.BRS in flags,
         error_state_indicator=Flag.ESI in flags,
     )
+
+
+_Fields = tuple[int, int, int, int, int, int, int, int, int, bytes]
+"""The fields of a record as they are packed, before any rule was looked at."""
+
+_ZEROS = tuple(bytes(DATA_BYTES - length) for length in range(DATA_BYTES + 1))
+"""What stands behind so many bytes of data."""
+
+_CLASSIC_LENGTHS = frozenset(range(9))
+_FORMATS = {
+    int(flags | extended): (
+        FD_LENGTHS if Flag.FD in flags else _CLASSIC_LENGTHS,
+        2**29 - 1 if extended else 0x7FF,
+    )
+    for extended in (Flag(0), Flag.EXTENDED)
+    for flags in (
+        Flag(0), Flag.REMOTE, Flag.FD, Flag.FD | Flag.BRS, Flag.FD | Flag.ESI,
+        Flag.FD | Flag.BRS | Flag.ESI,
+    )
+}  # fmt: skip
+"""By the flags of a frame: its lengths, and its last identifier."""
+
+
+def split(octets: bytes) -> Iterator[_Fields]:
+    """The fields of each record in ``octets``, a multiple of 88 bytes."""
+    return _LAYOUT.iter_unpack(octets)
+
+
+def record_in(fields: _Fields) -> Record:
+    """The record with these fields; CanOperationError when it breaks a rule."""
+    kind, *rest = fields
+    if kind not in _RANGES:
+        raise _broken(f"there is no kind {kind}")
+    record = Record(Kind(kind), *rest)  # type: ignore[arg-type]
+    _check(record)
+    return record
+
+
+def frame_in(fields: _Fields, start: int, channel: str) -> can.Message | None:
+    """The frame with these fields, the common kind of record, without a `Record` in between.
+
+    None for another kind, and for a frame that breaks a rule: `record_in` tells them apart.
+    """
+    kind, flags, length, code, identifier, when, _, transmit, receive, data = fields
+    if kind != _FRAME or flags not in _FORMATS or code or transmit or receive:
+        return None
+    lengths, last = _FORMATS[flags]
+    carried = 0 if flags & _REMOTE else length
+    if length not in lengths or identifier > last or when > TIME_LAST:
+        return None
+    if not data.endswith(_ZEROS[carried]):
+        return None
+    return can.Message(
+        (start + when) / 1e9,
+        identifier,
+        bool(flags & 1),
+        bool(flags & 2),
+        False,
+        channel,
+        length,
+        bytearray(data[:carried]),
+        bool(flags & 4),
+        True,
+        bool(flags & 8),
+        bool(flags & 16),
+    )
+
+
+def confirmed_in(fields: _Fields) -> int:
+    """The number of the request that is confirmed; 0 when this is no sound confirmation."""
+    kind, flags, length, code, identifier, when, number, transmit, receive, data = fields
+    others = flags or length or code or identifier or transmit or receive
+    if kind != _CONFIRMATION or others or when > TIME_LAST or data != NO_DATA:
+        return 0
+    return number
+
+
+def request_of(message: can.Message, number: int) -> bytes:
+    """The 88 bytes that ask for ``message``; CanOperationError when no frame is like that."""
+    data, length = message.data, message.dlc
+    if (
+        message.is_fd
+        or message.is_remote_frame
+        or message.is_error_frame
+        or message.bitrate_switch
+        or message.error_state_indicator
+        or not 0 <= message.arbitration_id <= (2**29 - 1 if message.is_extended_id else 0x7FF)
+        or not len(data) == length <= 8
+    ):
+        return encode(record_of(message, number))
+    flags = 1 if message.is_extended_id else 0
+    return _LAYOUT.pack(
+        _FRAME, flags, length, 0, message.arbitration_id, 0, number, 0, 0, bytes(data)
+    )
+
+
+_FRAME, _CONFIRMATION = int(Kind.FRAME), int(Kind.CONFIRMATION)
+_REMOTE = int(Flag.REMOTE)
 
 
 def _broken(rule: str) -> can.CanOperationError:

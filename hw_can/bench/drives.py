@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from .peer import BenchError, Peer, Values
 from .plant import STEP, UM, Drive, Mode, Push
+from .replay import Timed
 from .scenario import DriveForm
 
 PERIOD = 0.005
@@ -64,6 +66,8 @@ class Bench:
             _check_fields(peer, form.set_point, SET_POINT_FIELDS)
         self.peer = peer
         self.stations = {name: Station(form, Drive(form.axis())) for name, form in forms.items()}
+        self.replayed: deque[Timed] = deque()
+        """Frames of a log that are still to be sent, with their times from power-on in s."""
         self.latest: dict[str, Values] = {}
         """The last values of each message received."""
         self.skipped = 0
@@ -89,6 +93,10 @@ class Bench:
             due = late
         self._tick = due
         deadline = self.start + due * PERIOD
+        while self.peer.is_open and self.replayed and self.replayed[0][0] <= due * PERIOD:
+            at, frame = self.replayed.popleft()
+            self.peer.receive_until(self.start + at, self._take)
+            self.peer.forward(frame)
         if self.peer.is_open:
             self.peer.receive_until(deadline, self._take)
         time.sleep(max(0.0, deadline - self._clock()))

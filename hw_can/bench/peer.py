@@ -20,6 +20,9 @@ import cantools
 from cantools.database import Database
 from cantools.database.errors import Error as CodecFault
 
+OUTSIDE = "Outside"
+"""In a database, the sender of what no node of the model sends."""
+
 Value = int | str
 Values = dict[str, Value]
 
@@ -92,6 +95,15 @@ class Codec:
         assert isinstance(decoded, dict)
         return name, {field: _plain(value) for field, value in decoded.items()}
 
+    def from_outside(self, frame: can.Message) -> str | None:
+        """The message that the frame is, if no node of the database sends it; else None."""
+        name = self._names.get((frame.arbitration_id, frame.is_extended_id))
+        if name is None or frame.is_remote_frame or frame.is_error_frame:
+            return None
+        message = self._message(name)
+        sound = frame.is_fd == message.is_fd and frame.dlc == message.length
+        return name if sound and message.senders == [OUTSIDE] else None
+
     def _message(self, name: str) -> cantools.database.Message:
         try:
             return self._database.get_message_by_name(name)
@@ -143,7 +155,15 @@ class Peer:
 
     def send(self, name: str, values: Mapping[str, Value]) -> None:
         """Send one message now."""
-        frame = self.codec.encode(name, values)
+        self._send(name, self.codec.encode(name, values))
+
+    def forward(self, frame: can.Message) -> None:
+        """Send one frame of a log now."""
+        name = self.codec.from_outside(frame)
+        assert name is not None
+        self._send(name, frame)
+
+    def _send(self, name: str, frame: can.Message) -> None:
         try:
             self._bus.send(frame)
         except (can.CanError, OSError) as fault:

@@ -9,12 +9,14 @@ from dataclasses import dataclass
 from .drives import Bench, Track, press
 from .peer import BenchError, Peer, Values
 from .plant import UM
+from .replay import from_outside, read_log
 from .scenario import (
     Expect,
     ExpectStop,
     KillBench,
     Pull,
     Release,
+    Replay,
     Scenario,
     Send,
     Step,
@@ -95,7 +97,7 @@ def run_scenario(
         for step in scenario.steps:
             _check(step, peer)
         bench = Bench(peer, scenario.drives)
-        runner = _Runner(bench, limit)
+        runner = _Runner(bench, limit, scenario)
         results: list[StepResult] = []
         for step, line in zip(scenario.steps, scenario.lines, strict=True):
             progress(str(step))
@@ -143,16 +145,19 @@ def _check(step: Step, peer: Peer) -> None:
 class _Runner:
     """Carries out the steps of one scenario on one bench."""
 
-    def __init__(self, bench: Bench, limit: float | None) -> None:
+    def __init__(self, bench: Bench, limit: float | None, scenario: Scenario) -> None:
         self.sendings: list[Sending] = []
         self._bench = bench
         self._limit = limit
+        self._scenario = scenario
 
     def do(self, step: Step) -> tuple[bool, str]:
         """Whether the step passed, and what came out."""
         match step:
             case Send():
                 return self._send(step)
+            case Replay():
+                return self._replay(step)
             case WaitFor():
                 return self._wait_for(step)
             case Expect():
@@ -183,6 +188,19 @@ class _Runner:
         self._bench.peer.send(step.send, step.fields)
         self._bench.order(step.send, step.fields)
         return True, "sent"
+
+    def _replay(self, step: Replay) -> tuple[bool, str]:
+        """All frames of the log that come from outside, each at its time."""
+        bench = self._bench
+        log = read_log(self._scenario.file_of(step))
+        drives = frozenset(station.form.feedback for station in bench.stations.values())
+        frames, began = from_outside(log, bench.peer.codec, drives), bench.now
+        bench.replayed.extend((began + at, frame) for at, frame in frames)
+        while bench.replayed:
+            if not bench.peer.is_open:
+                return False, "the bench has left the bus"
+            self._tick()
+        return True, f"{len(frames)} of {len(log)} frames sent"
 
     def _wait_for(self, step: WaitFor) -> tuple[bool, str]:
         """Only messages that arrive from now on count."""

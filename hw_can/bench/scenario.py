@@ -22,6 +22,7 @@ from ravenchart.gen.origins import Origin
 from .plant import Axis
 from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
 from .reading import Path as Place
+from .replay import fault_of_log
 
 _QUANTITY = re.compile(r"(-?\d+(?:\.\d+)?) ?([a-z/]+)")
 _LENGTHS = {"um": 1e-6, "mm": 1e-3, "m": 1.0}
@@ -176,9 +177,22 @@ class KillBench(_Form):
         return "kill the bench"
 
 
-Step = Send | WaitFor | Expect | ExpectStop | Wait | Pull | Release | StopFeedback | KillBench
+class Replay(_Form):
+    """Send the frames of a log that come from outside, at the times that it gives."""
+
+    replay: str
+    """File, from the folder of the scenario: BLF, ASC or the format of candump."""
+
+    def __str__(self) -> str:
+        return f"replay {self.replay}"
+
+
+Step = (
+    Send | Replay | WaitFor | Expect | ExpectStop | Wait | Pull | Release | StopFeedback | KillBench
+)
 STEPS: Mapping[str, type[Step]] = {
     "send": Send,
+    "replay": Replay,
     "wait_for": WaitFor,
     "expect": Expect,
     "expect_stop": ExpectStop,
@@ -348,6 +362,11 @@ class Scenario:
     source: Source | None = None
     """The file, to say where something stands."""
 
+    def file_of(self, step: Replay) -> Path:
+        """The log that a step replays."""
+        assert self.source is not None
+        return Path(self.source.file).parent / step.replay
+
 
 def load_scenario(path: Path) -> Scenario:
     """The scenario in a file; ScenarioError tells everything that is wrong with it."""
@@ -431,6 +450,8 @@ def _fit_together(scenario: Scenario, source: Source) -> None:
     known = ", ".join(scenario.drives)
     hint = f"the drives are {known}" if known else "the scenario has no `drives`"
     for index, step in enumerate(scenario.steps):
+        if isinstance(step, Replay) and (told := fault_of_log(scenario.file_of(step))):
+            source.wrong(VALUES, ("steps", index, "replay"), told)
         for path, name in _drives_of(step):
             if name not in scenario.drives:
                 message = f"there is no drive `{name}`"

@@ -1,4 +1,5 @@
 with Ada.Command_Line;
+with Ada.Strings.Unbounded;
 with Ada.Text_IO;
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
@@ -16,6 +17,13 @@ package body Bus_Options is
    Second : constant := 1_000_000_000;
 
    Paced : Boolean := True;
+
+   Log : Ada.Strings.Unbounded.Unbounded_String;
+
+   subtype Thousandths is Nanoseconds range 0 .. 1_000;
+
+   Nominal_Sample : Thousandths := 800;
+   Data_Sample    : Thousandths := 800;
 
    function Part (Text : String; Number : Positive) return String;
    --  What stands between the colons, from 1; "0" where nothing does.
@@ -36,6 +44,13 @@ package body Bus_Options is
 
    function Is_Paced return Boolean
    is (Paced);
+
+   --------------
+   -- Log_File --
+   --------------
+
+   function Log_File return String
+   is (Ada.Strings.Unbounded.To_String (Log));
 
    ----------
    -- Part --
@@ -85,8 +100,16 @@ package body Bus_Options is
       Figure : String renames Part (Value, 4);
    begin
       case Kind is
-         when Disturbed_Bit =>
+         when Disturbed_Bit | Overload =>
             Result.Position := Positive'Value (Figure);
+         when Disturbed_End =>
+            Result.Position := Positive'Value (Figure);
+            if Result.Position > 10
+              or else (Result.Position = 10
+                       and then Result.Node /= Bus_Faults.Everyone)
+            then
+               raise Constraint_Error;
+            end if;
          when Delayed       =>
             Result.Late := Nanoseconds'Value (Figure);
          when Corrupted     =>
@@ -146,6 +169,12 @@ package body Bus_Options is
          Bus.Profile.Nominal := Rate (Value);
       elsif Name = "data_bitrate" then
          Bus.Profile.Data := Rate (Value);
+      elsif Name = "sample_point" then
+         Nominal_Sample := Nanoseconds'Value (Value);
+      elsif Name = "data_sample_point" then
+         Data_Sample := Nanoseconds'Value (Value);
+      elsif Name = "restart_ms" then
+         Bus.Profile.Restart := Nanoseconds'Value (Value) * 1_000_000;
       elsif Name = "time" and then Value in "paced" | "virtual" then
          Paced := Value = "paced";
       elsif Name = "buffer" and then Value in "fifo" | "priority" then
@@ -159,6 +188,9 @@ package body Bus_Options is
          Bus.Plan.Seed :=
            Interfaces.Unsigned_32'Value (Part (Value, 1));
          Bus.Plan.Separation := Nanoseconds'Value (Part (Value, 2));
+      elsif Name = "log" then
+         Log := Ada.Strings.Unbounded.To_Unbounded_String (Value);
+         Bus.Log.Kept := True;
       elsif Name = "fault" then
          Add_Fault (Value);
       elsif Name = "event" then
@@ -201,6 +233,11 @@ package body Bus_Options is
         Second / Nanoseconds (Bus.Profile.Nominal);
       if Bus.Profile.Data > 0 then
          Bus.Net.Bus.Times.Data := Second / Nanoseconds (Bus.Profile.Data);
+         Bus.Net.Bus.Times.Switch :=
+           Nanoseconds'Max
+             (0,
+              (Bus.Net.Bus.Times.Nominal * Nominal_Sample
+               - Bus.Net.Bus.Times.Data * Data_Sample) / 1_000);
       end if;
    end Read;
 

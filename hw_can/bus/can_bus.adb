@@ -3,6 +3,7 @@
 
 with Ada.Command_Line;
 with Ada.Text_IO;
+with Bus_Logs;
 with Bus_Options;
 with Ravenchart.Can.Bus_Clients;
 with Ravenchart.Can.Bus_Nodes;
@@ -15,14 +16,10 @@ procedure Can_Bus is
    use Ravenchart.Can;
    use Ravenchart.Can.Bus_Nodes;
    use type Bus_Clients.Phase;
-   use type Bus_Sockets.Reading;
    use type Bus_Sockets.Writing;
 
    Patience : constant Nanoseconds := 100_000_000;
    --  A signal is seen within this.
-
-   Most_Records : constant := 64;
-   --  Read of one client before the others have their turn.
 
    Bus   : Bus_Servers.Server renames Bus_Options.Bus;
    Bytes : Bus_Records.Image;
@@ -50,12 +47,12 @@ procedure Can_Bus is
    procedure Greet is
       C : Node_Index;
    begin
-      while Bus_Servers.Is_Room (Bus.Clients)
+      if Bus_Servers.Is_Room (Bus.Clients)
         and then Bus_Sockets.Somebody_Knocks
-      loop
-         Bus_Servers.Connect (Bus.Clients, C);
+      then
+         Bus_Servers.Connect (Bus.Clients, Bus_Sockets.Clock, C);
          Bus_Sockets.Welcome (C);
-      end loop;
+      end if;
    end Greet;
 
    ------------
@@ -63,15 +60,18 @@ procedure Can_Bus is
    ------------
 
    procedure Listen (C : Node_Index) is
-      Read : Bus_Sockets.Reading;
+      Gone  : Boolean;
+      Whole : Boolean;
    begin
-      for I in 1 .. Most_Records loop
-         Bus_Sockets.Receive (C, Bytes, Read);
-         if Read = Bus_Sockets.Gone then
-            Bus_Servers.Disconnect (Bus, C);
-            Bus_Sockets.Close (C);
-         end if;
-         exit when Read /= Bus_Sockets.Whole;
+      Bus_Sockets.Receive (C, Gone);
+      if Gone then
+         Bus_Servers.Disconnect (Bus, C);
+         Bus_Sockets.Close (C);
+         return;
+      end if;
+      loop
+         Bus_Sockets.Take (C, Bytes, Whole);
+         exit when not Whole;
          Bus_Servers.Take (Bus, C, Bytes, Now);
       end loop;
    end Listen;
@@ -86,11 +86,15 @@ procedure Can_Bus is
       Writing : Bus_Sockets.Writing;
    begin
       loop
-         Writing := Bus_Sockets.Ready (C);
+         while Bus_Sockets.Has_Room (C)
+           and then Bus_Clients.Has_Due (Bus.Clients (C), Horizon)
+         loop
+            Bus_Clients.Hand_Over (Bus.Clients (C), Bytes);
+            Bus_Sockets.Send (C, Bytes);
+         end loop;
+         Writing := Bus_Sockets.Flush (C);
          exit when Writing /= Bus_Sockets.Done
            or else not Bus_Clients.Has_Due (Bus.Clients (C), Horizon);
-         Bus_Clients.Hand_Over (Bus.Clients (C), Bytes);
-         Bus_Sockets.Send (C, Bytes);
       end loop;
       if Writing = Bus_Sockets.Lost
         or else Bus.Clients (C).State = Bus_Clients.Given_Up
@@ -125,6 +129,7 @@ begin
    if Bus_Options.Is_Paced then
       Bus.Profile.Began := Bus_Sockets.Date;
    end if;
+   Bus_Logs.Open;
    Ada.Text_IO.Put_Line
      ("bus " & Bus.Profile.Name (1 .. Bus.Profile.Length) & " at 127.0.0.1:"
       & Port'Image (2 .. Port'Image'Last));
@@ -132,6 +137,7 @@ begin
 
    while not Bus_Sockets.Stop_Requested loop
       Greet;
+      Bus_Servers.Expire (Bus.Clients, Bus_Sockets.Clock);
       for C in Node_Index loop
          if Bus.Clients (C).State /= Bus_Clients.Unconnected then
             Listen (C);
@@ -140,6 +146,7 @@ begin
       Horizon :=
         (if Bus_Options.Is_Paced then Now else Nanoseconds'Last);
       Bus_Servers.Run (Bus, Horizon, Busy);
+      Bus_Logs.Write;
       Next := Bus_Servers.Next_Start (Bus);
       for C in Node_Index loop
          if Bus.Clients (C).State /= Bus_Clients.Unconnected then
@@ -148,12 +155,14 @@ begin
       end loop;
       if not Busy then
          Horizon := (if Bus_Options.Is_Paced then Now else 0);
-         Bus_Sockets.Await
-           (if Next <= Horizon then 0
-            else Nanoseconds'Min (Next - Horizon, Patience));
       end if;
+      Bus_Sockets.Await
+        ((if Busy or else Next <= Horizon then 0
+          else Nanoseconds'Min (Next - Horizon, Patience)),
+         Welcomes => Bus_Servers.Is_Room (Bus.Clients));
    end loop;
 
+   Bus_Logs.Close;
    Bus_Servers.Close_All (Bus.Clients);
    for C in Node_Index loop
       if Bus.Clients (C).State /= Bus_Clients.Unconnected then

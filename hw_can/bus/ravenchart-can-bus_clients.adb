@@ -1,8 +1,6 @@
 package body Ravenchart.Can.Bus_Clients
   with SPARK_Mode
 is
-   use type Error_Frames.Error_Kind;
-
    procedure Say
      (To : in out Client; Bytes : Bus_Records.Image; Due : Nanoseconds)
    with
@@ -51,10 +49,11 @@ is
    -- Welcome --
    -------------
 
-   procedure Welcome (To : in out Client) is
+   procedure Welcome (To : in out Client; Limit : Nanoseconds) is
    begin
       To.State := Greeting;
       To.Last  := 0;
+      To.Limit := Limit;
       Bus_Queues.Clear (To.Queue);
    end Welcome;
 
@@ -185,12 +184,7 @@ is
    procedure Tell_Error
      (To : in out Client; Kind : Error_Frames.Error_Kind) is
    begin
-      Say
-        (To,
-         (if Kind = Error_Frames.Acknowledgement_Error
-          then Bus_Records.Error_Report (16#20#, 0, To.Last)
-          else Bus_Records.Error_Report (16#08#, 16#1_0000#, To.Last)),
-         To.Last);
+      Say (To, Report (Kind, To.Last), To.Last);
    end Tell_Error;
 
    ----------------

@@ -22,6 +22,7 @@ is
    use Bus_Nodes;
    use type Bus_Frames.Frame_Family;
    use type Bus_Records.Request_Kind;
+   use type Error_Frames.Error_Kind;
    use type Interfaces.Unsigned_32;
 
    Most_Nodes : constant := 15;
@@ -36,9 +37,11 @@ is
       Takes_Fd : Boolean := False;
       Told     : Fault_Confinement.Node;
       Last     : Nanoseconds := 0;
+      Limit    : Nanoseconds := 0;
       Queue    : Bus_Queues.Queue;
    end record;
    --  Told: the counters that it knows. Last: the latest time that was said.
+   --  Limit: by when it must have said hello, by the clock of the server.
 
    type Profile is record
       Name    : String (1 .. 16) := (others => '-');
@@ -46,10 +49,11 @@ is
       Nominal : Bus_Records.Bit_Rate range 1 .. 1_000_000 := 500_000;
       Data    : Bus_Records.Bit_Rate range 0 .. 20_000_000 := 2_000_000;
       Began   : Nanoseconds := 0;
+      Restart : Restart_Delay := 0;
    end record;
    --  What a bus says of itself. Rates in bit/s; without a data rate it
    --  carries no FD frames. Began: when bus time 0 was, in ns since 1970; 0
-   --  in virtual time.
+   --  in virtual time. Restart: of the nodes that want none of their own.
 
    function Is_Sound (P : Profile) return Boolean
    is (Bus_Records.Is_Name (P.Name (1 .. P.Length)))
@@ -81,9 +85,19 @@ is
    --  When client C is told of what happened: at its end, or as late as the
    --  fault makes it, and not before what it was told last.
 
-   procedure Welcome (To : in out Client)
+   function Restart_For
+     (R : Bus_Records.Request; P : Profile) return Restart_Delay
+   is (if R.Number = 0
+       then P.Restart
+       else Nanoseconds (R.Number) * 1_000_000)
+   with
+     Global => null,
+     Pre    => R.Number <= Bus_Records.Longest_Restart;
+   --  The restart delay of a node that said this hello.
+
+   procedure Welcome (To : in out Client; Limit : Nanoseconds)
    with Global => null, Post => To.State = Greeting;
-   --  It has connected.
+   --  It has connected, and has to say hello until then.
 
    procedure Forget (To : in out Client)
    with Global => null, Post => To.State = Unconnected;
@@ -142,6 +156,16 @@ is
    with Global => null, Post => To.Last >= To.Last'Old;
    --  Client C is told of a frame, if it was sent or heard there. Tag: of the
    --  request that is done; 0 when it was none.
+
+   function Report
+     (Kind : Error_Frames.Error_Kind; Now : Nanoseconds)
+      return Bus_Records.Image
+   is (if Kind = Error_Frames.Acknowledgement_Error
+       then Bus_Records.Error_Report (16#20#, 0, Now)
+       else Bus_Records.Error_Report (16#08#, 16#1_0000#, Now))
+   with Global => null;
+   --  An error frame, as in Linux's can/error.h: nobody acknowledged, or a
+   --  bit error.
 
    procedure Tell_Error
      (To : in out Client; Kind : Error_Frames.Error_Kind)

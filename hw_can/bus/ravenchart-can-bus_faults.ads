@@ -19,12 +19,16 @@ is
    type Fault_Kind is
      (None,
       Disturbed_Bit,
+      Disturbed_End,
+      Overload,
       Lost_Acknowledgement,
       Dropped,
       Delayed,
       Duplicated,
       Corrupted);
-   --  Disturbed_Bit: a bit is read other than it was sent.
+   --  Disturbed_Bit: a bit is read other than it was sent. Disturbed_End:
+   --  one of the end of frame or of the intermission is. Overload: a receiver
+   --  needs a delay of the next frame.
    --  Lost_Acknowledgement: the transmitter reads its slot recessive. The
    --  others are faults of a receiver, which the bus does not notice: the
    --  frame is lost, handed over late, or twice, or with changed data.
@@ -42,14 +46,18 @@ is
       Index    : Fd_Frames.Fd_Index := 0;
       Mask     : Interfaces.Unsigned_8 := 0;
    end record;
-   --  Node: who is hit. Position: the bit, which is that before the
-   --  intermission when the frame has fewer. Late: by how much it is handed
-   --  over. Index, Mask: the byte and the bits of it that change.
+   --  Node: who is hit. Position of a disturbed bit: the bit, which is the
+   --  last of the end of frame when the frame has fewer; of a disturbed end:
+   --  the bit, counted from the first of the end of frame, where 8 to 10 are
+   --  the intermission; of an overload: how many overload frames. Late: by
+   --  how much it is handed over. Index, Mask: the byte and the bits of it
+   --  that change.
 
    No_Fault : constant Fault := (others => <>);
 
    function Is_Witness (F : Fault; Node : Positive) return Boolean
-   is (F.Kind = Disturbed_Bit and then F.Node = Node)
+   is (F.Kind in Disturbed_Bit | Disturbed_End
+       and then F.Node = Node)
    with Global => null;
    --  Is Node the only one that sees the disturbed bit?
 

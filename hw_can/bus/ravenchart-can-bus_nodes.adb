@@ -17,6 +17,21 @@ is
       end if;
    end Count;
 
+   ----------------------
+   -- Request_Recovery --
+   ----------------------
+
+   procedure Request_Recovery (N : in out Bus_Node; Start : Nanoseconds) is
+   begin
+      if N.Here = Present
+        and then Fault_Confinement.State (N.Confinement) = Bus_Off
+        and then (N.Way_Back = Waits or else N.Ready_At > Start)
+      then
+         N.Way_Back := Recovers;
+         N.Ready_At := Start;
+      end if;
+   end Request_Recovery;
+
    ----------
    -- Rest --
    ----------

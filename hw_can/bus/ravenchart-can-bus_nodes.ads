@@ -1,8 +1,8 @@
 --  One controller on the simulated bus, without its buffers: its error
 --  counters, and when it may send.
 --
---  Guarantees   a node that is bus-off takes no part; one that asked for it
---               comes back as Fault_Confinement says
+--  Guarantees   a node that is bus-off takes no part; after its recovery was
+--               requested, it comes back as Fault_Confinement says
 --  Tasking      none: nodes are values
 --  Timing       Rest: at most 1408 steps
 
@@ -22,15 +22,21 @@ is
    type Recovery is (Waits, Recovers);
    --  Has a node that is bus-off been told to come back?
 
+   subtype Restart_Delay is Nanoseconds range 0 .. 600_000_000_000;
+   --  From bus-off to the automatic request for recovery; 0 for none.
+
    type Bus_Node is record
       Here        : Presence := Absent;
       Segment     : Node_Index := 1;
       Confinement : Fault_Confinement.Node;
       Way_Back    : Recovery := Waits;
       Ready_At    : Nanoseconds := 0;
+      Restart     : Restart_Delay := 0;
    end record;
    --  It sends nothing before Ready_At: an error-passive node waits for
-   --  eight bits behind what it sent (suspend transmission).
+   --  eight bits behind what it sent (suspend transmission). While it is
+   --  bus-off, Ready_At is when recovery is requested: it counts no bit
+   --  before.
 
    type Node_List is array (Node_Index) of Bus_Node;
 
@@ -50,7 +56,8 @@ is
    function Is_Same_But_Counts (A, B : Bus_Node) return Boolean
    is (A.Here = B.Here
        and then A.Segment = B.Segment
-       and then A.Ready_At = B.Ready_At)
+       and then A.Ready_At = B.Ready_At
+       and then A.Restart = B.Restart)
    with Global => null;
    --  Do they differ in what was counted alone?
 
@@ -69,6 +76,32 @@ is
           then Takes_Part (N));
    --  One event of fault confinement. A receiver never becomes bus-off. Who
    --  does, waits to be told to come back.
+
+   procedure Request_Recovery (N : in out Bus_Node; Start : Nanoseconds)
+   with
+     Global => null,
+     Post   =>
+       N.Here = N.Here'Old
+       and then N.Segment = N.Segment'Old
+       and then N.Restart = N.Restart'Old
+       and then
+         (if N.Here = Present
+            and then Fault_Confinement.State (N.Confinement) = Bus_Off
+          then Comes_Back (N) and then N.Ready_At <= Start
+          else N = N'Old);
+   --  The user requests recovery as of Start (ISO 11898-1 (2015), bus
+   --  integration). A request that is already counting goes on.
+
+   function Quiet_Bits
+     (N    : Bus_Node;
+      Last : Nanoseconds;
+      Most : Nanoseconds;
+      Bit  : Positive_Nanoseconds) return Nanoseconds
+   is (if N.Ready_At >= Last
+       then 0
+       else Nanoseconds'Min (Most, (Last - N.Ready_At) / Bit))
+   with Global => null;
+   --  Of so many recessive bits up to Last, those after the request.
 
    procedure Rest (N : in out Bus_Node; Bits : Nanoseconds)
    with

@@ -44,13 +44,6 @@ is
    with Global => null;
    --  Did node C see an error frame?
 
-   procedure Recover (N : in out Networks.Network; C : Node_Index)
-   with
-     Global => null,
-     Pre    => Networks.Is_Sound (N),
-     Post   => Networks.Is_Sound (N);
-   --  Node C shall come back from bus-off.
-
    procedure Ask
      (To  : in out Bus_Clients.Client;
       N   : in out Networks.Network;
@@ -77,10 +70,15 @@ is
    --  What client C is told of what happened on the bus. When it is bus-off,
    --  what it had asked for is refused.
 
+   procedure Write_Down (Log : in out Journal; Result : Buses.Outcome)
+   with Global => null;
+   --  Keep what was on the bus: a frame that somebody took, an error frame.
+
    procedure Carry
      (Clients : in out Client_List;
       N       : in out Networks.Network;
       Plan    : in out Fault_Plans.Plan;
+      Log     : in out Journal;
       M       : Networks.Moment)
    with
      Global => null,
@@ -100,15 +98,6 @@ is
       Line_Events.Apply (N, A.Events (A.Next));
       A.Next := A.Next + 1;
    end Apply_Next;
-
-   -------------
-   -- Recover --
-   -------------
-
-   procedure Recover (N : in out Networks.Network; C : Node_Index) is
-   begin
-      N.Bus.Nodes (C).Way_Back := Recovers;
-   end Recover;
 
    ---------
    -- Ask --
@@ -166,6 +155,34 @@ is
       end if;
    end Publish;
 
+   ----------------
+   -- Write_Down --
+   ----------------
+
+   procedure Write_Down (Log : in out Journal; Result : Buses.Outcome) is
+
+      procedure Put (Bytes : Bus_Records.Image)
+      with Global => (Input => Result, In_Out => Log);
+
+      procedure Put (Bytes : Bus_Records.Image) is
+      begin
+         if Log.Kept and then Log.Records.Count < Bus_Queues.Depth then
+            Bus_Queues.Put
+              (Log.Records, (Bytes => Bytes, Due => Result.Finish));
+         end if;
+      end Put;
+
+   begin
+      if Result.Ended = Buses.Whole
+        or else (for some Heard of Result.Heard => Heard)
+      then
+         Put (Bus_Records.Frame_Record (Result.Frame, Result.Finish));
+      end if;
+      if Result.Ended = Buses.Broken then
+         Put (Bus_Clients.Report (Result.Error.Kind, Result.Finish));
+      end if;
+   end Write_Down;
+
    -----------
    -- Carry --
    -----------
@@ -174,6 +191,7 @@ is
      (Clients : in out Client_List;
       N       : in out Networks.Network;
       Plan    : in out Fault_Plans.Plan;
+      Log     : in out Journal;
       M       : Networks.Moment)
    is
       Fault    : Bus_Faults.Fault;
@@ -185,6 +203,7 @@ is
       if Result.Ended = Buses.Broken then
          Fault_Plans.Note (Plan, Result.Struck);
       end if;
+      Write_Down (Log, Result);
       for C in Node_Index loop
          pragma Loop_Invariant (Networks.Is_Sound (N));
          if Clients (C).State = Bus_Clients.Joined then
@@ -197,7 +216,9 @@ is
    -- Connect --
    -------------
 
-   procedure Connect (Clients : in out Client_List; C : out Node_Index) is
+   procedure Connect
+     (Clients : in out Client_List; Clock : Nanoseconds; C : out Node_Index)
+   is
    begin
       C := 1;
       while Clients (C).State /= Bus_Clients.Unconnected loop
@@ -206,8 +227,28 @@ is
               Clients (D).State /= Bus_Clients.Unconnected);
          C := C + 1;
       end loop;
-      Bus_Clients.Welcome (Clients (C));
+      Bus_Clients.Welcome (Clients (C), Clock + Hello_Limit);
    end Connect;
+
+   ------------
+   -- Expire --
+   ------------
+
+   procedure Expire (Clients : in out Client_List; Clock : Nanoseconds) is
+   begin
+      for C in Node_Index loop
+         if Clients (C).State = Bus_Clients.Greeting
+           and then Clients (C).Limit <= Clock
+         then
+            Bus_Clients.End_With
+              (Clients (C), Bus_Records.No_Hello_In_Time);
+         end if;
+         pragma Loop_Invariant
+           (for all D in 1 .. C =>
+              (if Clients (D).State = Bus_Clients.Greeting
+               then Clock < Clients (D).Limit));
+      end loop;
+   end Expire;
 
    ----------------
    -- Disconnect --
@@ -237,13 +278,15 @@ is
             Bus_Clients.Greet (S.Clients (C), C, S.Profile, R, Now, Joins);
             if Joins then
                Line_Events.Join (S.Net, C);
+               S.Net.Bus.Nodes (C).Restart :=
+                 Bus_Clients.Restart_For (R, S.Profile);
             end if;
          when Bus_Clients.Joined   =>
             case R.Kind is
                when Bus_Records.Frame_Request    =>
                   Ask (S.Clients (C), S.Net, C, R, Now);
                when Bus_Records.Recovery_Request =>
-                  Recover (S.Net, C);
+                  Buses.Recover (S.Net.Bus, C, Now);
                when others                       =>
                   Bus_Clients.End_With
                     (S.Clients (C), Bus_Records.Malformed);
@@ -276,7 +319,7 @@ is
            and then Moment.Start <= Horizon
            and then Moment.Start <= Buses.Last_Start
          then
-            Carry (S.Clients, S.Net, S.Plan, Moment);
+            Carry (S.Clients, S.Net, S.Plan, S.Log, Moment);
          else
             Busy := False;
             return;

@@ -9,6 +9,7 @@
 
 with Ravenchart.Can.Bus_Clients;
 with Ravenchart.Can.Bus_Nodes;
+with Ravenchart.Can.Bus_Queues;
 with Ravenchart.Can.Bus_Records;
 with Ravenchart.Can.Fault_Plans;
 with Ravenchart.Can.Line_Events;
@@ -42,12 +43,20 @@ is
    --  Events in the order of their times; Next is the first to come, behind
    --  the last one when none is.
 
+   type Journal is record
+      Kept    : Boolean := False;
+      Records : Bus_Queues.Queue;
+   end record;
+   --  What was on the bus, if it is kept: a record for each frame and each
+   --  error frame. Run makes at most two a frame.
+
    type Server is record
       Clients : Client_List;
       Net     : Networks.Network;
       Plan    : Fault_Plans.Plan;
       Agenda  : Bus_Servers.Agenda;
       Profile : Bus_Clients.Profile;
+      Log     : Journal;
    end record;
 
    function Is_Sound (S : Server) return Boolean
@@ -62,12 +71,27 @@ is
    with Global => null;
    --  May one more connect?
 
-   procedure Connect (Clients : in out Client_List; C : out Node_Index)
+   Hello_Limit : constant Nanoseconds := 2_000_000_000;
+   --  From the connection to hello.
+
+   procedure Connect
+     (Clients : in out Client_List; Clock : Nanoseconds; C : out Node_Index)
    with
      Global => null,
-     Pre    => Is_Room (Clients),
+     Pre    =>
+       Is_Room (Clients) and then Clock <= Nanoseconds'Last - Hello_Limit,
      Post   => Clients (C).State = Bus_Clients.Greeting;
-   --  Somebody has connected, and is client C from now on.
+   --  Somebody has connected, and is client C from now on. The Clock is not
+   --  that of the bus, whose time may stand still.
+
+   procedure Expire (Clients : in out Client_List; Clock : Nanoseconds)
+   with
+     Global => null,
+     Post   =>
+       (for all C in Node_Index =>
+          (if Clients (C).State = Bus_Clients.Greeting
+           then Clock < Clients (C).Limit));
+   --  The connection of a client that has not said hello in time ends.
 
    procedure Disconnect (S : in out Server; C : Node_Index)
    with
@@ -106,7 +130,7 @@ is
      Pre    => Is_Sound (S),
      Post   => Is_Sound (S);
    --  Everything that begins on the bus until then; Busy when that is not
-   --  all yet.
+   --  all yet. The journal should be empty before.
 
    procedure Close_All (Clients : in out Client_List)
    with Global => null;

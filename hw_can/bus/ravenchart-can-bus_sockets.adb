@@ -14,21 +14,27 @@ package body Ravenchart.Can.Bus_Sockets is
 
    subtype Offset is Ada.Streams.Stream_Element_Offset;
 
+   Chunk : constant Offset := 64 * Bus_Records.Record_Bytes;
+   --  Bytes that are read, or written, at once.
+
    type Link is record
-      Socket   : GNAT.Sockets.Socket_Type := GNAT.Sockets.No_Socket;
-      Input    : Ada.Streams.Stream_Element_Array
-                   (1 .. Bus_Records.Record_Bytes);
-      Read     : Offset := 0;
-      Output   : Ada.Streams.Stream_Element_Array
-                   (1 .. Bus_Records.Record_Bytes);
-      Unsent   : Offset := 0;
+      Socket : GNAT.Sockets.Socket_Type := GNAT.Sockets.No_Socket;
+      Input  : Ada.Streams.Stream_Element_Array (1 .. Chunk);
+      Taken  : Offset := 0;
+      Read   : Offset := 0;
+      Output : Ada.Streams.Stream_Element_Array (1 .. Chunk);
+      Sent   : Offset := 0;
+      Filled : Offset := 0;
    end record;
-   --  Read: bytes that are there of the next record. Unsent: those at the
-   --  end of Output that are still to be written.
+   --  Of Input, the bytes up to Read are there, and those up to Taken were
+   --  taken. Of Output, those up to Filled are to be written, and those up
+   --  to Sent were.
 
    Links    : array (Node_Index) of Link;
    Server   : GNAT.Sockets.Socket_Type;
    Selector : GNAT.Sockets.Selector_Type;
+   Readable : GNAT.Sockets.Socket_Set_Type;
+   --  Whose input the last Await has seen.
    Start    : Ada.Real_Time.Time;
 
    Signalled : Boolean := False
@@ -144,15 +150,18 @@ package body Ravenchart.Can.Bus_Sockets is
    -- Await --
    -----------
 
-   procedure Await (Most : Nanoseconds) is
-      Readable, Writable : GNAT.Sockets.Socket_Set_Type;
-      Status             : GNAT.Sockets.Selector_Status;
+   procedure Await (Most : Nanoseconds; Welcomes : Boolean) is
+      Writable : GNAT.Sockets.Socket_Set_Type;
+      Status   : GNAT.Sockets.Selector_Status;
    begin
-      GNAT.Sockets.Set (Readable, Server);
+      GNAT.Sockets.Empty (Readable);
+      if Welcomes then
+         GNAT.Sockets.Set (Readable, Server);
+      end if;
       for L of Links loop
          if GNAT.Sockets."/=" (L.Socket, GNAT.Sockets.No_Socket) then
             GNAT.Sockets.Set (Readable, L.Socket);
-            if L.Unsent > 0 then
+            if L.Sent < L.Filled then
                GNAT.Sockets.Set (Writable, L.Socket);
             end if;
          end if;
@@ -162,25 +171,15 @@ package body Ravenchart.Can.Bus_Sockets is
          Timeout => Duration (Most / 1_000) / 1_000_000);
    exception
       when GNAT.Sockets.Socket_Error =>
-         null;  --  a signal came
+         GNAT.Sockets.Empty (Readable);  --  a signal came
    end Await;
 
    ---------------------
    -- Somebody_Knocks --
    ---------------------
 
-   function Somebody_Knocks return Boolean is
-      Readable, Writable : GNAT.Sockets.Socket_Set_Type;
-      Status             : GNAT.Sockets.Selector_Status;
-   begin
-      GNAT.Sockets.Set (Readable, Server);
-      GNAT.Sockets.Check_Selector
-        (Selector, Readable, Writable, Status, Timeout => 0.0);
-      return GNAT.Sockets.Is_Set (Readable, Server);
-   exception
-      when GNAT.Sockets.Socket_Error =>
-         return False;
-   end Somebody_Knocks;
+   function Somebody_Knocks return Boolean
+   is (GNAT.Sockets.Is_Set (Readable, Server));
 
    -------------
    -- Welcome --
@@ -188,67 +187,104 @@ package body Ravenchart.Can.Bus_Sockets is
 
    procedure Welcome (C : Node_Index) is
       Address : GNAT.Sockets.Sock_Addr_Type;
+      L       : Link renames Links (C);
    begin
-      GNAT.Sockets.Accept_Socket (Server, Links (C).Socket, Address);
-      Links (C).Read   := 0;
-      Links (C).Unsent := 0;
-      Set_Up (Links (C).Socket);
+      GNAT.Sockets.Accept_Socket (Server, L.Socket, Address);
+      L.Taken  := 0;
+      L.Read   := 0;
+      L.Sent   := 0;
+      L.Filled := 0;
+      Set_Up (L.Socket);
    exception
       when GNAT.Sockets.Socket_Error =>
-         null;  --  gone before it was here: the next Receive says so
+         null;  --  gone before it was here: it never says hello
    end Welcome;
 
    -------------
    -- Receive --
    -------------
 
-   procedure Receive
-     (C : Node_Index; Bytes : out Bus_Records.Image; Read : out Reading)
-   is
+   procedure Receive (C : Node_Index; Gone : out Boolean) is
       L    : Link renames Links (C);
+      Rest : constant Offset := L.Read - L.Taken;
       Last : Offset;
    begin
-      Bytes := (others => 0);
+      Gone := False;
+      if GNAT.Sockets."=" (L.Socket, GNAT.Sockets.No_Socket)
+        or else not GNAT.Sockets.Is_Set (Readable, L.Socket)
+      then
+         return;
+      end if;
+      L.Input (1 .. Rest) := L.Input (L.Taken + 1 .. L.Read);
+      L.Taken := 0;
+      L.Read  := Rest;
       GNAT.Sockets.Receive_Socket
-        (L.Socket, L.Input (L.Read + 1 .. L.Input'Last), Last);
-      if Last = L.Read then
-         Read := Gone;
-      else
-         L.Read := Last;
-         Read := Nothing;
-      end if;
-      if L.Read = L.Input'Last then
-         for I in Bytes'Range loop
-            Bytes (I) := Bus_Records.Byte (L.Input (Offset (I)));
-         end loop;
-         L.Read := 0;
-         Read := Whole;
-      end if;
+        (L.Socket, L.Input (Rest + 1 .. Chunk), Last);
+      Gone   := Last = Rest;
+      L.Read := Last;
    exception
       when Fault : GNAT.Sockets.Socket_Error =>
-         case GNAT.Sockets.Resolve_Exception (Fault) is
-            when GNAT.Sockets.Resource_Temporarily_Unavailable
-               | GNAT.Sockets.Interrupted_System_Call =>
-               Read := Nothing;
-            when others                               =>
-               Read := Gone;
-         end case;
+         Gone := GNAT.Sockets.Resolve_Exception (Fault)
+           not in GNAT.Sockets.Resource_Temporarily_Unavailable
+                | GNAT.Sockets.Interrupted_System_Call;
    end Receive;
 
+   ----------
+   -- Take --
+   ----------
+
+   procedure Take
+     (C : Node_Index; Bytes : out Bus_Records.Image; Whole : out Boolean)
+   is
+      L : Link renames Links (C);
+   begin
+      Bytes := (others => 0);
+      Whole := L.Read - L.Taken >= Bus_Records.Record_Bytes;
+      if Whole then
+         for I in Bytes'Range loop
+            Bytes (I) :=
+              Bus_Records.Byte (L.Input (L.Taken + Offset (I)));
+         end loop;
+         L.Taken := L.Taken + Bus_Records.Record_Bytes;
+      end if;
+   end Take;
+
+   --------------
+   -- Has_Room --
+   --------------
+
+   function Has_Room (C : Node_Index) return Boolean
+   is (Links (C).Filled <= Chunk - Bus_Records.Record_Bytes);
+
+   ----------
+   -- Send --
+   ----------
+
+   procedure Send (C : Node_Index; Bytes : Bus_Records.Image) is
+      L : Link renames Links (C);
+   begin
+      for I in Bytes'Range loop
+         L.Output (L.Filled + Offset (I)) :=
+           Ada.Streams.Stream_Element (Bytes (I));
+      end loop;
+      L.Filled := L.Filled + Bus_Records.Record_Bytes;
+   end Send;
+
    -----------
-   -- Ready --
+   -- Flush --
    -----------
 
-   function Ready (C : Node_Index) return Writing is
+   function Flush (C : Node_Index) return Writing is
       L    : Link renames Links (C);
       Last : Offset;
    begin
-      while L.Unsent > 0 loop
+      while L.Sent < L.Filled loop
          GNAT.Sockets.Send_Socket
-           (L.Socket,
-            L.Output (L.Output'Last - L.Unsent + 1 .. L.Output'Last), Last);
-         L.Unsent := L.Output'Last - Last;
+           (L.Socket, L.Output (L.Sent + 1 .. L.Filled), Last);
+         L.Sent := Last;
       end loop;
+      L.Sent   := 0;
+      L.Filled := 0;
       return Done;
    exception
       when Fault : GNAT.Sockets.Socket_Error =>
@@ -259,20 +295,7 @@ package body Ravenchart.Can.Bus_Sockets is
             when others                               =>
                return Lost;
          end case;
-   end Ready;
-
-   ----------
-   -- Send --
-   ----------
-
-   procedure Send (C : Node_Index; Bytes : Bus_Records.Image) is
-      L : Link renames Links (C);
-   begin
-      for I in Bytes'Range loop
-         L.Output (Offset (I)) := Ada.Streams.Stream_Element (Bytes (I));
-      end loop;
-      L.Unsent := L.Output'Last;
-   end Send;
+   end Flush;
 
    -----------
    -- Close --

@@ -25,28 +25,34 @@ package Ravenchart.Can.Bus_Sockets is
    function Date return Nanoseconds;
    --  Time since 1970-01-01 UTC.
 
-   procedure Await (Most : Nanoseconds);
-   --  Wait until there is something to read, and no longer than this.
+   procedure Await (Most : Nanoseconds; Welcomes : Boolean);
+   --  Wait until there is something to read, or to write to a client that
+   --  took no more, and no longer than this. Welcomes: or somebody wants to
+   --  connect.
 
    function Somebody_Knocks return Boolean;
-   --  Does somebody want to connect?
+   --  Has the last Await seen that somebody wants to connect?
 
    procedure Welcome (C : Node_Index);
    --  Accept the connection; it is that of client C.
 
-   type Reading is (Nothing, Whole, Gone);
+   procedure Receive (C : Node_Index; Gone : out Boolean);
+   --  Read what the last Await has seen of C, as far as there is room for.
 
-   procedure Receive
-     (C : Node_Index; Bytes : out Bus_Records.Image; Read : out Reading);
-   --  The next record that C has sent, once all of it is there.
+   procedure Take
+     (C : Node_Index; Bytes : out Bus_Records.Image; Whole : out Boolean);
+   --  The next record that was read, if all of it is there.
 
    type Writing is (Done, Full, Lost);
 
-   function Ready (C : Node_Index) return Writing;
-   --  Does C take a record now? Writes what is left of the last one.
+   function Has_Room (C : Node_Index) return Boolean;
+   --  Is there room for one more record to be written?
 
    procedure Send (C : Node_Index; Bytes : Bus_Records.Image);
-   --  Only when it is ready: Done.
+   --  Only when there is room. Flush writes it.
+
+   function Flush (C : Node_Index) return Writing;
+   --  Write what was sent, as far as C takes it.
 
    procedure Close (C : Node_Index);
    --  End the connection.

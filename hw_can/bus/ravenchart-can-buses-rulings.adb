@@ -10,6 +10,35 @@ is
    use type Bus_Frames.Frame_Family;
    use type Levels.Level;
 
+   End_Bits : constant := 7;
+   --  Of the end of frame.
+
+   Intermission_Bits : constant := 3;
+
+   Flag_Bits : constant := Error_Frames.Flag_Bits;
+   --  Of an overload flag as of an error flag.
+
+   Overload_Bits : constant := Flag_Bits + 1 + Error_Frames.Delimiter_Bits;
+   --  An overload frame: those who only react to it begin one bit later.
+
+   function Place_Of
+     (F : Bus_Faults.Fault; I : Wire.Image) return Wire.Bit_Count
+   is (if F.Kind = Bus_Faults.Disturbed_Bit
+       then Bus_Frames.Least (F.Position, I.Ends (Wire.End_Of_Frame))
+       elsif F.Position > End_Bits + Intermission_Bits
+         or else I.Ends (Wire.Acknowledgement_Delimiter)
+                 > Wire.Longest - F.Position
+       then Wire.Length (I)
+       else I.Ends (Wire.Acknowledgement_Delimiter) + F.Position)
+   with Global => null;
+   --  The bit of the frame, intermission included, that is disturbed.
+
+   function Has_Role
+     (Roles : Role_List; Node : Bus_Faults.Victim; R : Role) return Boolean
+   is (Node in 1 .. 16 and then Roles (Node_Index (Node)) = R)
+   with Global => null;
+   --  Is the node that is hit this in the frame?
+
    function First_Difference (A, B : Wire.Image) return Wire.Bit_Index
    with Global => null;
    --  The first bit in which they differ; the last of all if none does.
@@ -146,6 +175,7 @@ is
       Last : constant Wire.Bit_Count := Image.Ends (Wire.End_Of_Frame);
       Slot : constant Wire.Bit_Count :=
         Image.Ends (Wire.Acknowledgement_Slot);
+      Place : constant Wire.Bit_Count := Place_Of (Fault, Image);
 
       procedure Consider (Kind : Trouble_Kind; Position : Wire.Bit_Count)
       with
@@ -164,18 +194,23 @@ is
       end Consider;
 
       Answered : Boolean := False;
+      Active   : Boolean := False;
+      Hidden   : Boolean;
    begin
       Found := (others => <>);
-      if Fault.Kind = Bus_Faults.Disturbed_Bit then
-         if Fault.Node = Bus_Faults.Everyone then
-            Consider (Seen, Bus_Frames.Least (Fault.Position, Last));
-         elsif Fault.Node <= 16 then
-            if Roles (Node_Index (Fault.Node)) = Listener
-              and then Is_Passive (B.Nodes (Node_Index (Fault.Node)))
-            then
+      if Fault.Kind in Bus_Faults.Disturbed_Bit | Bus_Faults.Disturbed_End
+        and then Place <= Last
+      then
+         if Fault.Node = Bus_Faults.Everyone
+           or else Has_Role (Roles, Fault.Node, Sender)
+         then
+            Consider (Seen, Place);
+         elsif Has_Role (Roles, Fault.Node, Listener) and then Place < Last
+         then
+            if Is_Passive (B.Nodes (Node_Index (Fault.Node))) then
                Found.Deaf := Fault.Node;
-            elsif Roles (Node_Index (Fault.Node)) /= Outside then
-               Consider (Seen, Bus_Frames.Least (Fault.Position, Last));
+            else
+               Consider (Seen, Place);
             end if;
          end if;
       end if;
@@ -205,14 +240,160 @@ is
            or else
              (Roles (N) = Listener
               and then
-                (Natural (N) /= Found.Deaf or else Fault.Position > Slot));
+                (Natural (N) /= Found.Deaf or else Place > Slot));
+         Active := Active
+           or else
+             (Roles (N) /= Outside and then not Is_Passive (B.Nodes (N)));
       end loop;
       if not Answered
         or else Fault.Kind = Bus_Faults.Lost_Acknowledgement
       then
          Consider (Unacknowledged, Slot);
       end if;
+
+      Hidden := Has_Role (Roles, Fault.Node, Sender)
+        and then Is_Passive (B.Nodes (Node_Index (Fault.Node)))
+        and then Found.Position >= Image.Ends (Wire.Check_Field);
+      case Found.Kind is
+         when Untroubled     =>
+            null;
+         when Seen           =>
+            Found.Accepted := Hidden
+              or else Found.Position >= Last
+              or else
+                (Found.Position = Last - 1
+                 and then Fault.Node /= Bus_Faults.Everyone);
+            Found.Silent := Hidden or else not (Active or Found.Accepted);
+         when Collided       =>
+            Found.Silent := not Active;
+         when Unacknowledged =>
+            Found.Silent   := Is_Passive (B.Nodes (Winner));
+            Found.Accepted := Found.Silent;
+      end case;
    end Find;
+
+   --------------
+   -- Error_Of --
+   --------------
+
+   function Error_Of
+     (Roles : Role_List;
+      Fault : Bus_Faults.Fault;
+      Found : Trouble;
+      Image : Wire.Image) return Error_Frames.Error_Frame
+   is (Kind =>
+         (if Found.Kind = Unacknowledged
+          then Error_Frames.Acknowledgement_Error
+          else Error_Frames.Bit_Error),
+       Role => Error_Frames.Transmitter,
+       Flag =>
+         (if Found.Silent
+          then Error_Frames.Passive_Flag
+          else Error_Frames.Active_Flag),
+       Echo =>
+         (case Found.Kind is
+            when Untroubled     => 0,
+            when Seen           =>
+              (if Fault.Node = Bus_Faults.Everyone
+                 or else (Found.Accepted and then Found.Silent)
+               then 0
+               elsif Found.Position >= Image.Ends (Wire.Acknowledgement_Slot)
+               then 1
+               else 6),
+            when Collided       => 6,
+            when Unacknowledged =>
+              (if Found.Silent or else not Anyone (Roles, Listener)
+               then 0 else 1)));
+
+   ------------
+   -- Behind --
+   ------------
+
+   function Behind
+     (Roles : Role_List; Fault : Bus_Faults.Fault; Image : Wire.Image)
+      return Aftermath
+   is
+      Alone : constant Boolean := Fault.Node /= Bus_Faults.Everyone;
+      Place : constant Wire.Bit_Count := Place_Of (Fault, Image);
+      First : constant Wire.Bit_Count := Image.Ends (Wire.End_Of_Frame);
+      Pause : constant := Error_Frames.Delimiter_Bits + Intermission_Bits;
+   begin
+      if Alone
+        and then not Has_Role (Roles, Fault.Node, Listener)
+        and then not Has_Role (Roles, Fault.Node, Sender)
+      then
+         return (others => <>);
+      end if;
+      case Fault.Kind is
+         when Bus_Faults.Overload =>
+            declare
+               Count : constant Overload_Count :=
+                 (if Has_Role (Roles, Fault.Node, Sender) then 0
+                  elsif Fault.Position >= 2 then 2
+                  else 1);
+            begin
+               return
+                 (Overload => Count,
+                  Bits     => Count * Overload_Bits + Intermission_Bits,
+                  others   => False);
+            end;
+         when Bus_Faults.Disturbed_Bit | Bus_Faults.Disturbed_End =>
+            if Place = First then
+               return
+                 (Overload => 1,
+                  Bits     => Overload_Bits + Intermission_Bits,
+                  others   => False);
+            elsif Place < First then
+               return (others => <>);
+            end if;
+            case Wire.Bit_Count'(Place - First) is
+               when 1      =>
+                  return
+                    (Overload => 1,
+                     Bits     =>
+                       1 + Flag_Bits + (if Alone then 1 else 0) + Pause,
+                     others   => False);
+               when 2      =>
+                  return
+                    (Overload => 1,
+                     Bits     =>
+                       2 + Flag_Bits + (if Alone then Flag_Bits else 0)
+                       + Pause,
+                     Called   => False,
+                     Misled   => Alone);
+               when others =>
+                  return
+                    (Bits   => (if Alone then Intermission_Bits else 2),
+                     Called => not Alone,
+                     others => <>);
+            end case;
+         when others              =>
+            return (others => <>);
+      end case;
+   end Behind;
+
+   -------------
+   -- Mislead --
+   -------------
+
+   procedure Mislead
+     (Nodes : in out Node_List; Roles : Role_List; But : Natural) is
+   begin
+      for N in Node_Index loop
+         if Roles (N) /= Outside
+           and then Natural (N) /= But
+           and then Takes_Part (Nodes (N))
+         then
+            Count (Nodes (N), Fault_Confinement.Receiver_Error);
+         end if;
+         pragma Loop_Invariant
+           (for all M in Node_Index =>
+              Is_Same_But_Counts (Nodes (M), Nodes'Loop_Entry (M))
+              and then
+                (if Roles (M) = Outside or else M > N
+                 then Nodes (M) = Nodes'Loop_Entry (M)));
+      end loop;
+   end Mislead;
 
    -----------
    -- Judge --
@@ -223,7 +404,6 @@ is
       Roles : Role_List;
       Fault : Bus_Faults.Fault;
       Found : Trouble;
-      Quiet : Boolean;
       Sent  : out Node_Set;
       Heard : out Node_Set) is
    begin
@@ -243,7 +423,10 @@ is
             if Natural (N) /= Found.Deaf
               and then
                 (Found.Kind = Untroubled
-                 or else (Found.Kind = Unacknowledged and then Quiet))
+                 or else
+                   (Found.Accepted
+                    and then
+                      not Bus_Faults.Is_Witness (Fault, Positive (N))))
             then
                Heard (N) := True;
                Count (Nodes (N), Fault_Confinement.Received);

@@ -26,9 +26,23 @@ is
       Kind     : Trouble_Kind := Untroubled;
       Position : Wire.Bit_Count := 0;
       Deaf     : Natural range 0 .. 16 := 0;
+      Accepted : Boolean := False;
+      Silent   : Boolean := False;
    end record;
    --  Deaf: an error-passive receiver that alone saw a disturbed bit, so
-   --  that its flag disturbs nobody.
+   --  that its flag disturbs nobody. Accepted: receivers that are no witness
+   --  take the frame, for they saw no error before its last bit but one.
+   --  Silent: the error flag on the bus is recessive.
+
+   type Aftermath is record
+      Overload : Overload_Count := 0;
+      Bits     : Wire.Bit_Count := 3;
+      Called   : Boolean := False;
+      Misled   : Boolean := False;
+   end record;
+   --  What follows the last bit of a frame. Bits: until another may begin.
+   --  Called: the bit behind them is read as a start of frame. Misled: all
+   --  but the witness take an overload flag for a start of frame.
 
    function Is_Passive (N : Bus_Node) return Boolean
    is (Fault_Confinement.State (N.Confinement) /= Error_Active)
@@ -97,12 +111,39 @@ is
           then Bus_Faults.Is_Witness (Fault, Found.Deaf));
    --  What happens first to the frame that is on the bus.
 
+   function Error_Of
+     (Roles : Role_List;
+      Fault : Bus_Faults.Fault;
+      Found : Trouble;
+      Image : Wire.Image) return Error_Frames.Error_Frame
+   with Global => null, Pre => Found.Kind /= Untroubled;
+   --  The error frame that is on the bus then.
+
+   function Behind
+     (Roles : Role_List; Fault : Bus_Faults.Fault; Image : Wire.Image)
+      return Aftermath
+   with
+     Global => null,
+     Post   => Behind'Result.Bits <= 40;
+   --  What follows a frame that came to its end (ISO 11898-1 (2015), overload
+   --  frame and intermission).
+
+   procedure Mislead
+     (Nodes : in out Node_List; Roles : Role_List; But : Natural)
+   with
+     Global => null,
+     Post   =>
+       (for all N in Node_Index =>
+          Is_Same_But_Counts (Nodes (N), Nodes'Old (N))
+          and then
+            (if Roles (N) = Outside then Nodes (N) = Nodes'Old (N)));
+   --  A start of frame without a frame: a stuff error for everyone But one.
+
    procedure Judge
      (Nodes : in out Node_List;
       Roles : Role_List;
       Fault : Bus_Faults.Fault;
       Found : Trouble;
-      Quiet : Boolean;
       Sent  : out Node_Set;
       Heard : out Node_Set)
    with
@@ -127,6 +168,6 @@ is
                  and then Roles (N) = Listener
                  and then Natural (N) /= Found.Deaf
                then Heard (N)));
-   --  Everyone's error counters. Quiet: the flag of the sender is recessive.
+   --  Everyone's error counters.
 
 end Ravenchart.Can.Buses.Rulings;

@@ -97,6 +97,25 @@ is
                   then Result.Heard (N))));
    --  The frame of the winner on a sound line.
 
+   procedure False_Start
+     (B : in out Bus; S : Segment; Now : Start_Time; Roles : Role_List)
+   with
+     Global => null,
+     Pre    => B.Free_At (S) = Now and then Fits (Roles, B, S),
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then Now <= B.Free_At (S)
+       and then
+         (for all T in Segment =>
+            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
+       and then
+         (for all N in Node_Index =>
+            (if B.Nodes'Old (N).Segment /= S
+             then B.Nodes (N) = B.Nodes'Old (N)));
+   --  A start of frame, and then nobody sends: the sixth recessive bit behind
+   --  it is a stuff error for everyone.
+
    procedure Hold (B : in out Bus; S : Segment; Now : Start_Time)
    with
      Global => null,
@@ -162,7 +181,9 @@ is
       B.Free_At (S) := Now;
       for N in Node_Index loop
          if B.Nodes (N).Segment = S and then B.Line /= Held_Dominant then
-            Rest (B.Nodes (N), Bits);
+            Rest
+              (B.Nodes (N),
+               Quiet_Bits (B.Nodes (N), Now, Bits, B.Times.Nominal));
          end if;
          pragma Loop_Invariant
            (for all M in Node_Index =>
@@ -192,11 +213,18 @@ is
                B.Nodes (N).Ready_At :=
                  B.Free_At (S) + Suspended * B.Times.Nominal;
             end if;
+            if B.Nodes (N).Restart > 0 then
+               Request_Recovery
+                 (B.Nodes (N), B.Free_At (S) + B.Nodes (N).Restart);
+            end if;
          elsif B.Nodes (N).Segment = S and then Roles (N) = Outside then
             if Noisy then
                Interrupt (B.Nodes (N));
             end if;
-            Rest (B.Nodes (N), Quiet);
+            Rest
+              (B.Nodes (N),
+               Quiet_Bits
+                 (B.Nodes (N), B.Free_At (S), Quiet, B.Times.Nominal));
          end if;
          pragma Loop_Invariant
            (for all M in Node_Index =>
@@ -207,6 +235,25 @@ is
                then B.Nodes (M) = B.Nodes'Loop_Entry (M)));
       end loop;
    end Conclude;
+
+   -------------
+   -- Recover --
+   -------------
+
+   procedure Recover (B : in out Bus; N : Node_Index; Now : Nanoseconds) is
+      Node : Bus_Node renames B.Nodes (N);
+      Free : constant Nanoseconds := B.Free_At (Node.Segment);
+   begin
+      Request_Recovery (Node, Now);
+      if Comes_Back (Node)
+        and then Node.Ready_At = Now
+        and then Now < Free
+        and then B.Line /= Held_Dominant
+      then
+         Rest
+           (Node, Quiet_Bits (Node, Free, After_Dominant, B.Times.Nominal));
+      end if;
+   end Recover;
 
    -----------
    -- Carry --
@@ -226,9 +273,7 @@ is
       Frame  : constant Bus_Frames.Bus_Frame := Offers (Winner).Frame;
       Image  : constant Wire.Image := Bus_Frames.Image_Of (Frame);
       Found  : Trouble;
-      Quiet  : Boolean;
-      Active : Boolean := False;
-      Bits   : Wire.Phases;
+      After  : Aftermath;
    begin
       pragma Assert
         (for all N in Node_Index =>
@@ -252,6 +297,7 @@ is
            Now + Nanoseconds (Error_Frames.Length (Result.Error))
                 * B.Times.Nominal;
          B.Free_At (S) := Result.Finish + Intermission * B.Times.Nominal;
+         B.Called (S) := False;
          pragma Assert
            (Result.Struck in Now .. Result.Finish
             and then Result.Finish <= B.Free_At (S));
@@ -260,50 +306,30 @@ is
       end if;
 
       Find (B, Offers, Roles, Winner, Fault, Image, Found);
-      Quiet := Is_Passive (B.Nodes (Winner));
-      for N in Node_Index loop
-         Active := Active
-           or else
-             (Roles (N) /= Outside and then not Is_Passive (B.Nodes (N)));
-      end loop;
       if Found.Kind = Untroubled then
          Result.Ended  := Whole;
          Result.Struck := Now;
-         Bits := Bus_Frames.Phases_Until
-           (Image, Bus_Frames.Rate_Of (Frame),
-            Image.Ends (Wire.End_Of_Frame));
-         Result.Finish := Now + Bus_Frames.Time_Of (Bits, B.Times);
+         After := Behind (Roles, Fault, Image);
+         pragma Assert
+           (Nanoseconds (After.Bits) * B.Times.Nominal
+            <= 40 * B.Times.Nominal);
+         Result.Overload := After.Overload;
+         Result.Finish := Now
+           + Bus_Frames.Time_Until
+               (Image, Bus_Frames.Rate_Of (Frame),
+                Image.Ends (Wire.End_Of_Frame), B.Times);
          B.Free_At (S) :=
-           Result.Finish + Intermission * B.Times.Nominal;
+           Result.Finish + Nanoseconds (After.Bits) * B.Times.Nominal;
          pragma Assert
            (Result.Struck in Now .. Result.Finish
             and then Result.Finish <= B.Free_At (S));
       else
          Result.Ended    := Broken;
          Result.Position := Found.Position;
-         Bits := Bus_Frames.Phases_Until
-           (Image, Bus_Frames.Rate_Of (Frame), Found.Position);
-         Result.Struck := Now + Bus_Frames.Time_Of (Bits, B.Times);
-         Result.Error :=
-           (Kind =>
-              (if Found.Kind = Unacknowledged
-               then Error_Frames.Acknowledgement_Error
-               else Error_Frames.Bit_Error),
-            Role => Error_Frames.Transmitter,
-            Flag =>
-              (if (if Found.Kind = Unacknowledged then Quiet
-                   else not Active)
-               then Error_Frames.Passive_Flag
-               else Error_Frames.Active_Flag),
-            Echo =>
-              (case Found.Kind is
-                 when Untroubled     => 0,
-                 when Seen           =>
-                   (if Fault.Node = Bus_Faults.Everyone then 0 else 6),
-                 when Collided       => 6,
-                 when Unacknowledged =>
-                   (if Quiet or else not Anyone (Roles, Listener)
-                    then 0 else 1)));
+         Result.Struck := Now
+           + Bus_Frames.Time_Until
+               (Image, Bus_Frames.Rate_Of (Frame), Found.Position, B.Times);
+         Result.Error := Error_Of (Roles, Fault, Found, Image);
          Result.Finish := Result.Struck
            + Nanoseconds (Error_Frames.Length (Result.Error))
              * B.Times.Nominal;
@@ -313,8 +339,12 @@ is
            (Result.Struck in Now .. Result.Finish
             and then Result.Finish <= B.Free_At (S));
       end if;
+      B.Called (S) := After.Called;
       Judge
-        (B.Nodes, Roles, Fault, Found, Quiet, Result.Sent, Result.Heard);
+        (B.Nodes, Roles, Fault, Found, Result.Sent, Result.Heard);
+      if After.Misled then
+         Mislead (B.Nodes, Roles, But => Fault.Node);
+      end if;
       pragma Assert
         (for all N in Node_Index =>
            (if Before (N).Segment /= S then B.Nodes (N) = Before (N)));
@@ -330,9 +360,30 @@ is
          (if Found.Kind /= Untroubled
             and then Result.Error.Flag = Error_Frames.Passive_Flag
           then Passive_Flag + After_Dominant
+          elsif After.Called
+          then After_Dominant - 1
           else After_Dominant),
          Noisy => True);
    end Carry;
+
+   -----------------
+   -- False_Start --
+   -----------------
+
+   procedure False_Start
+     (B : in out Bus; S : Segment; Now : Start_Time; Roles : Role_List)
+   is
+      Stuff_Error : constant := 7;
+      Frame       : Error_Frames.Error_Frame;
+   begin
+      B.Called (S)  := False;
+      B.Free_At (S) := Now
+        + (Stuff_Error + Nanoseconds (Error_Frames.Length (Frame))
+           + Intermission)
+          * B.Times.Nominal;
+      Mislead (B.Nodes, Roles, But => 0);
+      Conclude (B, S, Roles, After_Dominant, Noisy => True);
+   end False_Start;
 
    ----------
    -- Hold --
@@ -340,6 +391,7 @@ is
 
    procedure Hold (B : in out Bus; S : Segment; Now : Start_Time) is
    begin
+      B.Called (S)  := False;
       B.Free_At (S) := Now + Held_Period * B.Times.Nominal;
       for N in Node_Index loop
          if Listens (B, N, S) then
@@ -401,6 +453,7 @@ is
             and then Result.Sent = Result.Sent'Loop_Entry
             and then Result.Heard = Result.Heard'Loop_Entry);
       end loop;
+      B.Called (S) := False;
       if Result.Ended = Broken then
          Result.Position := 1;
          Result.Struck   := Now + B.Times.Nominal;
@@ -438,6 +491,8 @@ is
             Settle (B, S, Now, Offers, Roles, Winner, Begun);
             if Begun then
                Carry (B, S, Now, Offers, Fault, Roles, Winner, Result);
+            elsif B.Called (S) then
+               False_Start (B, S, Now, Roles);
             end if;
          when Held_Dominant  =>
             Hold (B, S, Now);

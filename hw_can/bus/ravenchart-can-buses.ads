@@ -10,8 +10,7 @@
 --  ISO 11898-1 (2015): arbitration, acknowledgement, error signalling and
 --  fault confinement; bits are synchronous at all nodes. A cut divides the
 --  bus into segments, each with its own time. Simpler than the standard: an
---  error flag is not sent again when it is disturbed itself, and there are
---  no overload frames.
+--  error flag or overload flag is not sent again when it is disturbed.
 
 with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
@@ -40,13 +39,18 @@ is
 
    type Free_Times is array (Segment) of Nanoseconds;
 
+   type Segment_Set is array (Segment) of Boolean;
+
    type Bus is record
       Times   : Bus_Frames.Bit_Times;
       Line    : Line_State := Sound;
       Free_At : Free_Times := (others => 0);
+      Called  : Segment_Set := (others => False);
       Nodes   : Node_List;
    end record;
-   --  A segment is busy, intermission included, until Free_At.
+   --  A segment is busy, intermission included, until Free_At. Called: at
+   --  Free_At, the third bit of the intermission, everyone reads a dominant
+   --  bit, which is a start of frame.
 
    type Offer is record
       Frame   : Bus_Frames.Bus_Frame;
@@ -79,6 +83,9 @@ is
    type Ending is (Silence, Whole, Broken);
    --  Nobody sent; the frame came to its end, or to an error frame.
 
+   subtype Overload_Count is Natural range 0 .. 2;
+   --  At most two overload frames delay the next frame.
+
    type Outcome is record
       Ended    : Ending := Silence;
       Start    : Nanoseconds := 0;
@@ -90,10 +97,14 @@ is
       Position : Wire.Bit_Count := 0;
       Struck   : Nanoseconds := 0;
       Error    : Error_Frames.Error_Frame;
+      Overload : Overload_Count := 0;
    end record;
    --  Finish is the end of the frame, before the intermission. Sent: whose
    --  offer is done. Heard: who has received Frame. Position, Struck and
    --  Error, when Broken: behind which bit the error frame begins, and when.
+   --  Overload: the overload frames behind a Whole frame. A receiver takes a
+   --  frame as valid one bit before its transmitter: so a frame that ended in
+   --  an error frame may have been heard.
 
    procedure Pass (B : in out Bus; S : Segment; Now : Nanoseconds)
    with
@@ -116,6 +127,20 @@ is
              then B.Nodes (N) = B.Nodes'Old (N)));
    --  The segment was idle up to now: nodes that are bus-off and shall come
    --  back have counted its recessive bits.
+
+   procedure Recover (B : in out Bus; N : Node_Index; Now : Nanoseconds)
+   with
+     Global => null,
+     Post   =>
+       B.Times = B.Times'Old
+       and then B.Line = B.Line'Old
+       and then B.Free_At = B.Free_At'Old
+       and then
+         (for all M in Node_Index =>
+            (if M /= N then B.Nodes (M) = B.Nodes'Old (M)));
+   --  The user of node N requests recovery from bus-off. The node counts the
+   --  recessive bits behind Now: those of an idle bus before count nothing,
+   --  those at the end of a frame that is being sent do.
 
    procedure Contest
      (B      : in out Bus;

@@ -27,6 +27,7 @@ is
    begin
       N.Bus.Free_At (1) := Later;
       N.Bus.Free_At (Upper) := Later;
+      N.Bus.Called := (others => False);
       for I in Node_Index loop
          N.Bus.Nodes (I).Segment :=
            (if Natural (I) >= N.Cut_At then Upper else 1);

@@ -26,15 +26,19 @@ is
          return Free;
       elsif N.Bus.Line = Buses.Held_Dominant then
          return Nanoseconds'Last;
+      elsif Takes_Part (Node) and then N.Bus.Called (Node.Segment) then
+         return Free;
       elsif Takes_Part (Node) and then N.Babble (I).Present then
          return Later (Free, Node.Ready_At);
       elsif Takes_Part (Node) and then Waiting (N, I) > 0 then
          return
            Later
              (Later (Free, Node.Ready_At), N.Buffers (I).Slots (1).Since);
-      elsif Comes_Back (Node) and then Free <= Buses.Last_Start then
+      elsif Comes_Back (Node)
+        and then Later (Free, Node.Ready_At) <= Buses.Last_Start
+      then
          return
-           Free
+           Later (Free, Node.Ready_At)
            + Nanoseconds
                (Fault_Confinement.Bits_To_Recovery (Node.Confinement))
              * N.Bus.Times.Nominal;

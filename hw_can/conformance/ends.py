@@ -20,6 +20,9 @@ BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "Ravenc
 PATIENCE = 2.0
 """Seconds without a frame after which no more is waited for."""
 
+UNANSWERED = 0.25
+"""The same, when the sender's controller is not error-active: nobody acknowledges."""
+
 DRAINED = 100_000
 """Frames that are thrown away at most before a case."""
 
@@ -123,6 +126,11 @@ def opened(interface: str, channel: str, setup: Setup, *, echo: bool = False) ->
         raise BenchError(f"{interface} {channel!r} cannot be opened: {words(fault)}") from None
 
 
+def is_faulty(bus: can.BusABC) -> bool:
+    """Does the interface say that its controller is not error-active?"""
+    return type(bus).state is not can.BusABC.state and bus.state is not can.BusState.ACTIVE
+
+
 def words(fault: BaseException) -> str:
     """What a driver's exception says, on one printable line."""
     said = " ".join(str(fault).split()) or type(fault).__name__
@@ -138,13 +146,16 @@ AHEAD = 200
 class _Listening(threading.Thread):
     """Receives ``count`` frames, or until none has come for a while."""
 
-    def __init__(self, ends: Ends, bus: can.BusABC, count: int, *, errors: bool) -> None:
+    def __init__(
+        self, ends: Ends, bus: can.BusABC, sender: can.BusABC, count: int, *, errors: bool
+    ) -> None:
         super().__init__(daemon=True)
         self.got: list[can.Message] = []
         self.fault: Exception | None = None
         self.busy_at = time.monotonic()
         """When a frame was sent or came last."""
         self._ends, self._bus, self._count, self._errors = ends, bus, count, errors
+        self._sender = sender
 
     def run(self) -> None:
         """Receive."""
@@ -155,10 +166,15 @@ class _Listening(threading.Thread):
                     self.busy_at = time.monotonic()
                     stray = message.is_error_frame and not self._errors
                     (self._ends.errors if stray else self.got).append(message)
-                elif time.monotonic() - self.busy_at > self._ends.patience:
+                elif self._is_over(time.monotonic() - self.busy_at):
                     return
         except Exception as fault:
             self.fault = fault
+
+    def _is_over(self, quiet: float) -> bool:
+        """Comes no frame any more, after none has come for ``quiet`` s?"""
+        patience = self._ends.patience
+        return quiet > patience or (min(UNANSWERED, patience) < quiet and is_faulty(self._sender))
 
 
 def exchange(
@@ -170,7 +186,7 @@ def exchange(
     receiver that this machine leaves no time is no fault of the bus.
     """
     errors = any(frame.is_error_frame for frame in frames)
-    listening = _Listening(ends, receiver, len(frames), errors=errors)
+    listening = _Listening(ends, receiver, sender, len(frames), errors=errors)
     listening.start()
     try:
         for number, frame in enumerate(frames):

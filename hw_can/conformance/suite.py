@@ -10,7 +10,7 @@ from enum import Enum
 import can
 
 from .cases import CASES, LAST, Case, Failed, Skipped, frame
-from .ends import Ends, Setup, words
+from .ends import Ends, Setup, is_faulty, words
 
 Progress = Callable[[str], None]
 
@@ -86,14 +86,9 @@ def _loss(ends: Ends) -> str | None:
             return None
     except Exception as fault:
         return f"; no frame can be sent: {words(fault)}"
-    if ends.errors or _is_faulty(ends.near):
-        return "; no other node acknowledges a frame, or the bus is cut"
+    if ends.errors or is_faulty(ends.near):
+        return "; no other node acknowledges a frame: connect one, or check the cable"
     return f"; no frame arrives within {ends.patience:g} s"
-
-
-def _is_faulty(bus: can.BusABC) -> bool:
-    """Does the interface say that its controller is not error-active?"""
-    return type(bus).state is not can.BusABC.state and bus.state is not can.BusState.ACTIVE
 
 
 def _run_one(ends: Ends, case: Case) -> tuple[Verdict, str]:

@@ -71,8 +71,11 @@ is
    type Bit_Times is record
       Nominal : Bit_Time := 2_000;
       Data    : Bit_Time := 500;
+      Switch  : Nanoseconds range 0 .. Bit_Time'Last := 1_200;
    end record;
-   --  500 kbit/s, and 2 Mbit/s in the data phase, unless it is said.
+   --  500 kbit/s, and 2 Mbit/s in the data phase, unless it is said. Switch:
+   --  how much later the sample point of a nominal bit is in its bit than
+   --  that of a data bit in its own; here both are at 80 %.
 
    Longest_Time : constant Positive_Nanoseconds :=
      Wire.Longest * Bit_Time'Last;
@@ -89,15 +92,15 @@ is
       Rate : Fd_Frames.Bit_Rate_Use;
       Last : Wire.Bit_Count) return Wire.Phases
    is (if Rate = Fd_Frames.Constant_Rate
-         or else Last <= I.Ends (Wire.Format_Bits)
+         or else Last < I.Ends (Wire.Format_Bits)
        then (Nominal => Last, Data => 0)
        else
          (Nominal =>
-            I.Ends (Wire.Format_Bits)
+            I.Ends (Wire.Format_Bits) - 1
             + (Last - Least (Last, I.Ends (Wire.Check_Field))),
           Data    =>
             Least (Last, I.Ends (Wire.Check_Field))
-            - I.Ends (Wire.Format_Bits)))
+            - I.Ends (Wire.Format_Bits) + 1))
    with
      Global => null,
      Pre    => Wire.Is_Ordered (I),
@@ -106,7 +109,8 @@ is
        and then
          (if Last = Wire.Length (I)
           then Phases_Until'Result = Wire.Phases_Of (I, Rate));
-   --  The bits up to Last, by the rate at which they go.
+   --  The bits up to Last, by the rate at which they go: the bit of the switch
+   --  counts as a data bit, the delimiter of the CRC as a nominal one.
 
    function Time_Of (P : Wire.Phases; T : Bit_Times) return Nanoseconds
    with
@@ -117,5 +121,23 @@ is
          + Nanoseconds (P.Data) * T.Data
        and then Time_Of'Result <= 2 * Longest_Time;
    --  How long so many bits take.
+
+   function Time_Until
+     (I    : Wire.Image;
+      Rate : Fd_Frames.Bit_Rate_Use;
+      Last : Wire.Bit_Count;
+      T    : Bit_Times) return Nanoseconds
+   is (Time_Of (Phases_Until (I, Rate, Last), T)
+       + (if Rate = Fd_Frames.Switched_Rate
+            and then Last in I.Ends (Wire.Format_Bits)
+                             .. I.Ends (Wire.Check_Field)
+          then T.Switch else 0))
+   with
+     Global => null,
+     Pre    => Wire.Is_Ordered (I),
+     Post   => Time_Until'Result <= 2 * Longest_Time + Bit_Time'Last;
+   --  From the start of frame to the end of bit Last. The bit of the switch
+   --  is nominal up to its sample point, the delimiter of the CRC behind it:
+   --  so bits between them end later by Switch.
 
 end Ravenchart.Can.Bus_Frames;

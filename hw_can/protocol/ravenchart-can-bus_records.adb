@@ -10,14 +10,20 @@ is
    function Read_Hello (Bytes : Image) return Request
    with
      Global => null,
-     Post   => Read_Hello'Result.Kind /= Frame_Request;
+     Post   =>
+       Read_Hello'Result.Kind in Hello | Wrong_Version | Broken
+       and then
+         (if Read_Hello'Result.Kind = Hello
+          then Read_Hello'Result.Number <= Longest_Restart);
 
    function Read_Frame (Bytes : Image) return Request
    with
      Global => null,
      Post   =>
-       (if Read_Frame'Result.Kind = Frame_Request
-        then Read_Frame'Result.Number > 0);
+       Read_Frame'Result.Kind in Frame_Request | Broken
+       and then
+         (if Read_Frame'Result.Kind = Frame_Request
+          then Read_Frame'Result.Number > 0);
 
    ---------------------
    -- Number_At_Place --
@@ -87,6 +93,8 @@ is
         Number_At_Place (Bytes, Nominal_At, 4) and 16#FFFF_FFFF#;
       Fast    : constant Interfaces.Unsigned_64 :=
         Number_At_Place (Bytes, Fast_At, 4) and 16#FFFF_FFFF#;
+      Restart : constant Interfaces.Unsigned_64 :=
+        Number_At_Place (Bytes, Number_At, 4);
    begin
       if Number_At_Place (Bytes, Id_At, 4) /= Mark
         or else Bytes (Code_At) = 0
@@ -95,7 +103,9 @@ is
       elsif Bytes (Code_At) /= Version then
          return (Kind => Wrong_Version, others => <>);
       elsif not Is_Greeting (Bytes)
-        or else not Is_Zero (Bytes, Time_At, Data_At - 1)
+        or else not Is_Zero (Bytes, Time_At, Number_At - 1)
+        or else Restart > Longest_Restart
+        or else not Is_Zero (Bytes, Transmit_At, Data_At - 1)
         or else not Is_Zero (Bytes, Began_At, Began_At + 7)
       then
          return (others => <>);
@@ -105,6 +115,7 @@ is
             Takes_Fd => Bytes (Flags_At) = Fd_Flag,
             Nominal  => Bit_Rate (Nominal),
             Data     => Bit_Rate (Fast),
+            Number   => Interfaces.Unsigned_32 (Restart),
             others   => <>);
       end if;
    end Read_Hello;

@@ -38,6 +38,9 @@ is
    subtype Bit_Rate is Interfaces.Unsigned_32;
    --  In bit/s; 0 takes the bus as it is.
 
+   Longest_Restart : constant := 600_000;
+   --  In ms, from bus-off to the request for recovery.
+
    type Request is record
       Kind      : Request_Kind := Broken;
       Takes_Fd  : Boolean := False;
@@ -46,14 +49,17 @@ is
       Number    : Interfaces.Unsigned_32 := 0;
       Frame     : Bus_Frames.Bus_Frame;
    end record;
-   --  Takes_Fd and the rates of a hello; Number and Frame of a request.
+   --  Takes_Fd and the rates of a hello; Number and Frame of a request. The
+   --  Number of a hello is the restart delay in ms; 0 takes that of the bus.
 
    function Read (Bytes : Image) return Request
    with
      Global => null,
      Post   =>
-       (if Read'Result.Kind = Frame_Request
-        then Read'Result.Number > 0);
+       (case Read'Result.Kind is
+          when Frame_Request => Read'Result.Number > 0,
+          when Hello         => Read'Result.Number <= Longest_Restart,
+          when others        => True);
    --  What a client has said.
 
    type Status is
@@ -63,8 +69,9 @@ is
       Is_Bus_Off,
       Not_Supported,
       Wrong_Bit_Rate,
-      Closing);
-   --  Codes 1 to 7.
+      Closing,
+      No_Hello_In_Time);
+   --  Codes 1 to 8.
 
    subtype Name_Length is Positive range 1 .. 16;
 

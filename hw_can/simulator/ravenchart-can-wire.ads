@@ -62,8 +62,9 @@ is
    --  All bits, the three of the intermission included.
 
    function Is_Ordered (I : Image) return Boolean
-   is (I.Ends (Format_Bits) <= I.Ends (Check_Field)
-       and then I.Ends (Check_Field) <= I.Ends (Intermission))
+   is (I.Ends (Format_Bits) > 0
+       and then I.Ends (Format_Bits) <= I.Ends (Check_Field)
+       and then I.Ends (Check_Field) < I.Ends (Intermission))
    with Global => null;
    --  Does the check field end behind the head, and the frame behind it?
 
@@ -129,14 +130,17 @@ is
      return Phases
    is (if Rate = Fd_Frames.Switched_Rate
        then (Nominal =>
-               Length (I) - (I.Ends (Check_Field) - I.Ends (Format_Bits)),
-             Data    => I.Ends (Check_Field) - I.Ends (Format_Bits))
+               Length (I) - (I.Ends (Check_Field) - I.Ends (Format_Bits))
+               - 1,
+             Data    => I.Ends (Check_Field) - I.Ends (Format_Bits) + 1)
        else (Nominal => Length (I), Data => 0))
    with
      Global => null,
      Pre    => Is_Ordered (I);
-   --  The data phase of a frame that switches its rate begins behind the bit
-   --  of the switch and ends with the check field: the two bits in the middle
-   --  of which the rate changes count as nominal. A classic frame has none.
+   --  The data phase of a frame that switches its rate begins at the sample
+   --  point of the bit of the switch and ends at that of the delimiter of the
+   --  CRC. What of these two bits is nominal makes one nominal bit, and what
+   --  is not one data bit (ISO 11898-1 (2015), bit rate switch). A classic
+   --  frame has no data phase.
 
 end Ravenchart.Can.Wire;

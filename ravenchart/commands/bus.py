@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
-from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
-from ravenchart.running import server
+from ravenchart.hw_can.bench.bus_records import NAME_LENGTH, RESTART_LAST
+from ravenchart.running import bus_log, server
 
 FAULTS = (
     "disturbed_bit",
+    "disturbed_end",
+    "overload",
     "lost_acknowledgement",
     "dropped",
     "delayed",
@@ -31,6 +34,16 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--data-bitrate", type=_rate(0, 20_000_000), default=2_000_000, metavar="BIT/S",
         help="of the data phase; 0: no CAN FD (default 2000000)",
     )  # fmt: skip
+    for name, bit in (("--sample-point", "nominal"), ("--data-sample-point", "data")):
+        sub.add_argument(
+            name, type=_percent, default=80.0, metavar="PERCENT",
+            help=f"of a {bit} bit: where an FD frame switches its rate (default 80)",
+        )  # fmt: skip
+    sub.add_argument(
+        "--restart-ms", type=_number(0, RESTART_LAST), default=0, metavar="MS",
+        help="from bus-off to the request for recovery, for nodes that do not say; 0 (default): "
+        "a node requests it itself",
+    )  # fmt: skip
     sub.add_argument(
         "--virtual", action="store_true",
         help="time goes on with what happens on the bus, not with the clock",
@@ -46,8 +59,14 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--fault", type=_words(5, FAULTS), action="append", default=[],
         metavar="FRAME:KIND[:NODE[:FIGURE[:MASK]]]",
-        help=f"what frame FRAME, from 1, meets at NODE (0: at all): {', '.join(FAULTS)}; FIGURE "
-        "is the bit that is disturbed, the delay in ns, or the byte that MASK changes",
+        help=f"inject KIND into frame FRAME (counted from 1) at NODE (0: all nodes): "
+        f"{', '.join(FAULTS)}; FIGURE is the bit that is disturbed (of disturbed_end: 1 .. 7 the "
+        "end of frame, 8 .. 10 the intermission), the number of overload frames, the delay in ns, "
+        "or the byte that MASK changes",
+    )  # fmt: skip
+    sub.add_argument(
+        "--log", type=_log, metavar="FILE",
+        help=f"write all frames and error frames there, as its suffix says: {bus_log.suffixes()}",
     )  # fmt: skip
     sub.add_argument(
         "--event", type=_words(4, EVENTS), action="append", default=[],
@@ -63,6 +82,9 @@ def words(options: argparse.Namespace) -> list[str]:
         f"name={options.name}",
         f"bitrate={options.bitrate}",
         f"data_bitrate={options.data_bitrate}",
+        f"sample_point={round(10 * options.sample_point)}",
+        f"data_sample_point={round(10 * options.data_sample_point)}",
+        f"restart_ms={options.restart_ms}",
         f"time={'virtual' if options.virtual else 'paced'}",
         f"buffer={options.buffers}",
     ]
@@ -91,6 +113,22 @@ def _rate(first: int, last: int) -> Callable[[str], int]:
     return read
 
 
+def _log(text: str) -> Path:
+    if Path(text).suffix not in bus_log.suffixes().split(", "):
+        raise argparse.ArgumentTypeError(f"{text!r} has no suffix of {bus_log.suffixes()}")
+    return Path(text)
+
+
+def _percent(text: str) -> float:
+    try:
+        found = float(text)
+    except ValueError:
+        found = -1.0
+    if not 0 <= found <= 100:
+        raise argparse.ArgumentTypeError(f"{text!r} is not 0 .. 100")
+    return found
+
+
 def _name(text: str) -> str:
     if not (0 < len(text) <= NAME_LENGTH and all("!" <= letter <= "~" for letter in text)):
         raise argparse.ArgumentTypeError(f"{text!r} is not 1 .. {NAME_LENGTH} characters ! .. ~")
@@ -114,4 +152,4 @@ def _words(most: int, kinds: Sequence[str] = ()) -> Callable[[str], str]:
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
-    return server.serve(words(options))
+    return server.serve(words(options), options.log)

@@ -20,15 +20,17 @@ from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Instance, System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
-from ravenchart.hw_can.bench.peer import BenchError, Codec
+from ravenchart.hw_can.bench.peer import OUTSIDE, BenchError, Codec
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.reading import Path as Place
+from ravenchart.hw_can.bench.replay import from_outside, read_log
 from ravenchart.hw_can.bench.scenario import (
     Cut,
     Expected,
     Lost,
     Missed,
     Overran,
+    Replay,
     Scenario,
     ScenarioError,
     Send,
@@ -73,6 +75,8 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
             check.send(step, ("steps", index))
         elif isinstance(step, WaitFor):
             check.wait_for(step, ("steps", index))
+        elif isinstance(step, Replay):
+            check.replay(step, scenario, ("steps", index, "replay"))
     for index, one in enumerate(scenario.trace_checks):
         check.trace(one, ("expect_trace", index))
     check.bus(scenario)
@@ -130,6 +134,15 @@ class _Check:
             except BenchError as fault:  # a field that is missing, or of another page
                 hint = f"the fields are {_names(message.signals)}"
                 self.source.wrong(VALUE, (*path, "with"), str(fault), hint)
+
+    def replay(self, step: Replay, scenario: Scenario, path: Place) -> None:
+        """A log with a frame that the bench can send."""
+        drives = frozenset(drive.feedback for drive in scenario.drives.values())
+        if not from_outside(read_log(scenario.file_of(step)), self.codec, drives):
+            told = f"no frame of {step.replay} is a message that comes from outside the model"
+            outside = [name for name, one in self.messages.items() if one.senders == [OUTSIDE]]
+            names = ", ".join(name for name in outside if name not in drives) or "none"
+            self.source.wrong(MISFIT, path, told, f"the messages from outside: {names}")
 
     def wait_for(self, step: WaitFor, path: Place) -> None:
         """A field, and a value that it can have."""

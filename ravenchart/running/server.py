@@ -11,6 +11,8 @@ from pathlib import Path
 from ravenchart.paths import ROOT, work
 from ravenchart.tools import children, toolchain
 
+from . import bus_log
+
 PROJECT = ROOT / "hw_can" / "bus" / "can_bus.gpr"
 SECOND = 10**9
 """Of the simulated bus, in its own ticks: a bit must be a number of them."""
@@ -34,10 +36,20 @@ def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
         yield server, server.stdout.readline().split()[-1]
 
 
-def serve(told: Sequence[str]) -> int:
-    """Run the server until it is interrupted; its exit status."""
-    with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
-        return server.wait()
+def serve(told: Sequence[str], log: Path | None = None) -> int:
+    """Run the server until it is interrupted; its exit status.
+
+    With ``log`` all frames and error frames of the bus are written there. Raises OSError
+    where that cannot be.
+    """
+    if log is None:
+        with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
+            return server.wait()
+    program = built()
+    with bus_log.written(log) as descriptor:
+        words: list[str | Path] = [program, *told, f"log=/dev/fd/{descriptor}"]
+        with children.running(words, stdin=subprocess.DEVNULL, pass_fds=(descriptor,)) as server:
+            return server.wait()
 
 
 def uneven(rate: int) -> str:

@@ -58,6 +58,8 @@ procedure Test_Bus is
 
    procedure Check_Line;
 
+   procedure Check_Recovery;
+
    procedure Check_Cut;
 
    procedure Check_Babble;
@@ -319,16 +321,91 @@ procedure Test_Bus is
       Facts.Check
         ("who is bus-off does nothing by itself",
          Result.Ended = Buses.Silence and then State (1) = Bus_Off);
-      Net.Bus.Nodes (1).Way_Back := Recovers;
       declare
          Before : constant Nanoseconds := Net.Bus.Free_At (1);
       begin
+         Buses.Recover (Net.Bus, 1, Before);
          Step;
          Facts.Check
-           ("told to come back, it sends what it has after 1408 bits",
+           ("after a request for recovery, it sends after 1408 bits",
             Result.Start = Before + 1408 * Bit and then Result.Sent (1));
       end;
    end Check_Line;
+
+   --------------------
+   -- Check_Recovery --
+   --------------------
+
+   procedure Check_Recovery is
+      Asked : constant Nanoseconds := 10**9;
+
+      procedure Fall_Off (Restart : Restart_Delay := 0);
+      --  Node 1 becomes bus-off, with a frame to send, on a bus that then is
+      --  idle.
+
+      procedure Fall_Off (Restart : Restart_Delay := 0) is
+      begin
+         Start (3);
+         Net.Bus.Nodes (1).Restart := Restart;
+         Send (1, Plain (5));
+         Happen (Hold_Recessive);
+         while State (1) /= Bus_Off loop
+            Step;
+         end loop;
+         Happen (Let_Go);
+      end Fall_Off;
+
+      Frame : Nanoseconds;
+   begin
+      Fall_Off;
+      Buses.Recover (Net.Bus, 1, Asked);
+      Step;
+      Facts.Check
+        ("recovery counts from its request, not from an idle bus before",
+         Result.Start = Asked + 1408 * Bit and then Result.Sent (1));
+
+      Fall_Off;
+      Buses.Recover (Net.Bus, 1, Asked);
+      Buses.Recover (Net.Bus, 1, Asked + 100 * Bit);
+      Step;
+      Facts.Check
+        ("a second request does not begin the count anew",
+         Result.Start = Asked + 1408 * Bit and then Result.Sent (1));
+
+      Fall_Off;
+      Send (2, Plain (6));
+      Step;
+      Frame := Result.Start;
+      Buses.Recover (Net.Bus, 1, Frame + 20 * Bit);
+      Facts.Check
+        ("of a frame in progress, its last 11 recessive bits count",
+         Fault_Confinement.Bits_To_Recovery
+           (Net.Bus.Nodes (1).Confinement) = 1408 - 11);
+
+      Fall_Off (Restart => 100_000_000);
+      Frame := Net.Bus.Free_At (1);
+      Step;
+      Facts.Check
+        ("with a restart delay, recovery is requested when it has passed",
+         Result.Start = Frame + 100_000_000 + 1408 * Bit
+         and then Result.Sent (1));
+
+      Fall_Off (Restart => 100_000_000);
+      Frame := Net.Bus.Free_At (1);
+      Send (2, Plain (6));
+      Step;
+      Facts.Check
+        ("before, it counts no bit",
+         Result.Heard (3)
+         and then Fault_Confinement.Bits_To_Recovery
+           (Net.Bus.Nodes (1).Confinement) = 1408);
+      Buses.Recover (Net.Bus, 1, Net.Bus.Free_At (1));
+      Frame := Net.Bus.Free_At (1);
+      Step;
+      Facts.Check
+        ("and a request by hand may come first",
+         Result.Start = Frame + 1408 * Bit and then Result.Sent (1));
+   end Check_Recovery;
 
    ---------------
    -- Check_Cut --
@@ -459,6 +536,7 @@ begin
    Check_Errors;
    Check_Conflict;
    Check_Line;
+   Check_Recovery;
    Check_Cut;
    Check_Babble;
    Check_Plans;

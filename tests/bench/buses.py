@@ -1,8 +1,9 @@
 """What a frame takes to another node: the slcan driver, and the bus server in both kinds of time.
 
 For the driver a frame goes by TCP to an Ada program, which sends it back under the next
-identifier: a latency is there and back. On the bus server two python-can nodes of this
-process are the ends, and a latency is from `send` to `recv`. Frames have 8 bytes.
+identifier: a latency is there and back. On the bus server and on python-can's own virtual bus,
+for comparison, two nodes of this process are the ends: a latency is from `send` to `recv`, and
+a round trip is a frame and the answer to it. Frames have 8 bytes.
 """
 
 from __future__ import annotations
@@ -36,6 +37,9 @@ BIT_RATE = 1_000_000
 ECHO = "can_echo"
 """The Ada program: it sends each frame back."""
 
+VIRTUAL = "python-can's virtual bus"
+SERVER = "bus server, virtual time"
+
 Ends = tuple[can.BusABC, can.BusABC]
 """Where frames are sent, and where they arrive; one and the same for an echo."""
 
@@ -47,6 +51,8 @@ class Figures:
     rate: float
     median: float
     percentile_99: float
+    round_trip: float
+    """Median; 0 where a latency is one already."""
 
 
 def _frame(number: int) -> can.Message:
@@ -78,7 +84,30 @@ def measured(ends: Ends, pings: int = PINGS, stream: int = STREAM) -> Figures:
             _arrives(far, number - IN_FLIGHT)
     rate = stream / (time.perf_counter() - start)
     percentiles = statistics.quantiles(latencies, n=100)
-    return Figures(rate, statistics.median(latencies), percentiles[98])
+    trip = 0.0 if near is far else statistics.median(_round_trips(ends, pings))
+    return Figures(rate, statistics.median(latencies), percentiles[98], trip)
+
+
+def _round_trips(ends: Ends, pings: int) -> Iterator[float]:
+    """How long each frame and its answer take, in us."""
+    near, far = ends
+    for number in range(pings):
+        start = time.perf_counter()
+        near.send(_frame(number))
+        _arrives(far, number)
+        far.send(_frame(number))
+        _arrives(near, number)
+        yield 1e6 * (time.perf_counter() - start)
+
+
+@contextmanager
+def virtual() -> Iterator[Ends]:
+    """Two ends of python-can's own virtual bus, inside this process."""
+    with (
+        can.Bus(interface="virtual", channel="bench") as near,
+        can.Bus(interface="virtual", channel="bench") as far,
+    ):
+        yield near, far
 
 
 @contextmanager
@@ -117,7 +146,8 @@ def server(*told: str) -> Iterator[Ends]:
 
 BUSES: dict[str, Callable[[], AbstractContextManager[Ends]]] = {
     "slcan driver over TCP, there and back": slcan,
-    "bus server, virtual time": lambda: server("time=virtual"),
+    VIRTUAL: virtual,
+    SERVER: lambda: server("time=virtual"),
     "bus server, paced at 1 Mbit/s": lambda: server("time=paced", f"bitrate={BIT_RATE}"),
 }
 
@@ -131,6 +161,7 @@ def main() -> None:
         print(
             f"  {name}: {found.rate:,.0f} frames/s,"
             f" latency {found.median:.0f} us, {found.percentile_99:.0f} us"
+            + (f", round trip {found.round_trip:.0f} us" if found.round_trip else "")
         )
 
 

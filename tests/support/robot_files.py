@@ -12,7 +12,7 @@ ORDERS = ("Halt", "Home", "Move", "Reset")
 
 _HEAD = """VERSION ""
 
-BU_: Controller Bench
+BU_: Controller Outside Any
 
 """
 
@@ -39,10 +39,11 @@ def dbc(axes: Sequence[str]) -> str:
         ]
     text = _HEAD
     for identifier, name, signals in messages:
-        text += f"BO_ {identifier} {name}: 8 Bench\n"
+        sender = "Outside" if name.endswith(("command", "feedback")) else "Controller"
+        text += f"BO_ {identifier} {name}: 8 {sender}\n"
         start = 0
         for signal, width, offset, low, high in signals:
-            text += f' SG_ {signal} : {start}|{width}@1+ (1,{offset}) [{low}|{high}] "" Bench\n'
+            text += f' SG_ {signal} : {start}|{width}@1+ (1,{offset}) [{low}|{high}] "" Any\n'
             start += width
         text += "\n"
     for identifier, signal, names in choices:

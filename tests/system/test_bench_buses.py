@@ -16,9 +16,24 @@ def test_every_frame_arrives(name: str) -> None:
         found = bench_buses.measured(ends, pings=100, stream=500)
     assert found.rate > 0
     assert 0 < found.median <= found.percentile_99
+    assert found.round_trip == 0 or found.round_trip > found.median / 2
     if "paced" in name:
         assert found.rate <= bench_buses.BIT_RATE / BITS
         assert found.median >= 1e6 * (BITS - 3) / bench_buses.BIT_RATE
+
+
+FACTOR = 4
+"""By which the server may be slower than a bus without one; on an idle machine they are equal."""
+
+
+def test_the_server_keeps_up_with_a_bus_inside_the_process() -> None:
+    """The best of three runs of each, one beside the other."""
+    best = dict.fromkeys((bench_buses.VIRTUAL, bench_buses.SERVER), 0.0)
+    for _ in range(3):
+        for name in best:
+            with bench_buses.BUSES[name]() as ends:
+                best[name] = max(best[name], bench_buses.measured(ends, pings=10).rate)
+    assert best[bench_buses.SERVER] > best[bench_buses.VIRTUAL] / FACTOR
 
 
 def test_a_lost_frame_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,10 +12,12 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import can
 import pytest
 
+from ravenchart.command_line import main
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from tests.support.can_bus import started
 from tests.support.can_frames import WAIT, mixed_frames, taken
@@ -160,7 +162,7 @@ def heed_interrupts() -> None:
 
 
 @contextmanager
-def ended(process: subprocess.Popen[bytes]) -> Iterator[None]:
+def ended(process: subprocess.Popen[Any]) -> Iterator[None]:
     """Whatever happens, the process does not go on."""
     try:
         yield
@@ -197,6 +199,46 @@ def test_the_tools_of_python_can_log_and_play(channel: str, tmp_path: Path) -> N
         assert played.returncode == 0, played.stderr
         heard = iter(lambda: bus.recv(1.0), None)
         assert same(frames, [m for m in heard if not m.is_error_frame])
+
+
+@pytest.mark.parametrize("suffix", [".blf", ".asc", ".log", ".csv"])
+def test_a_bus_writes_its_log_in_the_formats_of_python_can(tmp_path: Path, suffix: str) -> None:
+    """Every frame in the order of the bus, although nobody reads it but the other node."""
+    log = tmp_path / f"bus{suffix}"
+    frames = [f for f in mixed_frames(300, seed=5, errors=False) if not f.is_remote_frame]
+    if suffix == ".csv":  # the format has no FD
+        frames = [f for f in frames if not f.is_fd]
+    if suffix == ".asc":  # python-can reads an FD frame without data as a remote frame
+        frames = [f for f in frames if f.dlc or not f.is_fd]
+    command = [sys.executable, "-P", "-m", "ravenchart", "bus", "--port", "0", "--log", str(log)]
+    with subprocess.Popen(
+        [*command, "--fault", "3:disturbed_bit:0:20"], stdout=subprocess.PIPE, text=True,
+        cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)}, preexec_fn=heed_interrupts,
+    ) as server, ended(server):  # fmt: skip
+        assert server.stdout is not None
+        one = server.stdout.readline().split()[-1]
+        with RavenchartBus(one, fd=True) as a, RavenchartBus(one, fd=True) as b:
+            for frame in frames:
+                a.send(frame)
+            heard = [m for m in taken(b, len(frames) + 1) if not m.is_error_frame]
+        server.send_signal(signal.SIGINT)
+        server.wait(20)
+    with can.LogReader(log) as reader:
+        read = list(reader)
+    assert [m.is_error_frame for m in read[:4]] == [False, False, True, False]
+    del read[2]
+    assert same(frames, read, direction=False)
+    begun = read[0].timestamp, heard[0].timestamp
+    for logged, message in zip(read, heard, strict=True):
+        spent = logged.timestamp - begun[0], message.timestamp - begun[1]
+        assert spent[0] == pytest.approx(spent[1], abs=2e-5)
+
+
+def test_a_log_of_no_known_format_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as over:
+        main(["bus", "--log", "bus.txt2"])
+    assert over.value.code == 2
+    assert "'bus.txt2' has no suffix of .asc, .blf" in capsys.readouterr().err
 
 
 KILLED = """

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -49,6 +50,16 @@ def test_the_loopback_suite_passes_on_it(
     assert not any(word in html for word in ("http:", "https:", "src=", "<link"))
 
 
+def test_an_echo_that_nobody_acknowledges_is_said_at_once(
+    start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    channel, began = start(), time.monotonic()
+    assert main(["loopback", "--interface", "ravenchart", "--channel", channel, "--echo"]) == 1
+    assert time.monotonic() - began < 1.9, "it waits no 2 s for a frame that cannot come"
+    said = " ".join(capsys.readouterr().out.split())
+    assert "no other node acknowledges a frame: connect one, or check the cable" in said
+
+
 def test_bus_time_is_that_of_the_bits(start: Start) -> None:
     """500 frames of 111 bits and stuff bits, at 500 kbit/s, back to back."""
     channel = start("time=virtual")
@@ -82,12 +93,53 @@ def test_a_bus_held_recessive_drives_the_sender_off_and_it_comes_back(start: Sta
         assert a.state is can.BusState.ERROR
         assert b.state is can.BusState.ACTIVE
         a.state = can.BusState.ACTIVE
-        end = time.monotonic() + WAIT
-        while a.state is not can.BusState.ACTIVE and time.monotonic() < end:
-            time.sleep(0.01)
+        becomes_active(a)
         a.send(can.Message(arbitration_id=3), timeout=WAIT)
         message = b.recv(WAIT)
         assert message is not None and message.arbitration_id == 3
+
+
+BIT = 2e-6
+"""Seconds, at the default bit rate."""
+
+
+@pytest.mark.parametrize(("words", "own"), [((), 100), (("restart_ms=100",), 0)])
+def test_a_node_with_a_restart_delay_comes_back_by_itself(
+    start: Start, words: tuple[str, ...], own: int
+) -> None:
+    """Not before the delay and 128 times 11 recessive bits have passed."""
+    channel = start("time=virtual", "event=0:hold_recessive", "event=2500000:let_go", *words)
+    with RavenchartBus(channel, restart_ms=own) as a, RavenchartBus(channel) as b:
+        with pytest.raises(can.CanOperationError, match="bus off"):
+            a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        becomes_active(a)
+        a.send(can.Message(arbitration_id=2), timeout=WAIT)
+        message = b.recv(WAIT)
+        assert message is not None and message.arbitration_id == 2
+        assert 0.1 + 1408 * BIT < message.timestamp < 0.1 + 0.0025 + 1600 * BIT
+
+
+def test_recovery_counts_from_its_request_and_not_from_an_idle_bus_before(start: Start) -> None:
+    """Bus time goes by the clock here: the bus is idle for longer than a recovery takes."""
+    channel = start("event=0:hold_recessive", "event=300000000:let_go")
+    with RavenchartBus(channel, fd=True) as a, RavenchartBus(channel) as b:
+        with pytest.raises(can.CanOperationError, match="bus off"):
+            a.send(can.Message(arbitration_id=1), timeout=WAIT)
+        time.sleep(0.4)
+        asked = time.time()
+        a.state = can.BusState.ACTIVE
+        becomes_active(a)
+        a.send(can.Message(arbitration_id=2), timeout=WAIT)
+        message = b.recv(WAIT)
+        assert message is not None and message.timestamp >= asked + 1408 * BIT
+
+
+def becomes_active(bus: RavenchartBus) -> None:
+    """Wait until the node is error-active."""
+    end = time.monotonic() + WAIT
+    while bus.state is not can.BusState.ACTIVE:
+        assert time.monotonic() < end
+        time.sleep(0.001)
 
 
 def test_a_bus_that_is_cut_and_mended(start: Start) -> None:
@@ -122,6 +174,27 @@ def test_faults_of_a_list_come_with_the_frames_they_name(start: Start) -> None:
     ]  # fmt: skip
     assert plain[3].timestamp - plain[2].timestamp >= 5e-3
     assert [m.arbitration_id for m in got if m.is_error_frame] == [8, 0x20]
+
+
+def test_the_end_of_a_frame_is_disturbed_on_demand(start: Start) -> None:
+    """Node 2 loses frame 1 and node 3 has it twice; overload frames follow frames 3 and 4."""
+    channel = start(
+        "time=virtual", "fault=1:disturbed_end:2:6", "fault=3:disturbed_end:2:7",
+        "fault=4:overload:2:2",
+    )  # fmt: skip
+    with RavenchartBus(channel) as a, RavenchartBus(channel) as b, RavenchartBus(channel) as c:
+        for _ in range(4):
+            a.send(can.Message(arbitration_id=0x155, is_extended_id=False), timeout=WAIT)
+        at_b, at_c = taken(b, 5), taken(c, 5)
+    assert [m.is_error_frame for m in at_b] == [True, False, False, False, False]
+    assert not any(m.is_error_frame for m in at_c)
+    spent = [round((late.timestamp - early.timestamp) / BIT) for early, late in pairwise(at_c[1:])]
+    assert [bits - spent[0] for bits in spent] == [0, 15, 30]
+
+
+def test_a_fault_that_cannot_be_placed_is_refused(capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["bus", "--port", "0", "--fault", "1:disturbed_end:2:10"]) == 2
+    assert "the bus cannot be told fault=1:disturbed_end:2:10" in capfd.readouterr().err
 
 
 def test_chance_is_the_same_again(start: Start) -> None:
@@ -191,6 +264,24 @@ def test_who_may_not_join_is_told_why(start: Start) -> None:
         node.shutdown()
 
 
+def test_who_says_no_hello_is_told_so_and_holds_up_nobody(start: Start) -> None:
+    """Silent clients take every place, one with half a hello; two seconds later all are free."""
+    channel = start()
+    with ExitStack() as stack:
+        silent = [stack.enter_context(RawClient(channel)) for _ in range(13)]
+        silent[0].send(b"\1" * 40)
+        began = time.monotonic()
+        with RavenchartBus(channel) as a, RavenchartBus(channel) as b:
+            a.send(can.Message(arbitration_id=1), timeout=1)
+            assert b.recv(1) is not None
+        assert time.monotonic() - began < 1
+        for one in silent:
+            assert one.last() == Record(Kind.STATUS, code=Status.NO_HELLO_IN_TIME)
+        assert 1.5 < time.monotonic() - began < 4
+        nodes = [stack.enter_context(RavenchartBus(channel)) for _ in range(15)]
+        nodes[0].send(can.Message(arbitration_id=2), timeout=1)
+
+
 def test_the_end_of_the_server_is_told() -> None:
     with started() as channel:
         bus = RavenchartBus(channel)
@@ -219,6 +310,8 @@ def test_a_client_that_never_reads_is_given_up(start: Start) -> None:
         ["--name", "a b"],
         ["--fault", "1:nothing"],
         ["--event", "x:mend"],
+        ["--restart-ms", "600001"],
+        ["--sample-point", "101"],
         ["--disturb", "1"],
     ],
 )

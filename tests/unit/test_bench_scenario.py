@@ -39,7 +39,8 @@ def test_quantities_are_read_in_base_units() -> None:
     assert [step.expect["x"], step.tolerance, step.within] == pytest.approx([-0.005, 0.0005, 0.0])
 
 
-def test_every_step_reads_as_a_sentence() -> None:
+def test_every_step_reads_as_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "field.log").write_text("(0.0) can0 123#00\n")
     steps = """\
   - {send: robot_command, with: {kind: Move, x: 5}}
   - {wait_for: robot_status.condition, is: Ready, within: 8 s}
@@ -50,8 +51,9 @@ def test_every_step_reads_as_a_sentence() -> None:
   - release: x
   - stop_feedback: all
   - kill_bench: true
+  - replay: field.log
 """
-    scenario = parse_scenario(scenario_text(steps))
+    scenario = parse_scenario(scenario_text(steps), str(tmp_path / "scenario.yaml"))
     assert [str(step) for step in scenario.steps] == [
         "send robot_command: kind Move, x 5",
         "wait for robot_status.condition = Ready",
@@ -62,6 +64,7 @@ def test_every_step_reads_as_a_sentence() -> None:
         "release the limit switch of x",
         "stop the feedback of all",
         "kill the bench",
+        "replay field.log",
     ]
     assert {type(step) for step in scenario.steps} == set(STEPS.values())
     assert isinstance(scenario.steps[0], Send)
@@ -74,8 +77,8 @@ FIRST_STEP = len(scenario_text("").splitlines()) + 1
 
 
 STEP_KINDS = (
-    "`send`, `wait_for`, `expect`, `expect_stop`, `wait`, `pull`, `release`, `stop_feedback`, "
-    "`kill_bench`"
+    "`send`, `replay`, `wait_for`, `expect`, `expect_stop`, `wait`, `pull`, `release`, "
+    "`stop_feedback`, `kill_bench`"
 )
 NO_DRIVE = "there is no drive `q` [RV-1304]"
 

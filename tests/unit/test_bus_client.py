@@ -239,6 +239,7 @@ def test_no_server_and_no_channel() -> None:
         {"name": "x" * 17},
         {"bitrate": 2_000_000},
         {"bitrate": -1},
+        {"restart_ms": 600_001},
     ):
-        with pytest.raises(ValueError, match="bus protocol"):
+        with pytest.raises(ValueError, match=r"bus protocol|restart_ms is 600001"):
             RavenchartBus(channel, **settings)

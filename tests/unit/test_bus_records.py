@@ -6,7 +6,7 @@ import random
 
 import can
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ravenchart.hw_can.bench.bus_records import (
@@ -18,12 +18,16 @@ from ravenchart.hw_can.bench.bus_records import (
     Record,
     State,
     Status,
+    confirmed_in,
     decode,
     encode,
+    frame_in,
     greeting_data,
     greeting_of,
     message_of,
     record_of,
+    request_of,
+    split,
     state_of,
 )
 from tests.support.can_frames import mixed_frames
@@ -79,6 +83,45 @@ def test_any_bytes_are_a_record_or_refused(octets: bytes) -> None:
     accepted(octets)
 
 
+def quick(octets: bytes) -> Record | can.Message | int | None:
+    """What the ways without a `Record` make of it."""
+    (fields,) = split(octets)
+    return frame_in(fields, 0, "x") or confirmed_in(fields) or None
+
+
+@settings(max_examples=300)
+@given(st.integers(0, 3), st.binary(max_size=3), st.binary(max_size=3), st.integers(0, 99))
+def test_the_quick_ways_accept_what_is_sound_and_nothing_else(
+    kind: int, at: bytes, to: bytes, seed: int
+) -> None:
+    """A frame or confirmation with up to three bytes changed: as `decode` says, or not at all."""
+    octets = bytearray(
+        encode(record_of(mixed_frames(1, seed=seed)[0], 7))
+        if kind
+        else encode(Record(Kind.CONFIRMATION, time=9, number=3))
+    )
+    for place, value in zip(at, to, strict=False):
+        octets[place % RECORD_BYTES] = value
+    found = quick(bytes(octets))
+    try:
+        record = decode(bytes(octets))
+    except can.CanOperationError:
+        assert found is None
+        return
+    if record.kind is Kind.FRAME:
+        assert isinstance(found, can.Message)
+        assert found.equals(message_of(record, 0), check_channel=False, timestamp_delta=0)
+    elif record.kind is Kind.CONFIRMATION:
+        assert found == record.number
+    else:
+        assert found is None
+
+
+def test_the_quick_request_is_the_record() -> None:
+    for number, frame in enumerate(mixed_frames(500), 1):
+        assert request_of(frame, number) == encode(record_of(frame, number))
+
+
 def test_changed_records_are_refused_or_mean_what_they_say() -> None:
     chance, kept = random.Random(5), 0
     for _ in range(ANY_BYTES):
@@ -130,7 +173,7 @@ def test_a_message_that_is_no_frame_is_refused() -> None:
         can.Message(arbitration_id=-1),
     ):
         with pytest.raises(can.CanOperationError):
-            record_of(message, 1)
+            request_of(message, 1)
 
 
 def test_the_state_goes_with_the_counters() -> None:

@@ -170,7 +170,7 @@ def test_a_node_that_nobody_acknowledges_is_told_at_once(server: BusServer) -> N
     first, *others = result.cases
     assert first.verdict is Verdict.FAILED
     assert first.detail == (
-        "0 of 9 frames arrived; no other node acknowledges a frame, or the bus is cut"
+        "0 of 9 frames arrived; no other node acknowledges a frame: connect one, or check the cable"
     )
     assert {case.detail for case in others} == {"the bus was lost before"}
 
