@@ -15,6 +15,7 @@ with Ravenchart.Can.Fd_Frames;
 package Ravenchart.Can.Data_Crcs
   with SPARK_Mode, Pure
 is
+   use type Interfaces.Unsigned_8;
    use type Interfaces.Unsigned_16;
 
    type Crc_Kind is (Crc_8_J1850, Crc_8_H2f, Crc_16_Ccitt);
@@ -60,19 +61,13 @@ is
       Data  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;
       Past  : Natural) return Register
-   is (if Past <= First
-       then R
-       else
-         After_Byte
-           (Kind,
-            After_Bytes (Kind, R, Data, First, Past - 1),
-            Data (Past - 1)))
    with
      Ghost,
      Global             => null,
      Pre                => Past <= Data'Length,
      Subprogram_Variant => (Decreases => Past);
-   --  The register after the bytes First to Past - 1: what Run computes.
+   --  The register after the bytes First to Past - 1: R itself if there are
+   --  none, else one more byte after those before it.
 
    function Run
      (Kind  : Crc_Kind;
@@ -85,5 +80,22 @@ is
      Pre    => Past <= Data'Length,
      Post   => Run'Result = After_Bytes (Kind, R, Data, First, Past);
    --  The register after the bytes First to Past - 1.
+
+   procedure Lemma_Same_Register
+     (Kind  : Crc_Kind;
+      R     : Register;
+      A, B  : Fd_Frames.Fd_Bytes;
+      First : Fd_Frames.Fd_Index;
+      Past  : Natural)
+   with
+     Ghost,
+     Global => null,
+     Pre    =>
+       Past <= A'Length
+       and then (for all I in First .. Past - 1 => A (I) = B (I)),
+     Post   =>
+       After_Bytes (Kind, R, A, First, Past)
+       = After_Bytes (Kind, R, B, First, Past);
+   --  The register depends on these bytes alone.
 
 end Ravenchart.Can.Data_Crcs;

@@ -87,44 +87,6 @@ is
             Any_Frames.Byte (With_Crc'Result, I) = Any_Frames.Byte (F, I));
    --  F with this CRC.
 
-   procedure Lemma_Same_Register
-     (Kind  : Data_Crcs.Crc_Kind;
-      R     : Data_Crcs.Register;
-      A, B  : Fd_Frames.Fd_Bytes;
-      First : Fd_Frames.Fd_Index;
-      Past  : Natural)
-   with
-     Ghost,
-     Pre  =>
-       Past <= A'Length
-       and then (for all I in First .. Past - 1 => A (I) = B (I)),
-     Post =>
-       Data_Crcs.After_Bytes (Kind, R, A, First, Past)
-       = Data_Crcs.After_Bytes (Kind, R, B, First, Past);
-   --  The register depends on these bytes alone.
-
-   -------------------------
-   -- Lemma_Same_Register --
-   -------------------------
-
-   procedure Lemma_Same_Register
-     (Kind  : Data_Crcs.Crc_Kind;
-      R     : Data_Crcs.Register;
-      A, B  : Fd_Frames.Fd_Bytes;
-      First : Fd_Frames.Fd_Index;
-      Past  : Natural)
-   is
-   begin
-      pragma Assert
-        (Data_Crcs.After_Bytes (Kind, R, A, First, First) = R
-         and then Data_Crcs.After_Bytes (Kind, R, B, First, First) = R);
-      for I in First .. Past - 1 loop
-         pragma Loop_Invariant
-           (Data_Crcs.After_Bytes (Kind, R, A, First, I + 1)
-            = Data_Crcs.After_Bytes (Kind, R, B, First, I + 1));
-      end loop;
-   end Lemma_Same_Register;
-
    ----------
    -- Data --
    ----------
@@ -150,8 +112,8 @@ is
       Kind  : constant Data_Crcs.Crc_Kind := Kind_Of (S.Kind);
       Start : constant Data_Crcs.Register :=
         (case S.Kind is
-           when Profile_1              => 0,
-           when Profile_2 | Profile_11 => 16#FF00#,
+           when Profile_1 | Profile_11 => 0,
+           when Profile_2              => 16#FF00#,
            when Profile_5              => 16#FFFF#);
       After_Low : constant Data_Crcs.Register :=
         Data_Crcs.After_Byte (Kind, Start, Low_Id (S));
@@ -167,8 +129,6 @@ is
               (if (Count and 1) = 0
                then After_Low
                else Data_Crcs.After_Byte (Kind, Start, High_Id (S)));
-         when Low         =>
-            return After_Low;
          when Nibble      =>
             return Data_Crcs.After_Byte (Kind, After_Low, 0);
       end case;
@@ -185,16 +145,14 @@ is
       Kind : constant Data_Crcs.Crc_Kind := Kind_Of (S.Kind);
    begin
       case S.Kind is
-         when Profile_1  =>
+         when Profile_1 | Profile_11 =>
             return Interfaces.Shift_Right (R, 8);
-         when Profile_11 =>
-            return Interfaces.Shift_Right (R, 8) xor 16#FF#;
-         when Profile_2  =>
+         when Profile_2              =>
             return
               Interfaces.Shift_Right
                 (Data_Crcs.After_Byte (Kind, R, S.Ids (Count and 16#0F#)), 8)
               xor 16#FF#;
-         when Profile_5  =>
+         when Profile_5              =>
             return
               Data_Crcs.After_Byte
                 (Kind,
@@ -278,7 +236,9 @@ is
         (if S.Kind = Profile_5
          then
            With_Byte
-             (Low, 1, Interfaces.Unsigned_8 (Interfaces.Shift_Right (Check, 8)))
+             (Low,
+              1,
+              Interfaces.Unsigned_8 (Interfaces.Shift_Right (Check, 8)))
          else Low);
    end With_Crc;
 
@@ -295,7 +255,7 @@ is
         Crc (S, Data (Counted), Count);
       Result  : constant Any_Frames.Any_Frame := With_Crc (Counted, S, Check);
    begin
-      Lemma_Same_Register
+      Data_Crcs.Lemma_Same_Register
         (Kind_Of (S.Kind),
          Seed (S, Count),
          Data (Counted),

@@ -27,11 +27,11 @@ is
 
    type Profile is (Profile_1, Profile_2, Profile_5, Profile_11);
 
-   type Id_Mode is (Both, Alternating, Low, Nibble);
+   type Id_Mode is (Both, Alternating, Nibble);
    --  Which bytes of the data identifier are in the CRC, in profiles 1 and
-   --  11. Both: both. Alternating: the low one with even counters, the high
-   --  one with odd counters. Low: the low one. Nibble: the low one and a 0;
-   --  the low half of the high one is in the frame.
+   --  11. Both: both (variants 1A and 11A). Alternating: the low one with
+   --  even counters, the high one with odd counters (1B). Nibble: the low one
+   --  and a 0; the low half of the high one is in the frame (1C and 11C).
 
    type Id_List is array (Interfaces.Unsigned_8 range 0 .. 15)
      of Interfaces.Unsigned_8;
