@@ -2,6 +2,8 @@
 
 RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
+# A warning stops a build of our own; it does not stop a user's.
+export RAVENCHART_WARNINGS := errors
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup demo test test-long hw-test check prove generate bench bench-proof mutate docs lock clean
@@ -33,32 +35,32 @@ test-long: setup
 
 hw-test: setup
 	@scripts/setup.sh guest || true
-	@$(PYTHON) -P -m ravenchart.hw_test
+	@$(PYTHON) -P -m tests.hardware
 
 check: setup
 	@$(PYTHON) -P -m ruff check .
 	@$(PYTHON) -P -m ruff format --check .
 	@$(PYTHON) -P -m mypy
-	@$(PYTHON) -P -m ravenchart.house check
+	@$(PYTHON) -P -m tests.house check
 
 prove: setup
-	@$(PYTHON) -P -m ravenchart.house prove $(ONLY)
+	@$(PYTHON) -P -m tests.house prove $(ONLY)
 
 generate: setup
 	@for e in $(EXAMPLES); do $(RAVENCHART) generate $$e/model.yaml || exit 1; done
 
 bench:
 	@scripts/setup.sh arm
-	@$(PYTHON) -P -m ravenchart.bench
+	@$(PYTHON) -P -m tests.bench
 
 bench-proof: setup
-	@$(PYTHON) -P -m ravenchart.bench_proof
+	@$(PYTHON) -P -m tests.bench.proof
 
 mutate: setup
-	@$(PYTHON) -P -m ravenchart.mutate
+	@$(PYTHON) -P -m tests.mutation
 
 docs: setup
-	@$(PYTHON) -P -m gen.reference
+	@$(PYTHON) -P -m ravenchart.gen.files.reference
 	@$(PYTHON) -P -m tests.support.faults
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from gen.statechart import (
+from ravenchart.gen.model.statechart import (
     Completion,
     PseudoKind,
     Pseudostate,

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from .terms import Origin
+from .origins import Origin
 
 
 class Severity(Enum):

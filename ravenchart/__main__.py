@@ -16,33 +16,24 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from analysis import report
-from analysis.figures import figures
-from analysis.plain.build import PlainSystem
-from analysis.table import show as show_table
-from gen.diagnostics import render
-from hw_can.bench.peer import BenchError
+from ravenchart.analysis.plain.build import PlainSystem
+from ravenchart.analysis.present import report
+from ravenchart.analysis.present.figures import figures
+from ravenchart.analysis.present.table import show as show_table
+from ravenchart.building.steps import Refused
+from ravenchart.building.toolchain import ToolFailed, ToolMissing
+from ravenchart.gen.diagnostics import render
+from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.proof.spark_results import Outside
+from ravenchart.running.running import RunRequest, controller, run_model
+from tests import house
 
-from . import (
-    allocate,
-    bus,
-    draw,
-    house,
-    import_database,
-    loopback,
-    observed,
-    outside_spark,
-    plain,
-    proving,
-    scenarios,
-    simulate,
-    start,
-    steps,
-)
-from .run import RunRequest, controller, run_model
-from .spark_results import Outside
-from .steps import Refused
-from .toolchain import ToolFailed, ToolMissing
+from . import start
+from .building import steps
+from .commands import allocate, bus, draw, loopback, observed, plain, simulate
+from .databases import database as import_database
+from .proof import outside_spark, proving
+from .running import scenarios
 
 OK, WRONG, UNUSABLE, NOT_JUDGED = 0, 1, 2, 3
 

@@ -15,9 +15,10 @@ import ctypes
 from array import array
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 
-LIBRARY = Path(__file__).parents[2] / "obj" / "kernel" / "libbusy_periods.so"
+from ravenchart.paths import work
+
+LIBRARY = work() / "obj" / "kernel" / "libbusy_periods.so"
 
 LIMIT = 1 << 47
 """Times from here on are left to integers."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from analysis.core.chains import Chain
-from analysis.core.holistic import Network
+from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.holistic import Network
 
 from . import cheddar, mast, pycpa
 from .shapes import Unfit

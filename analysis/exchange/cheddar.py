@@ -15,10 +15,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from xml.etree import ElementTree as Xml
 
-from analysis.core import holistic
-from analysis.core.chains import Chain
-from analysis.core.holistic import Network
-from analysis.core.tasks import Task
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.tasks import Task
 
 from .shapes import Unfit, dense, names, no_errors, remarks, seldom, spelled_out, unqueued, urgency
 

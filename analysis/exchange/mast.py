@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from analysis.core.blocking import Section, ceilings
-from analysis.core.bus import Frame
-from analysis.core.chains import Chain
-from analysis.core.fixed_priority import NO_OVERHEAD
-from analysis.core.holistic import Network
-from analysis.core.responses import release_time, switch_time
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.blocking import Section, ceilings
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.fixed_priority import NO_OVERHEAD
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.responses import release_time, switch_time
+from ravenchart.analysis.core.tasks import Task
 
 from .mast_text import Attributes, Object, Value, printed
 from .shapes import (

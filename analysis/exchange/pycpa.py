@@ -10,11 +10,11 @@ from __future__ import annotations
 import keyword
 from collections.abc import Iterator, Sequence
 
-from analysis.core.blocking import blockers
-from analysis.core.bus import Frame
-from analysis.core.chains import Chain, Hop
-from analysis.core.holistic import Network
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.blocking import blockers
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.chains import Chain, Hop
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.tasks import Task
 
 from .shapes import (
     Unfit,

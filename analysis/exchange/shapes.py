@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from analysis.core import holistic
-from analysis.core.bus import Frame
-from analysis.core.chains import Chain
-from analysis.core.fixed_priority import NO_OVERHEAD
-from analysis.core.holistic import Network
-from analysis.core.responses import release_time, switch_time
-from analysis.core.tasks import Task
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.chains import Chain
+from ravenchart.analysis.core.fixed_priority import NO_OVERHEAD
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.responses import release_time, switch_time
+from ravenchart.analysis.core.tasks import Task
 
 HOUR = 3600 * 10**9
 """The period of what comes hardly ever, in ns."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import TypeVar
 
-from analysis.core import frames
-from analysis.core.blocking import Section, blockers
-from analysis.core.bus import ERROR_BITS, Bus, Errors, Frame
-from analysis.core.chains import Chain, Hop, Step
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.tasks import Row, Task
+from ravenchart.analysis.core import frames
+from ravenchart.analysis.core.blocking import Section, blockers
+from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Errors, Frame
+from ravenchart.analysis.core.chains import Chain, Hop, Step
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.tasks import Row, Task
 
 from .columns import Values, values
 from .entries import Problem, Reading, read

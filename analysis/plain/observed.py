@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from analysis.core.holistic import Network
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.tasks import Task
 
 from .columns import LONG, NEEDED, Kinds, values
 from .entries import Problem, read

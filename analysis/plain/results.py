@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from analysis.core import chains, holistic
-from analysis.core.can_response import FrameResponse
-from analysis.core.chains import Latency
-from analysis.core.holistic import Holistic, Network
-from analysis.core.responses import Response
-from analysis.core.sensitivity import NetworkScaling, network_scaling
-from analysis.units import ratio
+from ravenchart.analysis.core import chains, holistic
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.chains import Latency
+from ravenchart.analysis.core.holistic import Holistic, Network
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
+from ravenchart.analysis.units import ratio
 
 from .build import PlainSystem
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from heapq import heappop, heappush
 
-from analysis.core.blocking import ceilings
-from analysis.core.bus import Frame
-from analysis.core.checks import natural
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.blocking import ceilings
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.checks import natural
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.tasks import Task
 
 from .phases import Phase, Scenario
 from .processor import Job, Processor, segments_of

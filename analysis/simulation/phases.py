@@ -6,10 +6,10 @@ import random
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from analysis.core.blocking import Section
-from analysis.core.bus import Frame
-from analysis.core.holistic import Network
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.tasks import Task
 
 Choice = Callable[[int], int]
 """A number of ticks for job k, from 0 on."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.tasks import Task
 
 from .phases import Inside
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from analysis.core.bus import ERROR_BITS, Bus, Frame
+from ravenchart.analysis.core.bus import ERROR_BITS, Bus, Frame
 
 
 @dataclass(slots=True)

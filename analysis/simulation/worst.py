@@ -11,10 +11,10 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from analysis.core.bus import Frame
-from analysis.core.can_response import FrameResponse
-from analysis.core.responses import Alignment, Response
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.responses import Alignment, Response
+from ravenchart.analysis.core.tasks import Task
 
 from .phases import Choice, Inside, Phase, Scenario
 

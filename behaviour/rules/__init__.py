@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gen.component import Component
-from gen.diagnostics import Diagnostic, in_order, warning
-from gen.model import System
+from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.system import System
 
 from .control import RULES
 from .invariants import invariants_hold

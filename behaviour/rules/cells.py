@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from gen.component import Component
-from gen.statechart import When
-from gen.terms import EnumerationType, Expression, If, IntegerType, Reading, ScalarType, Set
+from ravenchart.gen.language.terms import (
+    EnumerationType,
+    Expression,
+    If,
+    IntegerType,
+    Reading,
+    ScalarType,
+    Set,
+)
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import When
 
 from . import logic
 from .logic import Term, Variable

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 import networkx
 import z3
 
-from gen.diagnostics import Diagnostic, error, warning
-from gen.statechart import OnEvent, Region, State, Transition
-from gen.terms import Origin
+from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.model.statechart import OnEvent, Region, State, Transition
+from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import z3
 
-from gen.component import Invariant
-from gen.diagnostics import Diagnostic, error, warning
-from gen.model import System
-from gen.terms import Origin
+from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.model.component import Invariant
+from ravenchart.gen.model.system import System
+from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term, Variable

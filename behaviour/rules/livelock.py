@@ -12,7 +12,7 @@ from itertools import islice, pairwise, product
 import networkx
 import z3
 
-from gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.diagnostics import Diagnostic, error, warning
 
 from . import logic
 from .logic import Term, Variable

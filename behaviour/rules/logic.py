@@ -11,8 +11,7 @@ from typing import Any
 
 import z3
 
-from gen.component import Component
-from gen.terms import (
+from ravenchart.gen.language.terms import (
     BOOLEAN,
     EnumerationType,
     Expression,
@@ -29,6 +28,7 @@ from gen.terms import (
     Type,
     Value,
 )
+from ravenchart.gen.model.component import Component
 
 Term = Any
 """A term of z3, which has no types for mypy."""

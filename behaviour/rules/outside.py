@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gen.component import Activity, Component
-from gen.model import System
-from gen.statechart import DONE, Every, Initial, Overflow, Region, State, Transition, TransitionKind
-from gen.terms import InState, Ns, Reading
+from ravenchart.gen.language.terms import InState, Ns, Reading
+from ravenchart.gen.model.component import Activity, Component
+from ravenchart.gen.model.statechart import (
+    DONE,
+    Every,
+    Initial,
+    Overflow,
+    Region,
+    State,
+    Transition,
+    TransitionKind,
+)
+from ravenchart.gen.model.system import System
 
 from . import logic
 from .logic import Term, Variable

@@ -20,10 +20,10 @@ from dataclasses import dataclass, field
 
 import z3
 
-from gen.component import Component
-from gen.model import System
-from gen.statechart import DONE, After, Every, When
-from gen.terms import BOOLEAN, Set
+from ravenchart.gen.language.terms import BOOLEAN, Set
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import DONE, After, Every, When
+from ravenchart.gen.model.system import System
 
 from . import logic
 from .cells import actions, expressions, partition

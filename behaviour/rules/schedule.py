@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import z3
 
-from gen.component import Component
-from gen.model import System
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.system import System
 
 from .logic import Term
 

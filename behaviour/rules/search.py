@@ -16,9 +16,9 @@ from types import MappingProxyType
 
 import z3
 
-from gen.model import System
-from gen.statechart import DONE, After, Every, Overflow, Transition
-from gen.terms import BOOLEAN, Reading
+from ravenchart.gen.language.terms import BOOLEAN, Reading
+from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transition
+from ravenchart.gen.model.system import System
 
 from . import logic
 from .logic import Term, Variable

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 import z3
 
-from gen.statechart import Lane, PseudoKind, Transition, TransitionKind, When
-from gen.terms import Expression, Flow, If, Raise, Reading, Set
+from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
+from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
 from .logic import Read, Term, Variable, term, variable
 from .tree import TOP, Occurrence, Slot, Tree

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import z3
 
-from gen.statechart import After, Every
+from ravenchart.gen.model.statechart import After, Every
 
 from . import logic
 from .logic import PORT_STATES, Term, Variable

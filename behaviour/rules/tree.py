@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from gen.statechart import (
+from ravenchart.gen.model.statechart import (
     After,
     Completion,
     Every,

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 
 import z3
 
-from gen.quantities import shown
-from gen.statechart import After, Every
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.model.statechart import After, Every
 
 from . import logic
 from .logic import Term, Variable

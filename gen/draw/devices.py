@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..calls import called
-from ..commands import Device, Server
-from ..model import End, Instance, Message, System
+from ravenchart.gen.derive.calls import called
+from ravenchart.gen.model.commands import Device, Server
+from ravenchart.gen.model.system import End, Instance, Message, System
+
 from .dot import Attributes, Edge, Html, html
 from .dot import Node as Drawn
 from .look import PAPER, SHADES

@@ -10,9 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from ..component import Activity, Component, StateRef
-from ..quantities import shown
-from ..statechart import Initial, Region, State, Transition, TransitionKind
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.model.component import Activity, Component, StateRef
+from ravenchart.gen.model.statechart import Initial, Region, State, Transition, TransitionKind
+
 from . import words
 
 Place = tuple[str | None, str]

@@ -16,9 +16,10 @@ from itertools import pairwise, product, zip_longest
 
 import networkx as nx
 
-from ..component import Direction, Port
-from ..model import Bus, End, Instance, Message, Node, Processor, System
-from ..quantities import BITS_PER_SECOND, shown
+from ravenchart.gen.language.quantities import BITS_PER_SECOND, shown
+from ravenchart.gen.model.component import Direction, Port
+from ravenchart.gen.model.system import Bus, End, Instance, Message, Node, Processor, System
+
 from .devices import (
     DASHED,
     Link,
@@ -32,17 +33,7 @@ from .devices import (
     required,
     required_port,
 )
-from .dot import (
-    Attributes,
-    Defaults,
-    Edge,
-    Group,
-    Html,
-    Item,
-    cluster,
-    digraph,
-    html,
-)
+from .dot import Attributes, Defaults, Edge, Group, Html, Item, cluster, digraph, html
 from .dot import Node as Drawn
 from .look import FONT, INK, LEFT, PAPER, ROOM, SHADES, SMALL
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..component import Direction
-from ..model import End, Instance, Message, System
+from ravenchart.gen.model.component import Direction
+from ravenchart.gen.model.system import End, Instance, Message, System
+
 from .devices import devices_of, kind_of, links
 
 

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..quantities import shown
-from ..statechart import After, Completion, Every, OnEvent, Segment, Trigger, When
-from ..terms import (
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.language.terms import (
     Action,
     Expression,
     Flow,
@@ -24,6 +23,15 @@ from ..terms import (
     Reading,
     Send,
     Set,
+)
+from ravenchart.gen.model.statechart import (
+    After,
+    Completion,
+    Every,
+    OnEvent,
+    Segment,
+    Trigger,
+    When,
 )
 
 _CHOICE, _OR, _AND, _NOT, _COMPARISON, _SUM, _TERM, _SIGNED, _ATOM = range(9)

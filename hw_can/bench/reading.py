@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from gen.diagnostics import Diagnostic, error, in_order, render_all
-from gen.terms import Origin
-from gen.tree import Map, Seq, lines_of
+from ravenchart.gen.diagnostics import Diagnostic, error, in_order, render_all
+from ravenchart.gen.files.located import Map, Seq, lines_of
+from ravenchart.gen.origins import Origin
 
 Path = tuple[int | str, ...]
 """Keys and numbers of items, from the root of a file."""

@@ -15,9 +15,9 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from gen.diagnostics import error, render
-from gen.terms import Origin
-from gen.tree import grow
+from ravenchart.gen.diagnostics import error, render
+from ravenchart.gen.files.located import grow
+from ravenchart.gen.origins import Origin
 
 from .plant import Axis
 from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from behaviour.machine import Machine
-from behaviour.rules import reach as reach_rules
-from behaviour.rules.reach import Clock, Reach
-from gen.model import Shutdown, System
-from gen.terms import Ns
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.rules import reach as reach_rules
+from ravenchart.behaviour.rules.reach import Clock, Reach
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import Shutdown, System
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.random_charts import events_of, instance_name, model_of
 

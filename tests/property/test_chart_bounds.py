@@ -6,23 +6,17 @@ from collections.abc import Iterator
 
 import pytest
 
-from behaviour.interpreter import RegionRun, Step, Stuck
-from behaviour.machine import Machine
-from gen.chart_reach import Reach
-from gen.chart_steps import RAISED, Steps
-from gen.chart_tree import Tree
-from gen.model import System
-from gen.statechart import Region
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.interpreter.region import RegionRun, Step, Stuck
+from ravenchart.gen.model.chart.reach import Reach
+from ravenchart.gen.model.chart.steps import RAISED, Steps
+from ravenchart.gen.model.chart.tree import Tree
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import System
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.random_charts import events_of, model_of
 
 SEEDS = range(12)
-
-
-@pytest.fixture(autouse=True)
-def _no_program(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The generated program is not needed here."""
-    monkeypatch.setattr("gen.load.clashes", lambda system: [])
 
 
 def _bound(region: Region) -> int:

@@ -8,9 +8,9 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from gen.diagnostics import render
-from gen.expressions import Malformed, Term, parse
-from gen.load import Loaded, load
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.language.expressions import Malformed, Term, parse
+from ravenchart.gen.pipeline import Loaded, load
 from tests.support.pump import PUMP
 
 ROOT = Path(__file__).parent.parent.parent

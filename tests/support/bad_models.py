@@ -1,4 +1,4 @@
-"""The bad models, and what loading them and looking at their behaviour prints.
+"""The bad models, and what loading them, their program and their behaviour prints.
 
 After a deliberate change of a message, `python -m tests.support.bad_models`
 writes every expect.txt anew; read the difference before you keep it.
@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from behaviour.rules import findings
-from gen.diagnostics import render
-from gen.load import Loaded, load
+from ravenchart.behaviour.rules import findings
+from ravenchart.gen.diagnostics import Diagnostic, in_order, render
+from ravenchart.gen.emit.clashes import clashes
+from ravenchart.gen.pipeline import Loaded, load
 
 BAD_MODELS = Path(__file__).parent.parent / "bad_models"
 CASES = sorted(path.name for path in BAD_MODELS.iterdir() if path.is_dir())
@@ -28,8 +29,11 @@ def loaded(name: str) -> Loaded:
 def messages(name: str) -> str:
     """What loading the case prints, and what its behaviour gets wrong."""
     result = loaded(name)
-    late = () if result.system is None else findings(result.system)
-    return "\n".join(render(item, result.sources) for item in (*result.diagnostics, *late)) + "\n"
+    late: tuple[Diagnostic, ...] = ()
+    if result.system is not None:
+        late = in_order(clashes(result.system), result.sources) or findings(result.system)
+    found = (*result.diagnostics, *late)
+    return "\n".join(render(item, result.sources) for item in found) + "\n"
 
 
 if __name__ == "__main__":

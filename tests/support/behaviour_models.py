@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from textwrap import indent
 
-from behaviour.rules import findings
-from gen.diagnostics import Diagnostic
-from gen.model import System
+from ravenchart.behaviour.rules import findings
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
 
 FRAME = """\

@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.timing import Analysis, analyse
+from ravenchart.analysis.system.timing import Analysis, analyse
 from tests.support.robot_files import dbc, trace_map
 from tests.support.systems import bus, message, system, task
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
-from hw_can.bench.bus_records import (
+from ravenchart.hw_can.bench.bus_records import (
     MARK,
     RECORD_BYTES,
     VERSION,

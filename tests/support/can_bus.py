@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 
-from ravenchart.bus import running
+from ravenchart.commands.bus import running
 
 Start = Callable[..., str]
 """Starts a bus with such words beside the port; its channel."""

@@ -8,17 +8,28 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
-from analysis.claims import claims_of
-from analysis.timing import Analysis
-from gen.derive import completed
-from gen.emit.ada_text import print_unit
-from gen.emit.certificate import emit_certificate
-from gen.emit.naming import ada_case
-from gen.generate import HEADER
-from gen.model import BusErrors, End, Message, Processor, Reception, Slot, System, Task, Tick, Work
-from gen.signals import FD_SIZES
-from gen.statechart import Timing
-from gen.terms import Ns
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.gen.derive.completion import completed
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.certificate.package import emit_certificate
+from ravenchart.gen.emit.program import HEADER
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.signals import FD_SIZES
+from ravenchart.gen.model.statechart import Timing
+from ravenchart.gen.model.system import (
+    BusErrors,
+    End,
+    Message,
+    Processor,
+    Reception,
+    Slot,
+    System,
+    Task,
+    Tick,
+    Work,
+)
 from tests.support.systems import HERE, bus, message, system
 
 MS = 1_000_000

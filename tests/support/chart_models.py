@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from textwrap import indent
 
-from gen.component import Component
-from gen.statechart import Region
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region
 from tests.support.pump import loaded
 
 FRAME = """\

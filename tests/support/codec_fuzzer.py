@@ -15,13 +15,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from gen.emit.ada import Ref
-from gen.emit.codecs import WORDS, codec_name, words_of
-from gen.emit.coding import literal_name
-from gen.emit.naming import ada_case, default_value, type_name
-from gen.model import Message, System
-from gen.signals import Signal
-from ravenchart.toolchain import ROOT
+from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
+from ravenchart.gen.emit.ada.syntax import Ref
+from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
+from ravenchart.gen.emit.buses.coding import literal_name
+from ravenchart.gen.model.signals import Signal
+from ravenchart.gen.model.system import Message, System
+from ravenchart.paths import ROOT
 
 CHECKED = ("-gnata", "-O0")
 """Every contract and check is on."""

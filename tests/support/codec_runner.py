@@ -12,13 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from gen.emit.codecs import WORDS, codec_name, words_of
-from gen.emit.naming import ada_case, type_name
-from gen.model import Message, System
-from gen.signals import Signal
-from gen.terms import EnumerationType
-from ravenchart.machines import HERE, Machine
-from ravenchart.toolchain import ROOT
+from ravenchart.gen.emit.ada.naming import ada_case, type_name
+from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
+from ravenchart.gen.language.terms import EnumerationType
+from ravenchart.gen.model.signals import Signal
+from ravenchart.gen.model.system import Message, System
+from ravenchart.paths import ROOT
+from tests.hardware.machines import HERE, Machine
 
 Values = tuple[int, ...]
 

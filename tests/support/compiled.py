@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from analysis.claims import claims_of
-from analysis.timing import analyse
-from gen.emit.naming import ada_case
-from gen.generate import generate
-from ravenchart import toolchain
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.building import toolchain
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.program import generate
 from tests.support.interpreted import system_of
 
 

@@ -7,12 +7,12 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Errors, Frame
-from analysis.core.frames import classic_bits
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.frames import classic_bits
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.tasks import Task
 
 REFERENCE = Path(__file__).parents[1] / "reference"
 

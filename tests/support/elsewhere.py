@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ravenchart.machines import Machine
+from tests.hardware.machines import Machine
 
 
 def needed(machine: Machine) -> Machine:

@@ -2,8 +2,33 @@
 
 from __future__ import annotations
 
-from gen.component import Activity, Component, Data, Direction, Event, Port, StateRef
-from gen.statechart import (
+from ravenchart.gen.language.terms import (
+    BOOLEAN,
+    Expression,
+    Flow,
+    If,
+    InState,
+    IntegerType,
+    Literal,
+    Name,
+    Ns,
+    Operation,
+    PortTest,
+    Raise,
+    Reading,
+    Send,
+    Set,
+)
+from ravenchart.gen.model.component import (
+    Activity,
+    Component,
+    Data,
+    Direction,
+    Event,
+    Port,
+    StateRef,
+)
+from ravenchart.gen.model.statechart import (
     After,
     Completion,
     Every,
@@ -22,24 +47,7 @@ from gen.statechart import (
     Trigger,
     When,
 )
-from gen.terms import (
-    BOOLEAN,
-    Expression,
-    Flow,
-    If,
-    InState,
-    IntegerType,
-    Literal,
-    Name,
-    Ns,
-    Operation,
-    Origin,
-    PortTest,
-    Raise,
-    Reading,
-    Send,
-    Set,
-)
+from ravenchart.gen.origins import Origin
 
 HERE = Origin("every.yaml", 1, 1)
 LEVEL = IntegerType("Level", HERE, 0, 100, "mm")

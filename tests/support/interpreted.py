@@ -8,11 +8,11 @@ from typing import Any
 
 import yaml
 
-from behaviour.interpreter import RegionRun
-from behaviour.machine import Machine
-from behaviour.stimuli import Stimuli, read
-from behaviour.traces import Record
-from gen.model import System
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.interpreter.region import RegionRun
+from ravenchart.behaviour.interpreter.stimuli import Stimuli, read
+from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
 
 Json = dict[str, Any]

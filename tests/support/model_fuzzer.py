@@ -26,13 +26,13 @@ from typing import Any
 
 import yaml
 
-from gen.calls import device_types
-from gen.emit.ada_text import print_unit
-from gen.emit.devices import simulated_driver
-from gen.generate import generate
-from gen.model import System
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.derive.calls import device_types
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.commands.devices import simulated_driver
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.system import System
+from ravenchart.paths import ROOT
 from tests.support.interpreted import plain
 from tests.support.random_expressions import Words, condition, number_term
 

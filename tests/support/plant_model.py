@@ -2,9 +2,28 @@
 
 from __future__ import annotations
 
-from gen.component import Activity, Component, Data, Direction, Event, Parameter, Port
-from gen.derive import completed
-from gen.model import (
+from ravenchart.gen.derive.completion import completed
+from ravenchart.gen.language.terms import IntegerType, Ns
+from ravenchart.gen.model.component import (
+    Activity,
+    Component,
+    Data,
+    Direction,
+    Event,
+    Parameter,
+    Port,
+)
+from ravenchart.gen.model.statechart import (
+    Initial,
+    OnEvent,
+    Region,
+    State,
+    Timing,
+    Transition,
+    TransitionKind,
+)
+from ravenchart.gen.model.statechart import Overflow as Full
+from ravenchart.gen.model.system import (
     Bus,
     Connection,
     End,
@@ -17,9 +36,7 @@ from gen.model import (
     System,
     Work,
 )
-from gen.statechart import Initial, OnEvent, Region, State, Timing, Transition, TransitionKind
-from gen.statechart import Overflow as Full
-from gen.terms import IntegerType, Ns, Origin
+from ravenchart.gen.origins import Origin
 
 HERE = Origin("plant.yaml", 1, 1)
 LEVEL = IntegerType("Level", HERE, 0, 100, "mm")

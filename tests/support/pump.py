@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gen.load import Loaded, load
-from gen.model import System
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
 
 PUMP = """\
 system: Pump_House

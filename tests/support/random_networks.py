@@ -5,10 +5,10 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Errors, Frame
-from analysis.core.holistic import Network
-from analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.tasks import Row, Task
 
 PERIODS = (100, 150, 200, 300, 400, 600, 1_000)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 from types import TracebackType
 
-from hw_can.bench.bus_records import (
+from ravenchart.hw_can.bench.bus_records import (
     MARK,
     RECORD_BYTES,
     VERSION,

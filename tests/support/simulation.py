@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from gen.model import Task
+from ravenchart.gen.model.system import Task
 
 
 def longest_responses(tasks: Sequence[Task]) -> dict[str, int]:

@@ -4,9 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gen.component import Component
-from gen.model import Bus, End, Instance, Message, Node, SharedObject, Shutdown, System, Task
-from gen.terms import IntegerType, Ns, Origin
+from ravenchart.gen.language.terms import IntegerType, Ns
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.system import (
+    Bus,
+    End,
+    Instance,
+    Message,
+    Node,
+    SharedObject,
+    Shutdown,
+    System,
+    Task,
+)
+from ravenchart.gen.origins import Origin
 
 HERE = Origin("model.yaml", 1, 1)
 

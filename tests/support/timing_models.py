@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from analysis.timing import Analysis, analyse
-from gen.load import load
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.gen.pipeline import load
 
 HEAD = """\
 system: Sample

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gen.diagnostics import render
-from gen.load import Loaded, load, read_file
-from gen.model import System
-from ravenchart.toolchain import ROOT
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.files.load import read_file
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.paths import ROOT
 
 MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
 _TEXT = MODEL.read_text(encoding="utf-8")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.paths import ROOT
 
 CopyOf = Callable[[str], Path]
 """Copies an example to a folder of its own."""

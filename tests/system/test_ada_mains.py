@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import toolchain
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
 
 MAINS = (
     "test_store",

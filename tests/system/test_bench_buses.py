@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ravenchart import bench_buses
+from tests.bench import buses as bench_buses
 
 BITS = 111
 """The least that a frame of 8 bytes takes, with the space behind it (ISO 11898-1)."""

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from gen.model import System
-from ravenchart import bench_codecs, steps
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.model.system import System
+from ravenchart.paths import ROOT
+from tests.bench import codecs as bench_codecs
 
 
 def test_the_codecs_take_no_longer_than_c_that_checks_nothing() -> None:

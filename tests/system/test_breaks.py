@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import steps, toolchain
-from ravenchart.toolchain import ROOT, ToolFailed
+from ravenchart.building import steps, toolchain
+from ravenchart.building.toolchain import ToolFailed
+from ravenchart.paths import ROOT
 
 needs_gnatprove = pytest.mark.skipif(
     not toolchain.have("gnatprove"), reason="gnatprove is not on PATH: nothing is proved"

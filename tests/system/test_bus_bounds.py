@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis.core.bus import Bus, Errors, Frame
-from analysis.core.can import analyse, load
-from analysis.core.frames import classic_bits, rank
-from ravenchart import toolchain
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.can import analyse, load
+from ravenchart.analysis.core.frames import classic_bits, rank
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
 
 BIT = 2_000
 SECOND = 10**9

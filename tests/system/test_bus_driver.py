@@ -9,11 +9,11 @@ from pathlib import Path
 import can
 import pytest
 
-from hw_can.bench.bus_client import RavenchartBus
-from hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
-from ravenchart import toolchain
-from ravenchart.bus import running
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.commands.bus import running
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
+from ravenchart.paths import ROOT
 from tests.support.bus_server import BusServer
 from tests.support.can_bus import started
 from tests.support.can_frames import FD_LENGTHS, WAIT, taken

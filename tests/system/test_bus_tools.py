@@ -16,7 +16,7 @@ from pathlib import Path
 import can
 import pytest
 
-from hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from tests.support.can_bus import started
 from tests.support.can_frames import WAIT, mixed_frames, taken
 

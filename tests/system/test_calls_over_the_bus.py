@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis.observed import read_map, read_trace
-from ravenchart import proving, steps, toolchain
-from ravenchart.run import controller, run_nodes
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.system.observed import read_map, read_trace
+from ravenchart.building import steps, toolchain
+from ravenchart.paths import ROOT
+from ravenchart.proof import proving
+from ravenchart.running.running import controller, run_nodes
 
 
 @pytest.fixture

@@ -13,9 +13,9 @@ from xml.etree import ElementTree
 import can
 import pytest
 
-from hw_can.bench.bus_client import RavenchartBus
-from hw_can.bench.bus_records import MARK, RECORD_BYTES, Kind, Record, Status, encode
 from ravenchart.__main__ import main
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.bus_records import MARK, RECORD_BYTES, Kind, Record, Status, encode
 from tests.support.can_bus import Start, started, starter
 from tests.support.can_frames import WAIT, taken
 from tests.support.raw_client import RawClient

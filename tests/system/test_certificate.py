@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from analysis.timing import analyse
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.building import steps
+from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled, numbers, random_system
 from tests.support.systems import shared, system, task
 

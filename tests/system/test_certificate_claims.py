@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from analysis.claims import claims_of
-from analysis.timing import Analysis, analyse
-from gen.claims import ChainClaim, Claim, Claims
-from gen.emit.ada_text import print_unit
-from gen.emit.certificate import emit_certificate
-from gen.model import Message, System
-from gen.terms import Ns
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.building import steps
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.certificate.package import emit_certificate
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.claims import ChainClaim, Claim, Claims
+from ravenchart.gen.model.system import Message, System
+from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled, numbers
 from tests.support.systems import bus, message, system, task
 from tests.support.timing_models import CHART, KEPT, QUEUE, SEVERAL, analysed

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.large_charts import large_chart
+from tests.bench.large_charts import large_chart
 from tests.support import random_charts, reference_charts
 from tests.support.compiled import complaints
 

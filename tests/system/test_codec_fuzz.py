@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from gen.generate import generate
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.emit.program import generate
+from ravenchart.paths import ROOT
 from tests.support.codec_fuzzer import CHECKED, UNCHECKED, fuzzed
 
 FRAMES = 1_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 5_000

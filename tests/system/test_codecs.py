@@ -14,15 +14,15 @@ import pytest
 from cantools.database import Database
 from cantools.database.can import Message as DbcMessage
 
-from gen.derive import programs
-from gen.generate import folder_of, generate
-from gen.model import Message, System
-from gen.signals import Signal
-from gen.terms import IntegerType
-from gen.units import count_of
-from ravenchart import steps
-from ravenchart.machines import HERE, OTHERS, Machine
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.derive.completion import programs
+from ravenchart.gen.emit.program import folder_of, generate
+from ravenchart.gen.language.terms import IntegerType
+from ravenchart.gen.language.units import count_of
+from ravenchart.gen.model.signals import Signal
+from ravenchart.gen.model.system import Message, System
+from ravenchart.paths import ROOT
+from tests.hardware.machines import HERE, OTHERS, Machine
 from tests.support.codec_runner import Runner, Values, boundaries, literal
 from tests.support.elsewhere import needed
 

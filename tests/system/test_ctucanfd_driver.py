@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from hw_can.bench.driver_cases import LIMIT, Driver, started
-from ravenchart import toolchain
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
+from tests.hardware.driver_cases import LIMIT, Driver, started
 
 SPAN = 0x4000
 """Bytes from one core of a card to the next."""

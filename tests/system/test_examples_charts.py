@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from behaviour.rules import findings
-from gen.load import Loaded, load
-from ravenchart import simulate
-from ravenchart.toolchain import ROOT
+from ravenchart.behaviour.rules import findings
+from ravenchart.commands import simulate
+from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.paths import ROOT
 
 EXAMPLES = ("crossing", "pump", "qhsmtst")
 PATIENCE = 300.0

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import toolchain
-from ravenchart.mutate.__main__ import Subject, mutants, tried
-from ravenchart.mutate.mutants import Mutant
-from ravenchart.mutate.observing import Observer, PlayedTogether
-from ravenchart.mutate.workbench import Workbench
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
+from tests.mutation.__main__ import Subject, mutants, tried
+from tests.mutation.mutants import Mutant
+from tests.mutation.observing import Observer, PlayedTogether
+from tests.mutation.workbench import Workbench
 
 MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
 LATER = {"divisor", "phase", "cycle", "bit rate", "id sent", "id expected", "length sent"}

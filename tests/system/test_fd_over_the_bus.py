@@ -13,14 +13,15 @@ from pathlib import Path
 import can
 import pytest
 
-from analysis.observed import Observation, read_map, read_trace
-from hw_can.bench.bus_client import RavenchartBus
-from hw_can.bench.peer import BenchError, Codec
-from ravenchart import bus, steps, toolchain
 from ravenchart.__main__ import main
-from ravenchart.demo.process import ControllerProcess
-from ravenchart.run import controller, run_controller, run_nodes
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.system.observed import Observation, read_map, read_trace
+from ravenchart.building import steps, toolchain
+from ravenchart.commands import bus
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.peer import BenchError, Codec
+from ravenchart.paths import ROOT
+from ravenchart.running.process import ControllerProcess
+from ravenchart.running.running import controller, run_controller, run_nodes
 
 TUNING: dict[str, int | str] = {
     "gain": 4711,

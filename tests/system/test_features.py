@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 import yaml
 
-from analysis.observed import Observation, read_map, read_trace
-from ravenchart import steps, toolchain
 from ravenchart.__main__ import main
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.system.observed import Observation, read_map, read_trace
+from ravenchart.building import steps, toolchain
+from ravenchart.paths import ROOT
 
 CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
 

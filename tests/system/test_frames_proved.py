@@ -10,11 +10,11 @@ import os
 
 import pytest
 
-from ravenchart import toolchain
-from ravenchart.mutate.catalogue import mutants_of
-from ravenchart.mutate.mutants import Mutant
-from ravenchart.mutate.observing import Observer
-from ravenchart.mutate.workbench import Workbench
+from ravenchart.building import toolchain
+from tests.mutation.catalogue import mutants_of
+from tests.mutation.mutants import Mutant
+from tests.mutation.observing import Observer
+from tests.mutation.workbench import Workbench
 
 MODEL = """\
 system: Framed

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import toolchain
 from ravenchart.__main__ import main
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
 
 PAGE = (ROOT / "docs" / "getting-started.md").read_text()
 

@@ -16,11 +16,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis.observed import Observation
-from ravenchart import run, steps
 from ravenchart.__main__ import main
-from ravenchart.demo.result import RunResult
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.system.observed import Observation
+from ravenchart.building import steps
+from ravenchart.paths import ROOT
+from ravenchart.running import running as run
+from ravenchart.running.result import RunResult
 from tests.support.faults import shows
 
 SECONDS = 2.0

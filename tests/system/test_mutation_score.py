@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from gen.claims import Claims
-from gen.generate import generate
-from gen.model import System
-from ravenchart import toolchain
-from ravenchart.mutate.__main__ import Subject, mutants, tried
-from ravenchart.mutate.observing import Simulated
+from ravenchart.building import toolchain
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.system import System
+from tests.mutation.__main__ import Subject, mutants, tried
+from tests.mutation.observing import Simulated
 from tests.support.chart_models import chart_text
 
 KINDS = ("target", "source", "missing action", "order", "time-out", "certificate")
@@ -81,6 +81,6 @@ def test_a_program_that_is_not_clean_is_no_subject(
         files = generate(system, bounds)
         return {**files, chosen[0].file: chosen[0].applied(files[chosen[0].file])}
 
-    monkeypatch.setattr("ravenchart.mutate.workbench.generate", broken)
+    monkeypatch.setattr("tests.mutation.workbench.generate", broken)
     with pytest.raises(toolchain.ToolFailed, match=r"postcondition|assertion"):
         tried(subject, chosen, 1, ())

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.machines import OTHERS, Machine
-from ravenchart.toolchain import ROOT
+from ravenchart.paths import ROOT
+from tests.hardware.machines import OTHERS, Machine
 from tests.support.elsewhere import needed
 
 COMMON = (

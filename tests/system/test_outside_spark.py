@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import house, toolchain
 from ravenchart.__main__ import OK, WRONG, main
+from ravenchart.building import toolchain
+from tests import house
 
 MODEL = """\
 system: Demo

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import bus
-from ravenchart.run import controller
-from ravenchart.steps import check, programs_of, write_program
+from ravenchart.building.steps import check, programs_of, write_program
+from ravenchart.commands import bus
+from ravenchart.running.running import controller
 from tests.support.faults import shows
 from tests.support.processes import LAUNCHER, PYTHON, ROOT, Marked
 

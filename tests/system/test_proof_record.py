@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import house, proving
-from ravenchart.toolchain import ROOT
+from ravenchart.paths import ROOT
+from ravenchart.proof import proving
+from tests import house
 
 NAMES = (
     *(f"runtime-{driver}" for driver in house.DRIVERS),

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import steps
-from ravenchart.demo.process import ControllerProcess
-from ravenchart.run import run_controller
+from ravenchart.building import steps
+from ravenchart.running.process import ControllerProcess
+from ravenchart.running.running import run_controller
 from tests.support.faults import shows
 
 HERE = Path("examples/cartesian_robot")

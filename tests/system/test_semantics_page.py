@@ -8,9 +8,9 @@ from itertools import groupby
 
 import pytest
 
-from behaviour.machine import Machine
-from behaviour.stimuli import read
-from ravenchart.toolchain import ROOT
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.interpreter.stimuli import read
+from ravenchart.paths import ROOT
 from tests.support.pump import loaded
 
 PAGE = (ROOT / "docs" / "semantics.md").read_text()

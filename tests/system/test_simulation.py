@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from behaviour.machine import Machine
-from behaviour.traces import Record
-from gen.model import System
 from ravenchart.__main__ import main
-from ravenchart.simulate import build_simulation, run_simulation
-from ravenchart.toolchain import ROOT
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.commands.simulate import build_simulation, run_simulation
+from ravenchart.gen.model.system import System
+from ravenchart.paths import ROOT
 from tests.support import random_charts, reference_charts
 from tests.support.interpreted import plain, stimuli_of, system_of
 from tests.support.reference_charts import NAMES, chart_of, labels_of

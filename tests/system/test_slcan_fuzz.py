@@ -14,8 +14,8 @@ import subprocess
 import pytest
 from can.util import dlc2len
 
-from ravenchart import toolchain
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
 
 STRINGS = 10_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 200_000
 SHOWN = 50_000

@@ -14,8 +14,8 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart import toolchain
-from ravenchart.toolchain import ROOT
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
 from tests.support.can_frames import FD_LENGTHS, WAIT
 
 LIMIT = 20.0

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 import pytest
 
-from behaviour.stimuli import Arrived, Stimuli
-from behaviour.traces import Record
-from gen.model import End
-from gen.terms import Ns, Value
-from ravenchart import steps
-from ravenchart.simulate import build_simulation, run_simulation
-from ravenchart.toolchain import ROOT
+from ravenchart.behaviour.interpreter.stimuli import Arrived, Stimuli
+from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.building import steps
+from ravenchart.commands.simulate import build_simulation, run_simulation
+from ravenchart.gen.language.terms import Ns, Value
+from ravenchart.gen.model.system import End
+from ravenchart.paths import ROOT
 from tests.support.faults import shows
 
 SEED = 2026

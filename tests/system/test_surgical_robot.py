@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from gen.generate import generate
-from ravenchart import proving, steps, toolchain
 from ravenchart.__main__ import main
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps, toolchain
+from ravenchart.gen.emit.program import generate
+from ravenchart.paths import ROOT
+from ravenchart.proof import proving
 
 HERE = ROOT / "examples" / "surgical_robot"
 LINE = "Robot: {facade: [Boards, Wrist]}"

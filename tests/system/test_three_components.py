@@ -9,9 +9,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from analysis.observed import Observation, Record, read_map, read_trace
-from gen.model import System
-from ravenchart import steps
+from ravenchart.analysis.system.observed import Observation, Record, read_map, read_trace
+from ravenchart.building import steps
+from ravenchart.gen.model.system import System
 
 
 def _observed(checked: steps.Checked, executable: Path, folder: Path) -> Observation:

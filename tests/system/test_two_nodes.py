@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from ravenchart import simulate, steps
-from ravenchart.run import RunRequest, controller, run_model
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.commands import simulate
+from ravenchart.paths import ROOT
+from ravenchart.running.running import RunRequest, controller, run_model
 from tests.support.faults import shows
 from tests.support.two_nodes import by_chart
 

@@ -6,9 +6,9 @@ import subprocess
 
 import pytest
 
-from analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits
-from ravenchart import toolchain
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
 
 CASES = [
     (kind, extended, length)

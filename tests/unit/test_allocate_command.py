@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis.timing import Analysis, analyse
-from gen.load import load
-from ravenchart import allocate
 from ravenchart.__main__ import OK, main
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.commands import allocate
+from ravenchart.gen.pipeline import load
 
 ROBOT = Path(__file__).parents[2] / "examples" / "cartesian_robot"
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.observed import Observation, TraceError, Visit, read_map, read_trace
+from ravenchart.analysis.system.observed import Observation, TraceError, Visit, read_map, read_trace
 from tests.support.robot_files import trace_map
 
 MAP = read_map(trace_map(["x"]))

@@ -11,21 +11,28 @@ from itertools import pairwise
 import pytest
 from rich.console import Console
 
-from analysis import advice
-from analysis.critical import schedule
-from analysis.findings import findings
-from analysis.observed import Observation, read_map, read_trace
-from analysis.report import FrameRow, RunReport, StepRow, compare, executions, render
-from analysis.table import LEGEND, show
-from analysis.timing import analyse
-from analysis.units import duration, microseconds
-from analysis.words import binding_lines
-from gen.diagnostics import render as render_diagnostic
-from gen.load import load
-from gen.model import Chain, System
-from gen.terms import Ns
-from gen.ways import routed
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.findings import advice
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.present.report import (
+    FrameRow,
+    RunReport,
+    StepRow,
+    compare,
+    executions,
+    render,
+)
+from ravenchart.analysis.present.table import LEGEND, show
+from ravenchart.analysis.present.words import binding_lines
+from ravenchart.analysis.system.critical import schedule
+from ravenchart.analysis.system.observed import Observation, read_map, read_trace
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.analysis.units import duration, microseconds
+from ravenchart.gen.derive.ways import routed
+from ravenchart.gen.diagnostics import render as render_diagnostic
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
 from tests.support.certificates import random_system
 from tests.support.plant_model import plant
 from tests.support.pump import system_of

@@ -8,13 +8,13 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from analysis.graph import Ways, component_view, dependencies
-from analysis.network import frame_length
-from analysis.picture import LEGIBLE, draw
-from analysis.timing import analyse
-from gen.model import Chain, System
-from gen.terms import Ns
-from gen.ways import routed
+from ravenchart.analysis.present.picture import LEGIBLE, draw
+from ravenchart.analysis.system.graph import Ways, component_view, dependencies
+from ravenchart.analysis.system.network import frame_length
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.derive.ways import routed
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import Chain, System
 from tests.support.plant_model import plant
 from tests.support.systems import HERE, bus, message, system
 

@@ -13,12 +13,12 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from analysis.core.blocking import Section
-from analysis.core.responses import Reason
-from analysis.timing import Analysis, Verdict, analyse
-from analysis.words import growth_line
-from gen.model import BusErrors, SharedObject, System, Task, Tick
-from gen.terms import Ns
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.responses import Reason
+from ravenchart.analysis.present.words import growth_line
+from ravenchart.analysis.system.timing import Analysis, Verdict, analyse
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import BusErrors, SharedObject, System, Task, Tick
 from tests.support.core_cases import cases
 from tests.support.pump import system_of
 from tests.support.simulation import longest_responses

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gen.diagnostics import CODES
+from ravenchart.gen.diagnostics import CODES
 from tests.support.bad_models import BAD_MODELS, CASES, loaded, messages
 
 

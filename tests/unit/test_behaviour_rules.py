@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gen.diagnostics import Severity
+from ravenchart.gen.diagnostics import Severity
 from tests.support.behaviour_models import model, only, region, said
 
 BOTH = "{A: {}, B: {}}"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
-from behaviour.rules import SECONDS, findings
-from gen.model import System
+from ravenchart.behaviour.rules import SECONDS, findings
+from ravenchart.gen.model.system import System
 from tests.support.behaviour_models import model, region
 
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import can
 import pytest
 
-from hw_can.bench.drives import PERIOD, Bench
-from hw_can.bench.peer import BenchError, Codec, Peer, Values
-from hw_can.bench.scenario import parse_scenario
+from ravenchart.hw_can.bench.drives import PERIOD, Bench
+from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer, Values
+from ravenchart.hw_can.bench.scenario import parse_scenario
 from tests.support.bench_files import scenario_text
 from tests.support.robot_files import dbc
 

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-import ravenchart.demo.process as process
-from analysis.observed import TraceError, read_map, read_trace
-from analysis.report import Comparison, StepRow
-from hw_can.bench.peer import BenchError
-from hw_can.bench.scenario import ScenarioError, TraceCheck, parse_scenario
-from ravenchart.demo import expected, judge, summary
-from ravenchart.demo.process import Ended
-from ravenchart.demo.result import RunResult
-from ravenchart.run import (
+import ravenchart.running.process as process
+from ravenchart.analysis.present.report import Comparison, StepRow
+from ravenchart.analysis.system.observed import TraceError, read_map, read_trace
+from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.bench.scenario import ScenarioError, TraceCheck, parse_scenario
+from ravenchart.running import expected, judge, summary
+from ravenchart.running.process import Ended
+from ravenchart.running.result import RunResult
+from ravenchart.running.running import (
     Controller,
     RunRequest,
     print_summary,

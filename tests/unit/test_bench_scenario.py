@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hw_can.bench.scenario import (
+from ravenchart.hw_can.bench.scenario import (
     STEPS,
     Expect,
     Hold,

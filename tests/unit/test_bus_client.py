@@ -12,8 +12,8 @@ from pathlib import Path
 import can
 import pytest
 
-from hw_can.bench.bus_client import RavenchartBus
-from hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import WAIT, taken
 

@@ -6,15 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from analysis.claims import claims_of
-from analysis.timing import analyse
-from behaviour.rules import findings
-from gen.derive import programs
-from gen.diagnostics import render
-from gen.generate import generate
-from gen.load import load, read_file
-from gen.model import System, Work
-from gen.trace import CONTROLLER_STATES, elements
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.behaviour.rules import findings
+from ravenchart.gen.derive.completion import programs
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
+from ravenchart.gen.files.load import read_file
+from ravenchart.gen.model.system import System, Work
+from ravenchart.gen.pipeline import load
 from tests.support.two_nodes import AFTER, MODEL, TOGETHER, by_chart, loaded, said, system_of
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hw_can.bench.bus_records import (
+from ravenchart.hw_can.bench.bus_records import (
     MARK,
     RECORD_BYTES,
     Flag,

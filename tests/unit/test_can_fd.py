@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis.report import render
-from analysis.timing import analyse
-from gen.draw.structure import structure_dot
-from gen.generate import generate
-from gen.model import System
-from ravenchart import steps
+from ravenchart.analysis.present.report import render
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.building import steps
+from ravenchart.gen.draw.structure import structure_dot
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.system import System
 from tests.support.pump import PUMP, loaded
 
 FIELDS = [f"part_{letter}" for letter in "abcdefghijklmnopqrst"]

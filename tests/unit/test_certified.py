@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis.claims import claims_of
-from analysis.timing import analyse
-from gen.generate import generate
-from gen.model import System
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.building import steps
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.system import System
+from ravenchart.paths import ROOT
 from tests.support.certificates import certificate, changed, compiled
 from tests.support.systems import bus, message, system, task
 from tests.support.two_nodes import system_of

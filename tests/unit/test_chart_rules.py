@@ -7,13 +7,6 @@ import pytest
 from tests.support.chart_models import chart_text, found
 from tests.support.pump import loaded
 
-
-@pytest.fixture(autouse=True)
-def _language_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Names that clash in the generated program are found by generating it: not here."""
-    monkeypatch.setattr("gen.load.clashes", lambda system: [])
-
-
 # --- What one step sends -----------------------------------------------------------
 
 TOLD = "ports:\n  told: {out: Distance}\n"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gen.statechart import (
+from ravenchart.gen.language.terms import InState, Name, Operation, Raise, Reading, Set
+from ravenchart.gen.model.statechart import (
     DONE,
     After,
     Completion,
@@ -15,15 +16,7 @@ from gen.statechart import (
     Segment,
     TransitionKind,
 )
-from gen.terms import InState, Name, Operation, Raise, Reading, Set
 from tests.support.chart_models import chart_text, component_of, found, region_of
-
-
-@pytest.fixture(autouse=True)
-def _language_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Names that clash in the generated program are found by generating it: not here."""
-    monkeypatch.setattr("gen.load.clashes", lambda system: [])
-
 
 BOTH = """\
 A: {}

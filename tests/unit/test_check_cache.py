@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-import behaviour.rules
-from gen.diagnostics import Diagnostic
-from gen.model import System
-from ravenchart import check_cache, kept, steps
 from ravenchart.__main__ import main
-from ravenchart.random_models import random_model
+from ravenchart.behaviour import rules
+from ravenchart.building import check_cache, kept, steps
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.model.system import System
+from tests.bench.random_models import random_model
 
 
 @pytest.fixture
@@ -19,13 +19,13 @@ def looked(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     """The systems that the rules of behaviour look at, with an empty cache."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     names: list[str] = []
-    findings = behaviour.rules.findings
+    findings = rules.findings
 
     def counted(system: System, seconds: float) -> tuple[Diagnostic, ...]:
         names.append(system.name)
         return findings(system, seconds)
 
-    monkeypatch.setattr("behaviour.rules.findings", counted)
+    monkeypatch.setattr("ravenchart.behaviour.rules.findings", counted)
     return names
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from analysis.core.allocation import (
+from ravenchart.analysis.core.allocation import (
     Activity,
     Allocation,
     Strategy,
@@ -18,9 +18,9 @@ from analysis.core.allocation import (
     by_period,
     checked,
 )
-from analysis.core.blocking import Section
-from analysis.core.platform import Platform
-from analysis.core.tasks import Task
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.tasks import Task
 
 
 def names(tables: Sequence[Table]) -> list[list[str]]:

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.core import holistic
-from analysis.core.bus import Bus, Errors, Frame
-from analysis.core.can import analyse, load, response_under
-from analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits, rank
-from analysis.core.holistic import Network
-from analysis.core.responses import Reason
-from analysis.core.tasks import Task
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.can import analyse, load, response_under
+from ravenchart.analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits, rank
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.responses import Reason
+from ravenchart.analysis.core.tasks import Task
 
 BUS = Bus(bit_time=1)
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import pytest
 
-from analysis.core import holistic
-from analysis.core.bus import Bus, Frame
-from analysis.core.chains import Chain, Hop, Latency, Step, latency
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.responses import Reason
-from analysis.core.tasks import Task
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.chains import Chain, Hop, Latency, Step, latency
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.responses import Reason
+from ravenchart.analysis.core.tasks import Task
 
 
 def task(name: str, cost: int, period: int, core: str, priority: int = 1, **more: Any) -> Task:

@@ -7,10 +7,10 @@ import random
 from dataclasses import replace
 from fractions import Fraction
 
-from analysis.core import holistic
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Frame
-from analysis.core.changes import (
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.changes import (
     STEPS,
     Kind,
     moved,
@@ -22,8 +22,8 @@ from analysis.core.changes import (
     slower,
     stretched,
 )
-from analysis.core.holistic import Network, met
-from analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.holistic import Network, met
+from ravenchart.analysis.core.tasks import Row, Task
 from tests.support.random_networks import random_network
 
 #  b needs 5 + 2 x 3 = 11 us within 10.

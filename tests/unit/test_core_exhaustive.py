@@ -15,11 +15,11 @@ from itertools import product
 
 import pytest
 
-from analysis.core import can
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Frame
-from analysis.core.fixed_priority import analyse
-from analysis.core.tasks import Row, Task
+from ravenchart.analysis.core import can
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.fixed_priority import analyse
+from ravenchart.analysis.core.tasks import Row, Task
 from tests.support.exhaustive import Toy, longest_responses
 
 LONG = "RAVENCHART_LONG_TESTS" in os.environ

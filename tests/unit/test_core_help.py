@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.core import can, fixed_priority
-from analysis.core.assignment import (
+from ravenchart.analysis.core import can, fixed_priority
+from ravenchart.analysis.core.assignment import (
     Order,
     audsley_frames,
     audsley_tasks,
@@ -19,10 +19,10 @@ from analysis.core.assignment import (
     with_priorities,
     with_ranks,
 )
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Frame
-from analysis.core.sensitivity import growth, scaled, scaling, tightest
-from analysis.core.tasks import Row, Task
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.sensitivity import growth, scaled, scaling, tightest
+from ravenchart.analysis.core.tasks import Row, Task
 
 
 def met(tasks: list[Task] | tuple[Task, ...], sections: list[Section]) -> bool:

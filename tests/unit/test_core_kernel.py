@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.core import fixed_priority, kernel
-from analysis.core.blocking import Section
-from analysis.core.fixed_priority import analyse, bounds
-from analysis.core.platform import Platform
-from analysis.core.responses import Response
-from analysis.core.tasks import Row, Task
+from ravenchart.analysis.core import fixed_priority, kernel
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.fixed_priority import analyse, bounds
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.tasks import Row, Task
 
 NEVER = 10**9
 

@@ -8,16 +8,16 @@ from fractions import Fraction
 
 import pytest
 
-from analysis.core import fixed_priority, holistic, offsets
-from analysis.core.assignment import audsley_tasks, with_priorities
-from analysis.core.blocking import Section
-from analysis.core.changes import stretched
-from analysis.core.fixed_priority import analyse
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.responses import Response
-from analysis.core.sensitivity import network_scaling
-from analysis.core.tasks import Row, Task, plain
+from ravenchart.analysis.core import fixed_priority, holistic, offsets
+from ravenchart.analysis.core.assignment import audsley_tasks, with_priorities
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.changes import stretched
+from ravenchart.analysis.core.fixed_priority import analyse
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.sensitivity import network_scaling
+from ravenchart.analysis.core.tasks import Row, Task, plain
 
 
 def task(name: str, priority: int, cost: int, period: int, offset: int | None) -> Task:

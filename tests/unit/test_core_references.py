@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from analysis.core import can, fixed_priority, holistic
-from analysis.core.assignment import (
+from ravenchart.analysis.core import can, fixed_priority, holistic
+from ravenchart.analysis.core.assignment import (
     Order,
     audsley_frames,
     audsley_tasks,
@@ -17,11 +17,11 @@ from analysis.core.assignment import (
     with_priorities,
     with_ranks,
 )
-from analysis.core.bus import Bus, Frame
-from analysis.core.chains import Chain, Hop, Step, latency
-from analysis.core.frames import classic_bits
-from analysis.core.responses import Response
-from analysis.core.sensitivity import network_scaling
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.chains import Chain, Hop, Step, latency
+from ravenchart.analysis.core.frames import classic_bits
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.sensitivity import network_scaling
 from tests.support.core_cases import (
     bus_of,
     cases,

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.core.blocking import Section, blockers, ceilings
-from analysis.core.fixed_priority import analyse, response_under
-from analysis.core.multiframe import Demand
-from analysis.core.platform import Platform
-from analysis.core.responses import Reason, Response
-from analysis.core.tasks import Row, Task, plain
+from ravenchart.analysis.core.blocking import Section, blockers, ceilings
+from ravenchart.analysis.core.fixed_priority import analyse, response_under
+from ravenchart.analysis.core.multiframe import Demand
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.responses import Reason, Response
+from ravenchart.analysis.core.tasks import Row, Task, plain
 from tests.support.core_cases import cases, sections_of, tasks_of
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gen.terms import Literal, Operation
+from ravenchart.gen.language.terms import Literal, Operation
 from tests.unit.test_expressions import checked, refused, tree
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from gen.derive import frame_distance, prioritised
-from gen.load import load
-from gen.model import Processor, System
-from gen.terms import Ns
+from ravenchart.gen.derive.completion import frame_distance, prioritised
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import Processor, System
+from ravenchart.gen.pipeline import load
 from tests.support.pump import system_of
 
 ROOT = Path(__file__).parent.parent.parent

@@ -7,17 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from analysis.figures import figures
-from analysis.timing import analyse
-from behaviour.rules import findings
-from gen.claims import Claims
-from gen.commands import Device
-from gen.diagnostics import render
-from gen.generate import generate, program, simulated_drivers, user_units
-from gen.load import Loaded, load
-from gen.model import System
-from ravenchart import simulate, steps
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.present.figures import figures
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.behaviour.rules import findings
+from ravenchart.building import steps
+from ravenchart.commands import simulate
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.emit.program import generate, program, simulated_drivers, user_units
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.commands import Device
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.paths import ROOT
 
 MODEL = (ROOT / "tests" / "feature" / "devices" / "model.yaml").read_text()
 

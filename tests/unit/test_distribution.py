@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from analysis.claims import claims_of
-from analysis.timing import analyse
-from gen.derive import on_one_node, programs
-from gen.generate import generate
-from gen.model import System
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.derive.completion import on_one_node, programs
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.system import System
 from tests.support.two_nodes import BUS, RECEPTION, TOGETHER, loaded, said, system_of
 
 

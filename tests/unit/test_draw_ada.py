@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from gen.draw.ada_chart import picture_of_ada
-from gen.draw.ada_text import NotDeclaredError
-from gen.draw.chart import chart_dot
-from gen.draw.picture import Picture, Shape
-from gen.emit.ada_text import print_unit
-from gen.emit.charts.declared import emit_region
-from gen.emit.components import emit_component
 from ravenchart.__main__ import WRONG, main
-from ravenchart.toolchain import ROOT
+from ravenchart.gen.draw.ada_chart import picture_of_ada
+from ravenchart.gen.draw.ada_text import NotDeclaredError
+from ravenchart.gen.draw.chart import chart_dot
+from ravenchart.gen.draw.picture import Picture, Shape
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.charts.declared import emit_region
+from ravenchart.gen.emit.components.packages import emit_component
+from ravenchart.paths import ROOT
 from tests.support.every_construct import every_construct
 from tests.support.plant_model import plant
 

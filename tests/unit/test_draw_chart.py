@@ -11,17 +11,19 @@ from xml.etree import ElementTree
 
 import pytest
 
-from gen.draw import structure_text
-from gen.draw.chart import chart_dot
-from gen.draw.look import ROOM
-from gen.draw.mermaid import mermaid
-from gen.draw.picture import Arrow, Label, Picture, picture
-from gen.draw.plantuml import plantuml
-from gen.draw.structure import structure_dot
-from gen.draw.wrapping import wrapped
-from gen.load import load
-from ravenchart import draw, toolchain
-from ravenchart.toolchain import ROOT, ToolMissing
+from ravenchart.building import toolchain
+from ravenchart.building.toolchain import ToolMissing
+from ravenchart.commands import draw
+from ravenchart.gen.draw import structure_text
+from ravenchart.gen.draw.chart import chart_dot
+from ravenchart.gen.draw.look import ROOM
+from ravenchart.gen.draw.mermaid import mermaid
+from ravenchart.gen.draw.picture import Arrow, Label, Picture, picture
+from ravenchart.gen.draw.plantuml import plantuml
+from ravenchart.gen.draw.structure import structure_dot
+from ravenchart.gen.draw.wrapping import wrapped
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
 from tests.support.every_construct import every_construct
 from tests.support.plant_model import plant
 from tests.support.random_charts import model_of
@@ -334,6 +336,4 @@ def test_structure_has_instances_ports_wires_messages_and_tables() -> None:
 def test_drawings_are_the_same_each_time_and_name_no_path(form: str) -> None:
     first, second = draw.texts(plant(), form), draw.texts(plant(), form)
     assert first == second
-    assert all(
-        "plant.yaml" not in text and str(toolchain.ROOT) not in text for text in first.values()
-    )
+    assert all("plant.yaml" not in text and str(ROOT) not in text for text in first.values())

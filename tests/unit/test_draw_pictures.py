@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from gen.draw.svg import mark
-from ravenchart import draw, steps
 from ravenchart.__main__ import main
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.commands import draw
+from ravenchart.gen.draw.svg import mark
+from ravenchart.paths import ROOT
 
 PICTURES = ROOT / "docs" / "pictures"
 EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/model.yaml"))

@@ -6,10 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.draw.words import action, expression, trigger
-from gen.expressions import Term, parse
-from gen.statechart import After, Completion, Every, OnEvent, Segment, Trigger, When
-from gen.terms import (
+from ravenchart.gen.draw.words import action, expression, trigger
+from ravenchart.gen.language.expressions import Term, parse
+from ravenchart.gen.language.terms import (
     BOOLEAN,
     Action,
     Expression,
@@ -20,13 +19,22 @@ from gen.terms import (
     Name,
     Ns,
     Operation,
-    Origin,
     PortTest,
     Raise,
     Reading,
     Send,
     Set,
 )
+from ravenchart.gen.model.statechart import (
+    After,
+    Completion,
+    Every,
+    OnEvent,
+    Segment,
+    Trigger,
+    When,
+)
+from ravenchart.gen.origins import Origin
 
 HERE = Origin("m.yaml", 1, 1)
 COUNT = IntegerType("Count", HERE, 0, 9)

@@ -10,16 +10,16 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from analysis.core import holistic
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Errors, Frame
-from analysis.core.chains import Chain, Hop, Step
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.tasks import Row, Task
-from analysis.exchange import FORMATS, Unfit, cheddar, mast, pycpa
-from analysis.exchange.mast_text import Attributes, Object, Value, parse, printed
-from analysis.exchange.shapes import background, in_queues, spelled_out, unqueued
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.chains import Chain, Hop, Step
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.exchange import FORMATS, Unfit, cheddar, mast, pycpa
+from ravenchart.analysis.exchange.mast_text import Attributes, Object, Value, parse, printed
+from ravenchart.analysis.exchange.shapes import background, in_queues, spelled_out, unqueued
 from tests.support.core_cases import REFERENCE, two_nodes
 from tests.support.random_networks import random_network
 

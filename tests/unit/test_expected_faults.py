@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.observed import Observation, Releases, TraceMap
-from analysis.report import Comparison, Execution
-from gen.terms import Ns
-from hw_can.bench.scenario import Scenario, ScenarioError, parse_scenario
-from ravenchart.demo import expected
-from ravenchart.demo.process import Ended
+from ravenchart.analysis.present.report import Comparison, Execution
+from ravenchart.analysis.system.observed import Observation, Releases, TraceMap
+from ravenchart.gen.language.terms import Ns
+from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, parse_scenario
+from ravenchart.running import expected
+from ravenchart.running.process import Ended
 from tests.support.faults import shows
 
 ENDED = Ended(0, killed=False, real_time=True, warnings=())

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from gen.expressions import Malformed, Term, parse
-from gen.intervals import apply, quotient
-from gen.names import Findings, Scope
-from gen.terms import (
+from ravenchart.gen.files.located import Place
+from ravenchart.gen.language.expressions import Malformed, Term, parse
+from ravenchart.gen.language.intervals import apply, quotient
+from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.terms import (
     BOOLEAN,
     BUILT_IN,
     EnumerationType,
@@ -18,15 +19,14 @@ from gen.terms import (
     Literal,
     Name,
     Operation,
-    Origin,
     PortTest,
     Reading,
     RecordType,
     Type,
 )
-from gen.tree import Place
-from gen.typed import fitting, read
-from gen.vocabulary import Checked, Vocabulary
+from ravenchart.gen.origins import Origin
+from ravenchart.gen.resolve.typed import fitting, read
+from ravenchart.gen.resolve.vocabulary import Checked, Vocabulary
 
 PLACE = Place(Origin("m.yaml", 7, 11), exact=True)
 LENGTH = IntegerType("Length", BUILT_IN, -100, 100, "mm")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ravenchart.simulate import unexpected
+from ravenchart.commands.simulate import unexpected
 from tests.support.behaviour_models import model, region, said
 from tests.support.interpreted import stimuli_of
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from gen.generate import generate
-from ravenchart import house, steps
 from ravenchart.__main__ import OK, main
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.emit.program import generate
+from ravenchart.paths import ROOT
+from tests import house
 
 EXAMPLES = house.EXAMPLES
 

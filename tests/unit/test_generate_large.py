@@ -11,11 +11,11 @@ from pstats import Stats
 
 import pytest
 
-from gen.claims import Claims
-from gen.emit.naming import ada_case
-from gen.generate import _without_claims, generate
-from gen.load import load
-from ravenchart.large_models import large_model
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.program import _without_claims, generate
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.pipeline import load
+from tests.bench.large_models import large_model
 
 
 def _calls(components: int, regions: int) -> int:
@@ -54,8 +54,8 @@ def test_many_processes_make_the_same_as_one(monkeypatch: pytest.MonkeyPatch) ->
         started.append(1)
         return ProcessPoolExecutor(mp_context=mp_context, initializer=initializer)
 
-    monkeypatch.setattr("gen.generate.MANY", 8)
-    monkeypatch.setattr("gen.parallel.ProcessPoolExecutor", counted)
+    monkeypatch.setattr("ravenchart.gen.emit.program.MANY", 8)
+    monkeypatch.setattr("ravenchart.gen.parallel.ProcessPoolExecutor", counted)
     _without_claims.cache_clear()
     assert generate(system, Claims()) == alone
     assert started

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from gen.emit.ada_text import print_unit
-from gen.emit.charts.declared import emit_region
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.charts.declared import emit_region
 from tests.support.interpreted import chart_system
 
 CHART = """

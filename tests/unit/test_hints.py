@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from behaviour.rules.invariants import Broken, _not_inductive
-from gen.component import Invariant
-from gen.terms import BUILT_IN
-from ravenchart import steps
 from ravenchart.__main__ import main
-from ravenchart.toolchain import ROOT
+from ravenchart.behaviour.rules.invariants import Broken, _not_inductive
+from ravenchart.building import steps
+from ravenchart.gen.language.terms import BUILT_IN
+from ravenchart.gen.model.component import Invariant
+from ravenchart.paths import ROOT
 from tests.support.pump import loaded
 from tests.support.systems import HERE
 

@@ -10,13 +10,14 @@ from pathlib import Path
 import can
 import pytest
 
-from hw_can.bench.driver_cases import Driver, cases
-from hw_can.bench.echo import Echo, Standing
-from hw_can.bench.loopback.ends import Ends, Setup, open_ends
-from hw_can.bench.loopback.suite import LoopbackResult, Verdict, run
-from ravenchart import hw_test, toolchain
-from ravenchart.fact_test import facts, junit
-from ravenchart.hw_test import Step, Total, load_order, missing, script, steps, total
+from ravenchart.building import toolchain
+from ravenchart.hw_can.bench.echo import Echo, Standing
+from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
+from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, run
+from tests.hardware import __main__ as hw_test
+from tests.hardware.__main__ import Step, Total, load_order, missing, script, steps, total
+from tests.hardware.driver_cases import Driver, cases
+from tests.hardware.fact_test import facts, junit
 
 DEPENDENCIES = """\
 kernel/drivers/net/can/sja1000/kvaser_pci.ko: kernel/sja1000.ko kernel/can-dev.ko

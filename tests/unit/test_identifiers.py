@@ -11,14 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.core import can
-from analysis.core.assignment import audsley_frames
-from analysis.core.bus import Bus, Frame
-from analysis.identifiers import Places
-from analysis.timing import Verdict, analyse
-from gen.diagnostics import Diagnostic
-from gen.model import System
-from ravenchart.steps import Refused, check, identified
+from ravenchart.analysis.core import can
+from ravenchart.analysis.core.assignment import audsley_frames
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.system.identifiers import Places
+from ravenchart.analysis.system.timing import Verdict, analyse
+from ravenchart.building.steps import Refused, check, identified
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.model.system import System
 from tests.support.pump import changed, codes, loaded, system_of
 
 

@@ -10,13 +10,13 @@ import pytest
 import yaml
 from cantools.database import Database
 
-from gen.emit.dbc import emit_dbc
-from gen.load import load
-from gen.model import System
 from ravenchart.__main__ import OK, WRONG, main
-from ravenchart.import_database import Periods, imported
-from ravenchart.steps import Refused
-from ravenchart.toolchain import ROOT
+from ravenchart.building.steps import Refused
+from ravenchart.databases.database import Periods, imported
+from ravenchart.gen.emit.buses.dbc import emit_dbc
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
 from tests.support.interpreted import plain
 
 

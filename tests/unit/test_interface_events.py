@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from analysis.claims import claims_of
-from analysis.timing import analyse
-from gen.diagnostics import render
-from gen.generate import generate
-from gen.load import load
-from gen.model import System
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
 
 MODEL = (ROOT / "tests" / "nodes" / "gripper" / "model.yaml").read_text()
 TOGETHER = ("component: Boss, node: desk", "component: Boss, node: board")

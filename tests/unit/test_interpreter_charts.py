@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from behaviour.interpreter import RegionRun
-from behaviour.machine import InstanceRun, Machine
-from behaviour.tree import TOP
-from gen.model import System
-from gen.statechart import After, Every, PseudoKind
-from gen.terms import IntegerType, Value
+from ravenchart.behaviour.interpreter.machine import InstanceRun, Machine
+from ravenchart.behaviour.interpreter.region import RegionRun
+from ravenchart.behaviour.tree import TOP
+from ravenchart.gen.language.terms import IntegerType, Value
+from ravenchart.gen.model.statechart import After, Every, PseudoKind
+from ravenchart.gen.model.system import System
 from tests.support import random_charts, reference_charts
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.reference_charts import chart_of, events_of, labels_of, model_of

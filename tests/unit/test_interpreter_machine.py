@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from behaviour.machine import Machine
-from gen.terms import Ns
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.gen.language.terms import Ns
 from tests.support.interpreted import component_system, records, stimuli_of
 
 LISTENER = """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from behaviour.interpreter import Stuck
+from ravenchart.behaviour.interpreter.region import Stuck
 from tests.support.interpreted import run_of, steps
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from behaviour.stimuli import Raised, read
-from behaviour.traces import Record, seconds
-from gen.model import System
-from gen.terms import Ns
 from ravenchart.__main__ import main
+from ravenchart.behaviour.interpreter.stimuli import Raised, read
+from ravenchart.behaviour.interpreter.traces import Record, seconds
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import System
 from tests.support.interpreted import component_system
 
 PART = """

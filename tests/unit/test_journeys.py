@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from analysis.journeys import Journey, journeys
-from analysis.observed import Observation, read_map, read_trace, together
-from analysis.timing import Analysis, analyse
-from gen.derive import programs
-from gen.trace import trace_json
+from ravenchart.analysis.system.journeys import Journey, journeys
+from ravenchart.analysis.system.observed import Observation, read_map, read_trace, together
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.gen.derive.completion import programs
+from ravenchart.gen.emit.tables.trace_map import trace_json
 from tests.support.two_nodes import system_of
 
 MS = 1_000_000

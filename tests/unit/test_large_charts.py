@@ -7,13 +7,13 @@ from time import process_time
 
 import pytest
 
-from behaviour.rules import SECONDS, UNFINISHED, findings
-from behaviour.rules.reach import Clock, Reach
-from gen.claims import Claims
-from gen.generate import generate
-from gen.model import System
-from ravenchart.large_charts import large_chart
-from ravenchart.random_models import random_model
+from ravenchart.behaviour.rules import SECONDS, UNFINISHED, findings
+from ravenchart.behaviour.rules.reach import Clock, Reach
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.system import System
+from tests.bench.large_charts import large_chart
+from tests.bench.random_models import random_model
 from tests.support.interpreted import system_of
 
 
@@ -31,7 +31,7 @@ def test_120_leaves_are_checked_to_the_end() -> None:
 
 
 def test_each_further_block_is_as_many_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("behaviour.rules.reach.MOST_NODES", 9)
+    monkeypatch.setattr("ravenchart.behaviour.rules.reach.MOST_NODES", 9)
     nodes = [len(_reach(system_of(large_chart(b))).threads[0].nodes) for b in (2, 4, 6)]
     assert nodes[2] - nodes[1] == nodes[1] - nodes[0] == 2 * 13
 

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from gen.diagnostics import render
-from gen.load import LARGEST, load
-from gen.terms import Origin
-from gen.tree import grow, scalar
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.files.load import LARGEST
+from ravenchart.gen.files.located import grow, scalar
+from ravenchart.gen.origins import Origin
+from ravenchart.gen.pipeline import load
 from tests.support.pump import PUMP, changed, codes, loaded, system_of
 
 ROOT = Path(__file__).parent.parent.parent

@@ -10,14 +10,14 @@ from xml.etree import ElementTree
 import can
 import pytest
 
-from hw_can.bench.bus_records import NO_DATA, Flag, Kind, Record
-from hw_can.bench.loopback.cases import CASES
-from hw_can.bench.loopback.ends import Ends, Setup, open_ends
-from hw_can.bench.loopback.suite import CaseResult, LoopbackResult, Verdict, histogram, run
-from hw_can.bench.peer import BenchError
-from ravenchart import loopback_files
 from ravenchart.__main__ import main
-from ravenchart.loopback import verdict_line
+from ravenchart.commands import loopback_files
+from ravenchart.commands.loopback import verdict_line
+from ravenchart.hw_can.bench.bus_records import NO_DATA, Flag, Kind, Record
+from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.conformance.cases import CASES
+from ravenchart.hw_can.conformance.ends import Ends, Setup, open_ends
+from ravenchart.hw_can.conformance.suite import CaseResult, LoopbackResult, Verdict, histogram, run
 from tests.support.bus_server import BusServer
 from tests.support.slcan_relay import SlcanRelay
 

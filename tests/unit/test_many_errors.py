@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from gen.diagnostics import MOST, error, render_all
-from gen.terms import Origin
+from ravenchart.gen.diagnostics import MOST, error, render_all
+from ravenchart.gen.origins import Origin
 
 
 def test_the_first_of_many_errors_are_printed_and_the_rest_is_counted() -> None:

@@ -12,22 +12,22 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from analysis.claims import by_offsets, claims_of, uncertified
-from analysis.critical import schedule
-from analysis.figures import figures
-from analysis.findings import findings
-from analysis.report import render
-from analysis.table import show
-from analysis.timing import Analysis, analyse
-from gen import instants
-from gen.claims import Claims
-from gen.emit import certificate_offsets
-from gen.emit.ada_text import print_unit
-from gen.emit.certificate import emit_certificate
-from gen.emit.deployment import emit_deployment
-from gen.model import System, Task
-from gen.terms import Ns
-from ravenchart import steps
+from ravenchart.analysis.findings.claims import by_offsets, claims_of, uncertified
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.present.figures import figures
+from ravenchart.analysis.present.report import render
+from ravenchart.analysis.present.table import show
+from ravenchart.analysis.system.critical import schedule
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.building import steps
+from ravenchart.gen.derive import instants
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.certificate import offsets as certificate_offsets
+from ravenchart.gen.emit.certificate.package import emit_certificate
+from ravenchart.gen.emit.nodes.deployment import emit_deployment
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.system import System, Task
 from tests.support.certificates import (
     certificate,
     changed,

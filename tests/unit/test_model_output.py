@@ -8,10 +8,10 @@ from xml.etree import ElementTree as Xml
 
 import pytest
 
-from analysis.exchange.mast_text import parse
-from analysis.timing import analyse
-from gen.load import load
 from ravenchart.__main__ import OK, main
+from ravenchart.analysis.exchange.mast_text import parse
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.pipeline import load
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MODELS = [EXAMPLES / name / "model.yaml" for name in ("cartesian_robot", "three_components")]

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from gen.generate import generate, simulation
-from ravenchart import steps
-from ravenchart.mutate.catalogue import KINDS, mutants_of
-from ravenchart.mutate.mutants import NOTE, Files, Mutant, sampled
-from ravenchart.mutate.report import Outcome, as_json, explanations, reason_of, survivors, table
-from ravenchart.mutate.source import arms, branches, conjuncts, statements, subprogram
-from ravenchart.mutate.workbench import Verdict
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.emit.program import generate, simulation
+from ravenchart.paths import ROOT
+from tests.mutation.catalogue import KINDS, mutants_of
+from tests.mutation.mutants import NOTE, Files, Mutant, sampled
+from tests.mutation.report import Outcome, as_json, explanations, reason_of, survivors, table
+from tests.mutation.source import arms, branches, conjuncts, statements, subprogram
+from tests.mutation.workbench import Verdict
 
 ADA = """\
 package body P is

@@ -6,10 +6,10 @@ from itertools import product
 
 import pytest
 
-from gen.emit.naming import _unit_names
-from gen.generate import generate
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.gen.emit.ada.naming import _unit_names
+from ravenchart.gen.emit.program import generate
+from ravenchart.paths import ROOT
 
 UNITS = (
     "mm", "MM", "mV", "MV", "m/s", "m_per_s", "m^2", "m_2", "mm 2", "%", "percent",

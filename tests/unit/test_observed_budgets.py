@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart import steps
 from ravenchart.__main__ import OK, WRONG, main
+from ravenchart.building import steps
 
 PUMP = Path(__file__).parents[2] / "examples" / "pump"
 MODEL = PUMP / "model.yaml"

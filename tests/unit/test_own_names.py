@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from gen.claims import Claims
-from gen.diagnostics import Severity
-from gen.emit.ada_text import print_unit
-from gen.emit.naming import ada_case
-from gen.generate import program
-from gen.load import load
-from gen.names import RESERVED
+from ravenchart.gen.diagnostics import Severity
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.text import print_unit
+from ravenchart.gen.emit.program import program
+from ravenchart.gen.language.names import RESERVED
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.pipeline import load
 from tests.support.compiled import complaints
 from tests.support.interpreted import system_of
 

@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
-from analysis.core import holistic
-from analysis.plain.build import PlainSystem, load
-from analysis.plain.columns import KINDS, LARGEST
-from analysis.plain.results import analyse, everything
-from analysis.units import ratio
 from ravenchart.__main__ import main
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.plain.build import PlainSystem, load
+from ravenchart.analysis.plain.columns import KINDS, LARGEST
+from ravenchart.analysis.plain.results import analyse, everything
+from ravenchart.analysis.units import ratio
 from tests.support.core_cases import two_nodes
 
 HERE = Path(__file__).parents[1] / "plain"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gen.emit.quiet import has_decided_conditions
+from ravenchart.gen.emit.language.quiet import has_decided_conditions
 from tests.support.interpreted import component_system
 
 PART = """

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from gen.diagnostics import CODES
-from gen.load import load
-from gen.reference import TITLES, pages, schema
+from ravenchart.gen.diagnostics import CODES
+from ravenchart.gen.files.reference import TITLES, pages, schema
+from ravenchart.gen.pipeline import load
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).parent.parent.parent
 @pytest.mark.parametrize("name", sorted(pages()))
 def test_page_is_up_to_date(name: str) -> None:
     written = (ROOT / "docs" / name).read_text(encoding="utf-8")
-    assert written == pages()[name], "run python -m gen.reference"
+    assert written == pages()[name], "run `make docs`"
 
 
 def test_every_key_has_a_description() -> None:

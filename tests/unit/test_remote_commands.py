@@ -7,19 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from analysis.claims import claims_of
-from analysis.commands import costs
-from analysis.depths import depths
-from analysis.findings import findings
-from analysis.report import render as render_report
-from analysis.timing import analyse
-from gen.commands import Remote, RemoteRead, Server
-from gen.derive import on_one_node, programs
-from gen.diagnostics import render
-from gen.generate import generate
-from gen.load import Loaded, load
-from gen.model import System
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.present.report import render as render_report
+from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.depths import depths
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.derive.completion import on_one_node, programs
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.model.commands import Remote, RemoteRead, Server
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.paths import ROOT
 
 REQUESTS = ROOT / "tests" / "feature" / "requests" / "model.yaml"
 MODEL = (ROOT / "tests" / "nodes" / "commands" / "model.yaml").read_text()

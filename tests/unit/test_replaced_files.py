@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ravenchart.steps import replace_file
+from ravenchart.building.steps import replace_file
 
 
 def test_no_two_contents_of_a_file_have_the_same_second(tmp_path: Path) -> None:

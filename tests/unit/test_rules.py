@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from gen.component import Direction, PortKind
-from gen.model import Work
-from gen.statechart import After, OnEvent, Overflow, TransitionKind
-from gen.terms import If, Literal, Name, Send, Set
+from ravenchart.gen.language.terms import If, Literal, Name, Send, Set
+from ravenchart.gen.model.component import Direction, PortKind
+from ravenchart.gen.model.statechart import After, OnEvent, Overflow, TransitionKind
+from ravenchart.gen.model.system import Work
 from tests.support.pump import changed, codes, loaded, system_of
 
 TELL = "          - {send: valve, with: {mode: wanted, level: level}}\n"

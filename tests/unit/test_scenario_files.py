@@ -9,10 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from behaviour.stimuli import FORMS
-from hw_can.bench.scenario import BUS_EVENTS, STEPS, DriveForm, TraceCheck, parse_scenario
-from ravenchart import scenarios, steps, toolchain
 from ravenchart.__main__ import main
+from ravenchart.behaviour.interpreter.stimuli import FORMS
+from ravenchart.building import steps, toolchain
+from ravenchart.hw_can.bench.scenario import (
+    BUS_EVENTS,
+    STEPS,
+    DriveForm,
+    TraceCheck,
+    parse_scenario,
+)
+from ravenchart.running import scenarios
 from tests.support.processes import ROOT
 
 ROBOT = ROOT / "examples" / "cartesian_robot"

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis.timing import Analysis, analyse
-from gen.model import System
-from ravenchart import allocate
 from ravenchart.__main__ import OK, WRONG, main
+from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.commands import allocate
+from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
 
 MODEL = """\

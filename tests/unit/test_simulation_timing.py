@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.core import can, holistic
-from analysis.core.blocking import Section
-from analysis.core.bus import Bus, Errors, Frame
-from analysis.core.fixed_priority import analyse, response_under
-from analysis.core.holistic import Network
-from analysis.core.platform import Platform
-from analysis.core.responses import Response
-from analysis.core.tasks import Row, Task
-from analysis.simulation import worst
-from analysis.simulation.engine import simulate
-from analysis.simulation.phases import Inside, Phase, Scenario, chance_scenario
+from ravenchart.analysis.core import can, holistic
+from ravenchart.analysis.core.blocking import Section
+from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.fixed_priority import analyse, response_under
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.tasks import Row, Task
+from ravenchart.analysis.simulation import worst
+from ravenchart.analysis.simulation.engine import simulate
+from ravenchart.analysis.simulation.phases import Inside, Phase, Scenario, chance_scenario
 from tests.support.random_networks import random_network, with_offsets
 
 SYSTEMS = 1_000

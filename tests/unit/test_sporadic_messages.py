@@ -10,17 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from analysis.core import holistic
-from analysis.core.bus import Bus, Frame
-from analysis.core.chains import Chain, Hop, Latency, Step, latency
-from analysis.core.holistic import Network
-from analysis.core.tasks import Task
-from analysis.exchange import cheddar, mast, pycpa
-from analysis.findings import findings
-from analysis.plain.build import PlainSystem, load
-from analysis.plain.results import analyse
-from analysis.simulation.engine import simulate
-from analysis.simulation.phases import Phase, Scenario
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.chains import Chain, Hop, Latency, Step, latency
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.tasks import Task
+from ravenchart.analysis.exchange import cheddar, mast, pycpa
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.plain.build import PlainSystem, load
+from ravenchart.analysis.plain.results import analyse
+from ravenchart.analysis.simulation.engine import simulate
+from ravenchart.analysis.simulation.phases import Phase, Scenario
 from tests.support.certificates import certificate, compiled
 from tests.support.timing_models import QUEUE, analysed
 

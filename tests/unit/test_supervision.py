@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.observed import Observation, Releases, TraceMap, read_trace
-from analysis.report import Comparison, render
-from analysis.timing import analyse
-from gen.derive import SUPERVISOR
-from gen.emit.supervision import END_MARGIN
-from gen.load import load
-from gen.model import System
-from gen.terms import Ns
-from ravenchart.demo import judge
-from ravenchart.demo.process import Ended
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.present.report import Comparison, render
+from ravenchart.analysis.system.observed import Observation, Releases, TraceMap, read_trace
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.derive.completion import SUPERVISOR
+from ravenchart.gen.emit.nodes.supervision import END_MARGIN
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import load
+from ravenchart.paths import ROOT
+from ravenchart.running import judge
+from ravenchart.running.process import Ended
 
 MS = 1_000_000
 STATIONS = ROOT / "examples" / "three_components"

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis.findings import findings
-from analysis.timing import Analysis
-from analysis.words import verdict_line
-from gen.load import load
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.analysis.present.words import verdict_line
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.gen.pipeline import load
 from tests.support.certificates import certificate, compiled
 from tests.support.timing_models import CHART, KEPT, QUEUE, SEVERAL, SWITCHES, analysed
 

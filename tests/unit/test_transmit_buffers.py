@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis.timing import analyse
-from gen.diagnostics import render
-from gen.load import Loaded, load
-from gen.model import System
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.analysis.system.timing import analyse
+from ravenchart.building import steps
+from ravenchart.gen.diagnostics import render
+from ravenchart.gen.model.system import System
+from ravenchart.gen.pipeline import Loaded, load
+from ravenchart.paths import ROOT
 from tests.support.pump import PUMP
 from tests.support.pump import loaded as pump
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ravenchart import steps
-from ravenchart.toolchain import ROOT
+from ravenchart.building import steps
+from ravenchart.paths import ROOT
 
 
 def _put(folder: Path, name: str, text: str) -> steps.Checked:

@@ -6,10 +6,8 @@ each transition; `Is_Selection` says what is chosen. All proofs are about them.
 
 from __future__ import annotations
 
-from ...component import Component
-from ...model import System
-from ...statechart import Region, When
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     SPARK,
     Arg,
@@ -37,15 +35,18 @@ from ..ada import (
     member,
     number,
 )
-from ..naming import ada_case
-from ..terms import emit_expression
-from .compound import PASSED, Firing, Kind
+from ravenchart.gen.emit.language.compound import PASSED, Firing, Kind
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.terms import emit_expression
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region, When
+from ravenchart.gen.model.system import System
+
 from .deferring import declared_deferrals
 from .history import restored_functions, restored_place
 from .lanes import declared_lanes
 from .lasting import declared_domains
 from .operations import operations
-from .places import flat
 from .records import region_types
 from .shape import START, RegionShape, plain_args
 from .stepping import body_of

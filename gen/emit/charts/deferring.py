@@ -8,7 +8,8 @@ says which are *freed* by an exit: those among the first so many.
 
 from __future__ import annotations
 
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     Aggregate,
     Arg,
@@ -34,9 +35,9 @@ from ..ada import (
     equal,
     number,
 )
-from ..events import name_of
-from ..naming import ada_case
-from .compound import Kind
+from ravenchart.gen.emit.language.compound import Kind
+from ravenchart.gen.emit.language.events import name_of
+
 from .shape import RegionShape
 
 FREED = "Self.Freed"

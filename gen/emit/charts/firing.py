@@ -10,9 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...statechart import PseudoKind
-from ...terms import Flow
-from ..ada import (
+from ravenchart.gen.emit.ada.syntax import (
     NULL,
     TRUE,
     Aggregate,
@@ -41,13 +39,16 @@ from ..ada import (
     equal,
     number,
 )
-from ..terms import certain_sends, emit_flow, flow_names
-from .compound import Effect, Firing, Kind, Place, Step
+from ravenchart.gen.emit.language.compound import Effect, Firing, Kind, Place, Step
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.terms import certain_sends, emit_flow, flow_names
+from ravenchart.gen.language.terms import Flow
+from ravenchart.gen.model.statechart import PseudoKind
+
 from .history import Restoring
 from .lasting import Lasting, terminates
 from .moving import Moving
 from .nodes import NODES, Nodes, joined
-from .places import flat
 from .shape import START, RegionShape
 
 MANY = 24

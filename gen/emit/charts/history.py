@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ...statechart import Lane, PseudoKind
-from ..ada import (
+from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Case,
@@ -28,7 +27,9 @@ from ..ada import (
     call,
     equal,
 )
-from .compound import PASSED, Enter, Place, Step
+from ravenchart.gen.emit.language.compound import PASSED, Enter, Place, Step
+from ravenchart.gen.model.statechart import Lane, PseudoKind
+
 from .shape import Memory, RegionShape
 
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ...statechart import Lane
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Aspect,
@@ -43,8 +43,9 @@ from ..ada import (
     member,
     number,
 )
-from ..naming import ada_case
-from .compound import Firing
+from ravenchart.gen.emit.language.compound import Firing
+from ravenchart.gen.model.statechart import Lane
+
 from .firing import Moves
 from .selection import segment
 from .shape import START, RegionShape, plain_args

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...statechart import After, Every
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
     Aspect,
@@ -35,10 +35,11 @@ from ..ada import (
     equal,
     number,
 )
-from ..naming import ada_case
-from .compound import TOP, Firing, Kind, Place
+from ravenchart.gen.emit.language.compound import TOP, Firing, Kind, Place
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.model.statechart import After, Every
+
 from .deferring import COUNT, freed_after, freed_after_exit, kept_events
-from .places import flat
 from .shape import START, Memory, RegionShape
 
 _STOPPED = "Ravenchart.Timers.Stopped"

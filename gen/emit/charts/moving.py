@@ -7,9 +7,8 @@ preconditions of the procedures and by what is claimed before an effect.
 
 from __future__ import annotations
 
-from ...statechart import After, Every
-from ...terms import Flow
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     TRUE,
     Aspect,
@@ -29,13 +28,15 @@ from ..ada import (
     equal,
     number,
 )
-from ..naming import ada_case
-from ..terms import emit_flow
-from .compound import Enter, Place
+from ravenchart.gen.emit.language.compound import Enter, Place
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.terms import emit_flow
+from ravenchart.gen.language.terms import Flow
+from ravenchart.gen.model.statechart import After, Every
+
 from .deferring import freed_by
 from .lasting import Lasting
 from .nodes import Nodes, joined
-from .places import flat
 from .shape import RegionShape
 
 

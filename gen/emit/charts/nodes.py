@@ -13,8 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...statechart import Lane
-from ..ada import (
+from ravenchart.gen.emit.ada.syntax import (
     Aspect,
     Assign,
     Call,
@@ -35,8 +34,10 @@ from ..ada import (
     names_in,
     number,
 )
-from .compound import Place
-from .own_names import node_literal
+from ravenchart.gen.emit.language.compound import Place
+from ravenchart.gen.emit.language.own_names import node_literal
+from ravenchart.gen.model.statechart import Lane
+
 from .shape import RegionShape
 
 NODES = "Chart.Node"

@@ -5,7 +5,8 @@ All contracts are in terms of the chart as declared.
 
 from __future__ import annotations
 
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Call,
@@ -27,8 +28,8 @@ from ..ada import (
     member,
     number,
 )
-from ..events import name_of
-from ..naming import ada_case
+from ravenchart.gen.emit.language.events import name_of
+
 from .deferring import FREED
 from .lanes import followed
 from .lasting import Lasting

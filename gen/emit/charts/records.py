@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name, value
+from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     Aggregate,
     Arg,
@@ -19,10 +20,10 @@ from ..ada import (
     arguments,
     number,
 )
-from ..ada import Component as Field
-from ..components import reading_type
-from ..events import null_event
-from ..naming import ada_case, default_value, type_name, value
+from ravenchart.gen.emit.ada.syntax import Component as Field
+from ravenchart.gen.emit.components.packages import reading_type
+from ravenchart.gen.emit.language.events import null_event
+
 from .deferring import freed_field, freed_type
 from .shape import START, RegionShape, guard_operators, guards_of
 from .working import done_types, work_fields

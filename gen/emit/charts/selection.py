@@ -6,8 +6,8 @@ among many: what the prover must see at a time stays small.
 
 from __future__ import annotations
 
-from ...statechart import Lane, When
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Aspect,
     Assign,
@@ -30,10 +30,11 @@ from ..ada import (
     member,
     number,
 )
-from ..naming import ada_case
-from ..terms import emit_expression
-from .compound import PASSED, TOP, Firing, Kind, Place
-from .places import flat
+from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, Kind, Place
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.terms import emit_expression
+from ravenchart.gen.model.statechart import Lane, When
+
 from .shape import HELD, PASSING, RegionShape, plain_args
 
 FEW = 8

@@ -6,10 +6,34 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from ... import terms as m
-from ...component import Component
-from ...model import System
-from ...statechart import (
+from ravenchart.gen.emit.ada.naming import ada_case, region_package
+from ravenchart.gen.emit.ada.syntax import (
+    Arg,
+    Do,
+    Expr,
+    Param,
+    Ref,
+    Stmt,
+    arguments,
+    both,
+    call,
+    chain,
+)
+from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, Kind, Place, Step
+from ravenchart.gen.emit.language.events import carries, event_value
+from ravenchart.gen.emit.language.places import Places, flat
+from ravenchart.gen.emit.language.terms import (
+    Scope,
+    asks_event,
+    compared_states,
+    expressions_in,
+    names_in,
+    operators_in,
+    raise_in_list,
+)
+from ravenchart.gen.language import terms as m
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import (
     After,
     Completion,
     Every,
@@ -21,20 +45,7 @@ from ...statechart import (
     Transition,
     When,
 )
-from ..ada import Arg, Do, Expr, Param, Ref, Stmt, arguments, both, call, chain
-from ..events import carries, event_value
-from ..naming import ada_case, region_package
-from ..terms import (
-    Scope,
-    asks_event,
-    compared_states,
-    expressions_in,
-    names_in,
-    operators_in,
-    raise_in_list,
-)
-from .compound import PASSED, TOP, Firing, Kind, Place, Step
-from .places import Places, flat
+from ravenchart.gen.model.system import System
 
 START = "Initial_Entry"
 PASSING = "Passing"

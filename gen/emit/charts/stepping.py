@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     NULL,
     Arg,
     Aspect,
@@ -31,20 +32,14 @@ from ..ada import (
     equal,
     number,
 )
-from ..events import null_event
-from ..naming import ada_case
-from ..terms import expressions_in, flow_operators
+from ravenchart.gen.emit.language.events import null_event
+from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
+
 from .deferring import FREED, is_due
 from .firing import MANY, Moves
 from .lanes import fire, lane_step, passing_step
 from .selection import selectors
-from .shape import (
-    START,
-    RegionShape,
-    guard_operators,
-    guards_of,
-    plain_args,
-)
+from .shape import START, RegionShape, guard_operators, guards_of, plain_args
 from .working import notice_bodies
 
 

@@ -7,7 +7,8 @@ the state has been left, completes nothing, be the state entered again or not.
 
 from __future__ import annotations
 
-from ..ada import (
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     TRUE,
     Aspect,
@@ -27,8 +28,8 @@ from ..ada import (
     equal,
     number,
 )
-from ..naming import ada_case
-from .places import flat
+from ravenchart.gen.emit.language.places import flat
+
 from .shape import RegionShape
 
 _PARAMS = (Param("Self", "in out", "Region"), Param("Visit", "in", "Ravenchart.Event_Count"))

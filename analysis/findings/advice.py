@@ -1,0 +1,247 @@
+"""What to change: single changes that suffice, those of least effect on the design first.
+
+Where deadlines are missed, the aim is to meet them; where they are met with little room,
+that all execution times may still grow by `ROOM`. The same for models and plain files:
+these say what can be changed, `core.changes` how much of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ravenchart.analysis.core import changes, holistic
+from ravenchart.analysis.core.changes import Change, Kind, Met, Part
+from ravenchart.analysis.core.holistic import Network
+from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling, scaled_network
+from ravenchart.analysis.units import microseconds, percent
+from ravenchart.gen.derive.completion import PROBE, SUPERVISOR
+
+if TYPE_CHECKING:
+    from ravenchart.analysis.system.timing import Analysis
+
+ROOM = Fraction(1, 5)
+"""With less than that to grow by, a system that meets its deadlines is tight."""
+
+LARGEST = 120
+"""With more tasks and messages than this, no changes are looked for."""
+
+TRIED = 24
+"""Execution times and periods that are tried, those of most load first."""
+
+SHOWN = 12
+"""Changes that are told."""
+
+WEIGHED = 6
+"""Parts of most load of which it is told what they are worth where nothing is enough."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What of a network can be changed.
+
+    ``costs`` are parts by what people call them, ``periods`` items that events release,
+    ``order`` tasks and frames whose priority or identifier is free.
+    """
+
+    costs: Mapping[str, Sequence[Part]]
+    periods: Sequence[str]
+    order: Sequence[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """The changes, best first, and whether they are for ``room`` or to meet deadlines.
+
+    Where none is enough, ``relief`` tells what each of some parts is worth, most first: the
+    factor of all execution times with which deadlines are met without that part.
+    """
+
+    network: Network
+    choices: Choices
+    room: bool
+    changes: tuple[Change, ...]
+    relief: tuple[tuple[str, Fraction], ...] = ()
+
+
+def of_model(analysis: Analysis) -> Advice | None:
+    """What to change in a model; None where there is room enough, or too much to look at."""
+    system, network = analysis.system, analysis.network
+    costs: dict[str, list[Part]] = {}
+    for task in system.tasks:
+        if task.released_by is not None:
+            bus = task.element.partition(".")[0]
+            costs.setdefault(f"driver_wcet of {bus}", []).append((task.element, ""))
+        elif not task.slots:
+            costs[task.element] = [(task.element, "")]
+        costs |= {slot.element: [(task.element, slot.element)] for slot in task.slots}
+    own = {f"{node.name}.{name}" for node in system.nodes for name in (PROBE, SUPERVISOR)}
+    free = [t for t in system.tasks if t.released_by is None and t.element not in own]
+    periods = [task.element for task in free if not task.sporadic]
+    periods += [message.element for message in system.messages if message.source is None]
+    order = [*(task.element for task in free), *(m.element for m in system.messages)]
+
+    def holds(other: Network) -> bool:
+        return any(
+            found.met and replace(analysis, network=other, found=found, plain=found).schedulable
+            for found in holistic.analyses(other)
+        )
+
+    choices = Choices(costs, periods, order)
+    return advice(network, choices, analysis.scaling, analysis.schedulable, holds)
+
+
+def of_network(network: Network, scaling: NetworkScaling | None, *, met: bool) -> Advice | None:
+    """What to change in a plain file."""
+    costs = {
+        f"{task.name}.{row}" if row else task.name: [(task.name, row)]
+        for task in network.tasks
+        for _, row in changes.parts(task)
+        if row or task.cost
+    }
+    items = list(network.items())
+    periods = [name for name in items if name not in network.released_by]
+    return advice(network, Choices(costs, periods, items), scaling, met, holistic.met)
+
+
+def advice(
+    network: Network, choices: Choices, scaling: NetworkScaling | None, met: bool, holds: Met
+) -> Advice | None:
+    """The changes that are tried, ranked; ``met`` says how the network is as it stands."""
+    if len(network.items()) > LARGEST:
+        return None
+    if met and (scaling is None or scaling.factor >= 1 + ROOM):
+        return None
+    tasks = {task.name for task in network.tasks}
+
+    def aim(other: Network) -> bool:
+        return holds(scaled_network(other, 1 + ROOM, tasks) if met else other)
+
+    loads = {name: item.utilisation for name, item in network.items().items()}
+    costs = sorted(choices.costs, key=lambda name: -_load(network, choices.costs[name]))
+    periods = sorted(choices.periods, key=lambda name: -loads[name])
+    found = [
+        *changes.reordered(network, choices.order, aim),
+        *changes.shorter(network, {name: choices.costs[name] for name in costs[:TRIED]}, aim),
+        *changes.slower(network, periods[:TRIED], aim),
+    ]
+    late = None if scaling is None else scaling.binding
+    if late in choices.order and late not in tasks and late is not None:
+        found += changes.moved(network, late, aim)
+    relief: list[tuple[str, Fraction]] = []
+    if not any(change.enough for change in found):
+        relief = _relief(network, {name: choices.costs[name] for name in costs[:WEIGHED]}, tasks)
+    return Advice(network, choices, met, changes.ranked(found), tuple(relief))
+
+
+def _relief(
+    network: Network, costs: Mapping[str, Sequence[Part]], tasks: Collection[str]
+) -> list[tuple[str, Fraction]]:
+    """What meeting all deadlines takes without each part, where that is less than with it."""
+    nearly_none = Fraction(1, changes.STEPS)
+    present = network_scaling(network, tasks, changes.STEPS)
+    found = []
+    for name, members in costs.items():
+        without = changes.shrunk(network, members, nearly_none)
+        scaling = network_scaling(without, tasks, changes.STEPS)
+        if scaling is not None and (present is None or scaling.factor > present.factor):
+            found.append((name, scaling.factor))
+    return sorted(found, key=lambda pair: -pair[1])
+
+
+def _load(network: Network, chosen: Sequence[Part]) -> Fraction:
+    """The share of a core that these parts need."""
+    load = Fraction(0)
+    for task in network.tasks:
+        load += Fraction(task.cost, task.period) if (task.name, "") in chosen else 0
+        for row in task.rows:
+            if (task.name, row.name) in chosen:
+                load += Fraction(row.cost, task.period * row.every)
+    return load
+
+
+def lines(found: Advice | None) -> tuple[str, ...]:
+    """The advice in words: a heading, what suffices, and what does not."""
+    if found is None:
+        return ()
+    aim = f"let all execution times grow by {percent(ROOM)}" if found.room else "meet all deadlines"
+    enough = [change for change in found.changes if change.enough]
+    rest = [change for change in found.changes if not change.enough]
+    told = [f"To {aim}, one of these is enough:"] if enough else [f"No single change would {aim}."]
+    told += [f"  {_told(change, found)}" for change in enough[:SHOWN]]
+    if len(enough) > SHOWN:
+        told.append(f"  and {len(enough) - SHOWN} more")
+    told += [f"  {_worth(name, factor)}" for name, factor in found.relief]
+    return (*told, *_not_enough(rest))
+
+
+def _worth(name: str, factor: Fraction) -> str:
+    """What a part is worth, in words."""
+    if factor >= 1:
+        return f"without {name}, all else may grow by {float(factor - 1) * 100:.1f} %"
+    return f"without {name}, all else must still shrink by {percent(1 - factor)}"
+
+
+def figures(found: Advice | None) -> list[dict[str, object]]:
+    """The changes for JSON: factors of present times, to meet all deadlines or to ``grow`` by."""
+    if found is None:
+        return []
+    return [
+        {
+            "change": one.kind.value,
+            "of": one.name,
+            "enough": one.enough,
+            "factor": f"{one.factor.numerator}/{one.factor.denominator}" if one.factor else None,
+            "order": list(one.order),
+            "grow": f"{ROOM.numerator}/{ROOM.denominator}" if found.room else None,
+        }
+        for one in found.changes
+    ]
+
+
+def _not_enough(rest: Sequence[Change]) -> Iterator[str]:
+    """What cannot do it alone, in a sentence for each kind."""
+    words = {
+        Kind.ORDER: "No other order alone was found to do on",
+        Kind.COST: "However short, not alone",
+        Kind.PERIOD: f"Not alone with {changes.LONGEST} times its period",
+        Kind.PLACE: "Not alone, with the most urgent identifier",
+    }
+    for kind, text in words.items():
+        names = [change.name or "the core" for change in rest if change.kind is kind]
+        if names:
+            more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+            yield f"{text}: {', '.join(names[:SHOWN])}{more}."
+
+
+def _told(change: Change, found: Advice) -> str:
+    """One change in words; times are rounded to where they suffice."""
+    if change.factor is None:
+        what = "priorities" if change.order[0] in _tasks(found) else "identifiers"
+        if change.kind is Kind.PLACE:
+            place = change.order.index(change.name)
+            return f"identifier of {change.name} before that of {change.order[place + 1]}"
+        return f"{what} of {change.name or 'the core'} in this order: {', '.join(change.order)}"
+    share = percent(change.amount)
+    if change.kind is Kind.PERIOD:
+        period = found.network.items()[change.name].period
+        longer = -(-period * change.factor.numerator // change.factor.denominator)
+        after = f"{microseconds(period)} to {microseconds(longer)} us"
+        return f"period of {change.name} longer by {share}: {after}"
+    cost = _cost(found, change.name)
+    shorter = cost * change.factor.numerator // change.factor.denominator
+    after = f"{microseconds(cost)} to {microseconds(shorter - 99)} us"
+    return f"execution time of {change.name} less by {share}: {after}"
+
+
+def _tasks(found: Advice) -> set[str]:
+    return {task.name for task in found.network.tasks}
+
+
+def _cost(found: Advice, name: str) -> int:
+    """The time of one of the parts that are called so: they are alike."""
+    task_name, row_name = found.choices.costs[name][0]
+    task = next(task for task in found.network.tasks if task.name == task_name)
+    return next((row.cost for row in task.rows if row.name == row_name), task.cost)

@@ -1,0 +1,221 @@
+"""The claims of a system's certificate, with the windows that show them.
+
+A response keeps the window of its worst job; the certificate needs those of all jobs
+of the busy period, and of a message the busy period itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from ravenchart.analysis.core import can
+from ravenchart.analysis.core.bus import Bus
+from ravenchart.analysis.core.can_response import ERRORS, FrameResponse
+from ravenchart.analysis.core.chains import Hop
+from ravenchart.analysis.core.offsets import Search, aligned
+from ravenchart.analysis.core.responses import Response, demand_of, jitter_of, release_time
+from ravenchart.analysis.core.window import Effort, Window, fixed_cost, source
+from ravenchart.analysis.system import latencies
+from ravenchart.analysis.system.latencies import Latency, reception_frames
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.gen.derive.instants import instants, phased
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.claims import ChainClaim, Claim, Claims
+from ravenchart.gen.rules.unready import UNREADY
+
+from .deadlines import findings
+
+EFFORT = 200_000
+"""Work for the windows of one task or message: as much as for its response."""
+
+
+MOST_JOBS = 1_000
+"""Jobs or instances of one busy period that a certificate lists at most."""
+
+
+class Unclaimed(Exception):  # noqa: N818
+    """Something has a bound, but no busy period that ends: its resource is full."""
+
+
+def claims_of(analysis: Analysis) -> Claims:
+    """What the certificate of a system whose deadlines are met claims.
+
+    Responses are those for all offsets; a processor that is late with some, not with its
+    own, has the instants that show it besides. Unclaimed where a processor or bus is loaded
+    to exactly its whole time.
+    """
+    since = by_offsets(analysis)
+    analysis = analysis.for_all_offsets
+    items = {}
+    for name, response in analysis.found.responses.items():
+        items[name] = _of_task(response) if isinstance(response, Response) else _of(response)
+    for name, windows in since.items():
+        items[name] = replace(items[name], since=windows)
+    chains = {chain.name: _of_chain(latency) for chain, latency in analysis.limited}
+    steps = {hop.step.name for _, latency in analysis.limited for hop in latency.hops}
+    rows = {r.row.name: Ns(r.bound) for _, r in analysis.rows() if r.row.name in steps}
+    handed = {element for element in analysis.deliveries if latencies.handed(element) in steps}
+    waits, busiest = _capped(analysis)
+    return Claims(items, rows, waits, busiest, _turns(analysis, handed), chains)
+
+
+def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
+    """An error for each deadline or limit that offsets keep in a way that no certificate shows."""
+    if analysis.for_all_offsets is analysis:
+        return
+    for one in findings(analysis.for_all_offsets, but=by_offsets(analysis)):
+        if one.is_error:
+            text = f"{one.message} but for offsets, and the certificate cannot show that yet"
+            hint = "choose times or priorities that do without offsets"
+            yield error(UNREADY, one.origin, text, notes=one.notes, hint=hint)
+
+
+def by_offsets(analysis: Analysis) -> dict[str, tuple[Ns, ...]]:
+    """The processors that only their offsets keep from being late, with `Claim.since`."""
+    blind = analysis.for_all_offsets
+    if blind is analysis:
+        return {}
+    offsets = {task.name: task.offset for task in analysis.network.tasks}
+    found = {}
+    for name in blind.failed():
+        response = blind.found.responses[name]
+        if isinstance(response, Response) and response.bound is not None:
+            windows = _since(response, offsets, analysis)
+            if windows is not None:
+                found[name] = windows
+    return found
+
+
+def _since(
+    response: Response, offsets: Mapping[str, int | None], analysis: Analysis
+) -> tuple[Ns, ...] | None:
+    """The windows from all instants, with what others inherit for any offsets; None if too late."""
+    level, task = response.level, analysis.tasks[response.task.name]
+    order = tuple(replace(one, offset=offsets[one.name]) for one in level.order)
+    own = next(one for one in order if one.name == task.element)
+    known = replace(response, task=own, level=replace(level, order=order))
+    tasks = aligned(known)
+    everyone = {one.element for one in phased(analysis.system, task)}
+    assert response.bound is not None
+    reach = response.bound - response.jitter - task.deadline
+    starts = instants(analysis.system, task, reach)
+    if {one.name for one in tasks} != everyone or starts is None or task.deadline > task.period:
+        return None
+    search, found = Search(known, tasks, Effort(EFFORT)), []
+    for start in starts:
+        window = search.window(start.time)
+        due = task.offset + start.release * task.period
+        if window is None or start.time + window > due + task.deadline:
+            return None
+        found.append(Ns(window))
+    return tuple(found)
+
+
+def _of_task(response: Response) -> Claim:
+    """Every job of the busy period; the table begins with all its rows."""
+    assert response.bound is not None
+    alone = response.jobs == 1 and response.window + response.jitter <= response.task.period
+    windows = [response.window] if alone else _jobs(response)
+    return Claim(Ns(response.bound), tuple(map(Ns, windows)))
+
+
+def _jobs(response: Response) -> list[int]:
+    """The window of each job of the busy period."""
+    task, level = response.task, response.level
+    window, effort = Window(), Effort(EFFORT)
+    platform = level.platform
+    others = [other for other in level.order[: level.reach] if other.name != task.name]
+    for number, other in enumerate(others):
+        own = source(other.period, jitter_of(other, platform), demand_of(other, platform))
+        window.add(number, own)
+    number = len(others)
+    if platform.tick_cost:
+        window.add(number, fixed_cost(platform.tick_period, 0, platform.tick_cost))
+    for place, other in enumerate(level.order if platform.release else (), number + 1):
+        cost = release_time(other, platform)
+        release = fixed_cost(other.period, jitter_of(other, platform), cost)
+        window.add(place, release)
+    demand = demand_of(task, platform)
+    found: list[int] = []
+    while not found or found[-1] + response.jitter > len(found) * task.period:
+        if len(found) == MOST_JOBS:
+            raise Unclaimed(f"{task.name} is never done before its next release")
+        fixed = response.blocked + demand.most(len(found) + 1)
+        found += _settled(window, [fixed], effort, task.name)
+    return found
+
+
+def _settled(window: Window, fixed: list[int], effort: Effort, name: str) -> list[int]:
+    """The least windows that hold these demands and what the sources add."""
+    found = []
+    for demand in fixed:
+        if not window.settle(demand, effort):
+            raise Unclaimed(f"{name} has no busy period that ends")
+        found.append(window.length)
+    return found
+
+
+def _of(response: FrameResponse) -> Claim:
+    """Every instance of the busy period, and the busy period."""
+    frame, level = response.frame, response.level
+    assert response.bound is not None
+    errors = level.bus.errors
+    blocked = level.blocker[1]
+    if errors is not None:
+        blocked += (errors.burst - 1) * level.error_cost
+    waiting, busy = Window(), Window()
+    busy.length = 1  # zero is a fixed point too
+    for number, other in enumerate(level.order[: level.reach]):
+        late = level.jitter(other, frame)
+        busy.add(number, fixed_cost(other.period, late, other.cost))
+        if other.name != frame.name:
+            until = fixed_cost(other.period, late + level.bus.bit_time, other.cost)
+            waiting.add(number, until)
+    if errors is not None:
+        waiting.add(ERRORS, fixed_cost(errors.period, frame.cost, level.error_cost))
+        busy.add(ERRORS, fixed_cost(errors.period, 0, level.error_cost))
+    effort = Effort(EFFORT)
+    (length,) = _settled(busy, [blocked], effort, frame.name)
+    instances = -(-(length + frame.jitter) // frame.period)
+    if instances > MOST_JOBS:
+        raise Unclaimed(f"{frame.name} has {instances} instances in one busy period")
+    fixed = [blocked + instance * frame.cost for instance in range(instances)]
+    windows = _settled(waiting, fixed, effort, frame.name)
+    return Claim(Ns(response.bound), tuple(map(Ns, windows)), Ns(length))
+
+
+def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
+    """The waits in queues that the busiest time of a bus bounds, and those times by bus."""
+    waits: dict[str, Ns] = {}
+    busiest: dict[str, Ns] = {}
+    for bus in analysis.system.buses:
+        for response in analysis.frames(bus):
+            frame, bound = response.frame, response.bound or 0
+            for other in analysis.frames(bus):
+                wait = other.level.delays.get(frame.name)
+                if wait is not None and wait < bound - frame.cost - frame.jitter:
+                    waits[frame.name] = Ns(wait)
+                    busiest[bus.name] = Ns(wait + frame.cost)
+    return waits, busiest
+
+
+def _turns(analysis: Analysis, handed: set[str]) -> dict[str, Claim]:
+    """When the reception turns to each of these messages."""
+    found: dict[str, Claim] = {}
+    system = analysis.system
+    for processor in system.processors:
+        waiting = reception_frames(processor, system, analysis.found)
+        for response in can.analyse(waiting, Bus(bit_time=1)):
+            if response.frame.name in handed:
+                claim = _of(response)
+                turn = Ns(claim.response - processor.period)
+                found[response.frame.name] = Claim(turn, claim.windows, claim.busy)
+    return found
+
+
+def _of_chain(latency: Latency) -> ChainClaim:
+    """The latencies of a chain; what has no bound has no limit either."""
+    waits = tuple(Ns(hop.wait or 0) for hop in latency.hops if hop.step.hop is Hop.QUEUED)
+    return ChainClaim(Ns(latency.reaction or 0), Ns(latency.age or 0), waits)

@@ -1,0 +1,295 @@
+"""Failed deadlines and overloaded buses as diagnostics, in the words of a compiler."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from fractions import Fraction
+
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.chains import HopLatency
+from ravenchart.analysis.core.responses import Interference, Reason, Response
+from ravenchart.analysis.system.latencies import Hop, Latency
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.analysis.units import duration, microseconds, percent
+from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.model.system import Bus, Chain
+from ravenchart.gen.origins import Origin
+
+MISSED = "RV-0901"
+"""A task or message may complete after its deadline."""
+
+NO_BOUND = "RV-0902"
+"""No bound of a task's or message's response is known."""
+
+BUS_OVERLOAD = "RV-0903"
+"""The messages of a bus need more than all of its time."""
+
+NO_WAY, CHAIN_LATE = "RV-0904", "RV-0905"
+"""A chain is broken; it may take longer than its limit."""
+
+QUEUE_SHORT, QUEUE_OPEN = "RV-0906", "RV-0907"
+"""A queue does not hold what may wait in it; nothing bounds what may wait in it."""
+
+LARGEST = 3
+"""How many interferers a diagnostic names."""
+
+
+def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic, ...]:
+    """One error for each deadline that may be missed, each overload, and each limit of a chain.
+
+    Deadlines of tasks and messages in ``but`` are left out.
+    """
+    found: list[Diagnostic] = []
+    for name in (one for one in analysis.failed() if one not in but):
+        response = analysis.found.responses[name]
+        if isinstance(response, Response):
+            found.append(_of_task(response, analysis))
+        else:
+            found.append(_of_message(response, analysis))
+    found += [_of_bus(bus, analysis) for bus in analysis.overloaded]
+    return (*found, *_of_receptions(analysis), *_of_chains(analysis), *_of_queues(analysis))
+
+
+def no_bound_reason(response: Response | FrameResponse) -> str:
+    """Why there is no bound, in words."""
+    reason = response.reason or Reason.EFFORT
+    if reason is not Reason.OVERLOAD:
+        return str(reason.value)
+    if isinstance(response, Response):
+        return f"it and what preempts it need {percent(response.level.load)} of the core"
+    return f"it and what goes before it need {percent(response.level.load)} of the bus"
+
+
+def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
+    """What is wrong with one task."""
+    task = analysis.tasks[response.task.name]
+    if response.bound is None:
+        return error(
+            NO_BOUND,
+            task.origin,
+            f"{task.element} has no response-time bound: {no_bound_reason(response)}",
+            notes=_task_notes(response, analysis),
+            hint="shorten worst-case execution times, or lengthen periods",
+        )
+    return error(
+        MISSED,
+        task.origin,
+        f"{task.element} needs over {duration(task.deadline)}: "
+        f"it may take {microseconds(response.bound)} us",
+        notes=_task_notes(response, analysis),
+        hint="lengthen its period, or move an activity to a slower processor",
+    )
+
+
+def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, str], ...]:
+    """Its own time, the largest interferers and the blocker, each where it is declared."""
+    tasks, blocking = analysis.tasks, response.blocking
+    task = tasks[response.task.name]
+    notes = [(task.origin, f"it runs for up to {duration(task.budget)} itself")]
+    if response.jitter:
+        notes.append((task.origin, f"its release is late by up to {duration(response.jitter)}"))
+    if response.bound is None:
+        others = response.level.order[: response.level.reach]
+        load = [other for other in others if other.name != task.element]
+        load.sort(key=lambda other: -other.utilisation)
+        notes += [
+            (
+                tasks[other.name].origin,
+                f"it is preempted by {other.name}, period {duration(other.period)}: "
+                f"{percent(other.utilisation)} of the core",
+            )
+            for other in load[:LARGEST]
+        ]
+    for share in response.interference[:LARGEST]:
+        notes.append(
+            (
+                tasks[share.task.name].origin,
+                f"it is preempted by {share.task.name}, period {duration(share.task.period)}: "
+                f"{taken(share)}",
+            )
+        )
+    if blocking is not None:
+        origin = tasks[blocking.user].origin if blocking.user in tasks else task.origin
+        notes.append(
+            (
+                origin,
+                f"{blocking.user} may hold it up for {duration(blocking.length)} "
+                f"inside {blocking.resource}",
+            )
+        )
+    return tuple(notes)
+
+
+def taken(share: Interference) -> str:
+    """How the time of an interferer adds up."""
+    cost = share.task.plain_cost
+    if share.time == share.releases * cost:
+        return f"{share.releases} x {duration(cost)} = {duration(share.time)}"
+    return f"{share.releases} releases, not all with every row, take {duration(share.time)}"
+
+
+def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
+    """What is wrong with one message."""
+    message = analysis.messages[response.frame.name]
+    notes = [(message.origin, f"its frame takes {duration(response.frame.cost)}")]
+    if response.frame.jitter:
+        late = duration(response.frame.jitter)
+        notes.append((message.origin, f"it is handed to the controller up to {late} late"))
+    notes += [
+        (
+            analysis.messages[share.frame.name].origin,
+            f"{share.frame.name} goes before it: {share.instances} x "
+            f"{duration(share.frame.cost)} = {duration(share.time)}",
+        )
+        for share in response.interference[:LARGEST]
+    ]
+    if response.bound is None:
+        return error(
+            NO_BOUND,
+            message.origin,
+            f"message {message.name} has no response-time bound: {no_bound_reason(response)}",
+            notes=notes,
+            hint="lengthen periods, or raise the bit rate",
+        )
+    return error(
+        MISSED,
+        message.origin,
+        f"message {message.name} needs over {duration(message.limit)}: "
+        f"it may take {microseconds(response.bound)} us",
+        notes=notes,
+        hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
+    )
+
+
+def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
+    """What is wrong with one bus."""
+    frames = sorted(analysis.network.frames[bus.name], key=lambda frame: -frame.utilisation)
+    notes = []
+    for frame in frames[:LARGEST]:
+        message = analysis.messages[frame.name]
+        notes.append(
+            (
+                message.origin,
+                f"{message.name} takes {percent(frame.utilisation)}: "
+                f"{duration(frame.cost)} every {duration(frame.period)}",
+            )
+        )
+    return error(
+        BUS_OVERLOAD,
+        bus.origin,
+        f"{bus.name} may be loaded to {percent(analysis.bus_load(bus))}",
+        notes=notes,
+        hint="lengthen periods, or raise the bit rate",
+    )
+
+
+def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Receptions that take frames no faster than they come."""
+    for processor in analysis.system.processors:
+        received = analysis.system.received(processor.released_by, processor.node)
+        taken_here = [one.message for one in received]
+        load = sum((Fraction(processor.period, m.period) for m in taken_here), Fraction(0))
+        if load > 1 or any(message in analysis.undelivered for message in taken_here):
+            lost = "frames will be lost" if load > 1 else "a frame may wait without bound"
+            yield error(
+                NO_BOUND,
+                processor.origin,
+                f"{processor.name} takes a frame every {duration(processor.period)}, and "
+                f"{percent(load)} of that are needed: {lost}",
+                notes=[
+                    (m.origin, f"{m.name} comes every {duration(m.period)}") for m in taken_here
+                ],
+                hint="shorten the period of the processor",
+            )
+
+
+def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Queues that may lose what comes: a warning where no depth is known to hold all of it."""
+    for one in analysis.short_queues:
+        lost = f"and `{one.key}` is {one.given}: what it does not hold is lost"
+        hint = "let it be read more often, or filled less often"
+        if one.needed is not None:
+            message = f"up to {one.needed} {one.what} at once, {lost}"
+            hint = f"give it `{one.key}: {one.needed}`, or {hint}"
+            yield error(QUEUE_SHORT, one.origin, message, hint=hint)
+        elif analysis.found.met:
+            yield warning(QUEUE_OPEN, one.origin, f"any number of {one.what}, {lost}", hint=hint)
+
+
+def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Chains without a way, and those that may take too long."""
+    for chain in analysis.system.chains:
+        gap = chain.gap
+        if gap is not None:
+            message = f"the chain {chain.name} is broken: no values go from {gap[0]} to {gap[1]}"
+            hint = "name what lies between them"
+            event = chain.gap_event
+            if event is not None:
+                name, source, region = event
+                hint = (
+                    f"the event {name} leads from {source} to {region}, and chains follow values: "
+                    f"let {region} read what {source} holds or writes"
+                )
+            yield error(NO_WAY, chain.origin, message, hint=hint)
+    for chain, found in analysis.limited:
+        pairs = (("reaction", found.reaction, chain.reaction), ("age", found.age, chain.age))
+        for what, value, limit in pairs:
+            if limit is not None and (value is None or value > limit):
+                yield _late_chain(chain, found, what, value, limit)
+
+
+def _late_chain(
+    chain: Chain, found: Latency, what: str, value: int | None, limit: int
+) -> Diagnostic:
+    """A limit that is not kept, with the slowest hops."""
+    hops = [(hop.step.name, (hop.wait or 0) + (hop.response or 0)) for hop in found.hops]
+    hops.sort(key=lambda hop: -hop[1])
+    takes = "has no bound" if value is None else f"may take {microseconds(value)} us"
+    return error(
+        CHAIN_LATE,
+        chain.origin,
+        f"the {what} of {chain.name} {takes}, and its limit is {duration(limit)}",
+        notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
+        or [
+            (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
+            for name, time in hops[:LARGEST]
+        ],
+        hint=_chain_hint(found, what, value),
+    )
+
+
+def _chain_hint(found: Latency, what: str, value: int | None) -> str:
+    if value is not None:
+        return "let its rows run more often, or in one processor in the order of the chain"
+    if what == "age" and any(_ages(hop) for hop in found.hops):
+        return (
+            "limit the reaction instead; or, if the sender of the message queues one every period "
+            "exactly, give it `sporadic: no`"
+        )
+    return "limit the parts of it before and behind that"
+
+
+def _ages(hop: HopLatency) -> bool:
+    """It is as seldom as what is sporadic, and its last value is used meanwhile."""
+    return hop.renewal is None and not hop.step.keeps and hop.step.hop is not Hop.QUEUED
+
+
+def _unbounded(found: Latency, what: str) -> Iterator[str]:
+    """Which hops have no bound, and why."""
+    begun = found.hops[0].step.name
+    for before, hop in zip((None, *found.hops), found.hops, strict=False):
+        step = hop.step
+        begun = begun if step.hop is Hop.RELEASED else step.name
+        if hop.response is None:
+            yield f"{step.name} has no bound of its response"
+        elif what == "age" and step.keeps:
+            yield step.keeps
+        elif what == "age" and _ages(hop):
+            yield f"{begun} is sporadic: its next value may come at any later time"
+        elif what == "reaction" and step.waits:
+            yield step.waits
+        elif step.hop is Hop.QUEUED and hop.wait is None and before:
+            many = f"{step.puts} values at once" if step.puts > 1 else "them faster"
+            yield f"{step.name} takes one value in a job, and {before.step.name} may put {many} in"
+        elif step.hop is Hop.SAMPLED and hop.wait is None:
+            yield f"{step.name} samples, and nothing says how often it runs"

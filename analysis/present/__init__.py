@@ -1,0 +1,1 @@
+"""An analysis as people read it: table, report, pictures, JSON."""

@@ -1,0 +1,78 @@
+"""All that was found for a model, as one JSON object: that of plain files, and more.
+
+Times are whole ns. A response without a bound is null, with the reason.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from ravenchart.analysis.findings import advice
+from ravenchart.analysis.plain.build import PlainSystem
+from ravenchart.analysis.plain.results import (
+    DETAILED,
+    Json,
+    PlainResult,
+    everything,
+    latency_figures,
+)
+from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.analysis.units import ratio
+
+
+def figures(analysis: Analysis) -> Json:
+    """Everything, for `json.dumps`; factors of execution times leave frames as they are."""
+    system = analysis.system
+    limits = tuple(latency for _, latency in analysis.limited)
+    detailed = len(analysis.found.responses) <= DETAILED
+    scaling = analysis.scaling if detailed else None
+    plain = PlainSystem(analysis.network, tuple(one.chain for one in limits))
+    rows = {row.row.name: row.bound for _, row in analysis.rows()}
+    result = PlainResult(plain, analysis.found, limits, detailed, scaling)
+    return everything(result) | {
+        "system": system.name,
+        "digest": system.digest,
+        "met": analysis.schedulable,
+        "load": {
+            name: ratio(share)
+            for name, share in (
+                *(
+                    (core, analysis.utilisation(core))
+                    for n in system.nodes
+                    for core in n.core_names
+                ),
+                *((bus.name, analysis.bus_load(bus)) for bus in system.buses),
+            )
+        },
+        "activities": [
+            {
+                "activity": slot.element,
+                "processor": processor.name,
+                "period": slot.timing.period,
+                "deadline": slot.timing.deadline,
+                "cost": slot.timing.wcet,
+                "every": slot.divisor,
+                "phase": slot.phase,
+                "response": rows.get(slot.element),
+            }
+            for processor in system.processors
+            for slot in processor.slots
+        ],
+        "receptions": [
+            {"message": name, "response": one.bound, "waited": one.wait}
+            for name, one in analysis.deliveries.items()
+        ],
+        "objects": [
+            {
+                "object": item.element,
+                "ceiling": item.ceiling,
+                "section": item.section,
+                "users": list(item.users),
+            }
+            for item in system.objects
+        ],
+        "commands": [asdict(cost) for cost in costs(analysis)],
+        "changes": advice.figures(analysis.advice),
+        "ways": [latency_figures(latency) for latency in analysis.chains],
+    }

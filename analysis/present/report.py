@@ -1,0 +1,392 @@
+"""The report: one HTML file that needs nothing else, for the screen and for paper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from ravenchart.analysis import units
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.core.tasks import plain
+from ravenchart.analysis.findings import advice
+from ravenchart.analysis.findings.deadlines import no_bound_reason
+from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.critical import schedule
+from ravenchart.analysis.system.graph import component_view
+from ravenchart.analysis.system.journeys import Journey
+from ravenchart.analysis.system.latencies import Hop, Latency
+from ravenchart.analysis.system.network import frame_length
+from ravenchart.analysis.system.observed import Observation
+from ravenchart.analysis.system.supervision import watches
+from ravenchart.analysis.system.timing import Analysis, Verdict
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import Bus
+
+from . import plots
+from .picture import draw
+from .words import (
+    WORDS,
+    binding_lines,
+    families,
+    growth_line,
+    offset_lines,
+    verdict_line,
+    window_parts,
+)
+
+SHOWN_CHAINS = 40
+"""How many chains the report lists at most."""
+
+SHOWN_INSTANTS = 6
+"""How many critical instants it draws."""
+
+SCALED = 12
+"""Of how many tasks it looks for the factors."""
+
+KINDS = ("jitter", "blocking", "own", "interference", "overhead")
+"""What a response is made of, in the order of a bar."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepRow:
+    """One step of a scenario: what it asked, how it ended, when (s from the start)."""
+
+    text: str
+    outcome: str
+    passed: bool
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class FrameRow:
+    """How many frames of one message the bench sent or received."""
+
+    message: str
+    direction: str
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Longest response seen of one task, beside its bound (None: none known).
+
+    ``withheld`` is the longest time for which the host kept the core to itself, as
+    far as the controller measured it: the analysis does not know of that.
+    """
+
+    task: str
+    releases: int
+    misses: int
+    observed: int
+    bound: int | None
+    withheld: int = 0
+
+    @property
+    def explained(self) -> bool:
+        """What was seen is above the bound by no more than the host withheld."""
+        return self.exceeded and self.observed <= (self.bound or 0) + self.withheld
+
+    @property
+    def word(self) -> str:
+        """How the task fared: in order, by the host's fault, or not."""
+        if not self.misses and not self.exceeded:
+            return "ok"
+        if self.explained:
+            return "host"
+        return "MISS" if self.misses else "ABOVE"
+
+    @property
+    def exceeded(self) -> bool:
+        """What was seen is longer than the bound."""
+        return self.bound is not None and self.observed > self.bound
+
+    @property
+    def ratio(self) -> float:
+        """Observed over bound; 0 without a bound."""
+        return self.observed / self.bound if self.bound else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class RunReport:
+    """What a run adds to the report. ``pictures`` are (caption, SVG text).
+
+    ``comparable`` is false where the controller had no real-time priorities: what
+    was seen then says nothing about the bounds.
+    """
+
+    title: str
+    passed: bool
+    verdict: str
+    notes: tuple[str, ...]
+    steps: tuple[StepRow, ...]
+    frames: tuple[FrameRow, ...]
+    comparable: bool
+    observation: Observation | None
+    journeys: tuple[Journey, ...] = ()
+    pictures: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """Longest execution seen of one row, beside the worst case that the model claims."""
+
+    row: str
+    observed: int
+    claimed: int
+
+    @property
+    def exceeded(self) -> bool:
+        """What was seen is longer than the claim."""
+        return self.observed > self.claimed
+
+
+def executions(analysis: Analysis, seen: Observation) -> tuple[Execution, ...]:
+    """The rows that ran, closest to their claim first."""
+    slots = [slot for processor in analysis.system.processors for slot in processor.slots]
+    rows = [
+        Execution(slot.element, seen.executions[slot.element], slot.timing.wcet)
+        for slot in slots
+        if slot.element in seen.executions
+    ]
+    return tuple(sorted(rows, key=lambda row: -Fraction(row.observed, max(1, row.claimed))))
+
+
+def _withheld(analysis: Analysis, bounds: Mapping[str, int | None], late: Ns, stolen: Ns) -> Ns:
+    """The longest time for which the host may have kept the core from one response.
+
+    A stall can begin right after a probe woke, which sees of it what is left at its next
+    wake-up: up to a period less. Several stalls in one response are no more than was
+    stolen in all. A probe within its own bound has seen none.
+    """
+    unseen = [
+        node.probe.period
+        for node in analysis.system.nodes
+        if node.probe is not None and late > (bounds.get(f"{node.name}.probe".lower()) or 0)
+    ]
+    return Ns(max(late + max(unseen), stolen)) if unseen else late
+
+
+def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
+    """Each processor's longest response beside its bound, closest to the bound first."""
+    bounds = {r.task.name.lower(): r.bound for r in analysis.responses}
+    withheld = _withheld(analysis, bounds, seen.host_latency or Ns(0), seen.stolen or Ns(0))
+    rows = [
+        Comparison(
+            name,
+            p.releases,
+            p.misses,
+            p.worst_response,
+            bounds.get(name.lower()),
+            withheld,
+        )
+        for name, p in seen.processors.items()
+    ]
+    return tuple(sorted(rows, key=lambda row: -row.ratio))
+
+
+def render(analysis: Analysis, run: RunReport | None = None) -> str:
+    """The report as HTML text."""
+    environment = Environment(
+        loader=PackageLoader("ravenchart.analysis.present"),
+        autoescape=select_autoescape(default=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "us": units.microseconds,
+        "duration": units.duration,
+        "percent": units.percent,
+        "seconds": units.seconds,
+        "plain_load": lambda task: plain(task).utilisation,
+    }
+    return environment.get_template("report.html").render(_context(analysis, run))
+
+
+def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
+    """What the template shows."""
+    system = analysis.system
+    picture = draw(component_view(system))
+    factors = _factors(analysis)
+    return {
+        "system": system,
+        "analysis": analysis,
+        "verdict": verdict_line(analysis),
+        "good": analysis.schedulable,
+        "growth": growth_line(analysis),
+        "binding": binding_lines(analysis),
+        "advice": advice.lines(analysis.advice),
+        "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
+        "buses": [_bus(analysis, bus) for bus in system.buses],
+        "commands": tuple(costs(analysis)),
+        "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],
+        "chains": [
+            (_hops(found), found, way)
+            for found, way in zip(analysis.chains, analysis.ways.between_messages(), strict=True)
+        ][:SHOWN_CHAINS],
+        "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
+        "by_offsets": offset_lines(analysis.responses),
+        "factors": factors,
+        "room": Markup(plots.svg(plots.room(factors, _whole(analysis)))) if factors else None,
+        "instants": _instants(analysis),
+        "objects": [(item, _names(item.users)) for item in system.objects if len(item.users) > 1],
+        "private": sum(1 for item in system.objects if len(item.users) <= 1),
+        "graph": None if picture is None else Markup(picture),
+        "run": run,
+        "pictures": [(c, Markup(svg)) for c, svg in run.pictures] if run else [],
+        "compared": compare(analysis, run.observation) if run and run.observation else (),
+        "executions": executions(analysis, run.observation) if run and run.observation else (),
+        "visits": _visits(run),
+        "watches": watches(analysis),
+    }
+
+
+def _item(analysis: Analysis, name: str) -> dict[str, Any]:
+    """The row of a task or message, its parts as shares of the deadline (or of R if longer)."""
+    found, response = analysis.found, analysis.found.responses[name]
+    bound, deadline = found.from_event(name), found.deadline(name)
+    plain = analysis.plain.from_event(name)
+    item = analysis.network.items()[name]
+    parts = window_parts(analysis, name)
+    scale = max(deadline, bound or 0)
+    kinds = {kind: sum(p.time for p in parts if p.kind == kind) for kind in KINDS}
+    return {
+        "name": name,
+        "origin": analysis.origin(name),
+        "response": response,
+        "item": item,
+        "cost": analysis.tasks[name].budget if name in analysis.tasks else item.cost,
+        "deadline": deadline,
+        "jitter": item.jitter + found.inherited.get(name, 0),
+        "bound": bound,
+        "plain": plain,
+        "slack": analysis.slack(name),
+        "word": WORDS[analysis.verdict(name)],
+        "met": analysis.verdict(name) is Verdict.MET,
+        "reason": "" if bound is not None else no_bound_reason(response),
+        "shares": parts,
+        "deadline_at": 100 * deadline / scale,
+        "bar": [(k, 100 * time / scale) for k, time in _within(kinds, bound) if time > 0],
+        "rows": _rows(analysis, name),
+    }
+
+
+def _rows(analysis: Analysis, name: str) -> list[dict[str, Any]]:
+    """The activities of a task inside its job: each with its own deadline."""
+    task = analysis.tasks.get(name)
+    response = analysis.found.responses[name]
+    slots = {} if task is None else {slot.element: slot for slot in task.slots}
+    rows = []
+    for row in response.rows if isinstance(response, Response) else ():
+        slot = slots[row.row.name]
+        deadline = slot.timing.deadline
+        scale = max(deadline, row.bound)
+        rows.append(
+            {
+                "slot": slot,
+                "bound": row.bound,
+                "slack": deadline - row.bound,
+                "width": 100 * row.bound / scale,
+                "deadline_at": 100 * deadline / scale,
+            }
+        )
+    return rows
+
+
+def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
+    """A bus and its messages, most urgent first."""
+    messages = []
+    for sent in analysis.frames(bus):
+        message = analysis.messages[sent.frame.name]
+        length = frame_length(message, bus)
+        bits = length.nominal + length.data
+        row = _item(analysis, sent.frame.name)
+        received = [
+            analysis.deliveries[one.element]
+            for one in analysis.system.receptions(message)
+            if one.element in analysis.deliveries
+        ]
+        messages.append(row | {"message": message, "bits": bits, "received": received})
+    return {"bus": bus, "load": analysis.bus_load(bus), "messages": messages}
+
+
+def _hops(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
+    """Each hop: its name, how data come to it, what it waits, takes and is renewed after."""
+    words = {
+        Hop.RELEASED: "at once",
+        Hop.SAMPLED: "samples, every T",
+        Hop.QUEUED: "takes the oldest of a queue",
+    }
+    return [
+        (hop.step.name, words[hop.step.hop], hop.wait, hop.response, hop.renewal)
+        for hop in found.hops
+    ]
+
+
+def _whole(analysis: Analysis) -> float | None:
+    return None if analysis.scaling is None else float(analysis.scaling.factor)
+
+
+def _factors(analysis: Analysis) -> list[tuple[str, float]]:
+    """How far each of the tightest tasks can be scaled alone; a driver's work together."""
+    tight = [name for name in analysis.worst_first() if name in analysis.tasks]
+    found = []
+    for name, members in list(families(tight).items())[:SCALED]:
+        scaling = analysis.scaling_of(*members)
+        if scaling is not None:
+            found.append((name, float(scaling.factor)))
+    return sorted(found, key=lambda pair: pair[1])
+
+
+def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
+    """The critical instants of the tasks with tables, tightest first, as pictures."""
+    found = []
+    tight = [n for n in analysis.worst_first() if n in analysis.tasks and analysis.tasks[n].slots]
+    for name in tight[:SHOWN_INSTANTS] or list(analysis.tasks)[:1]:
+        response = analysis.response(name)
+        slices = schedule(response)
+        if slices:
+            deadline = response.task.deadline + response.lead
+            found.append((name, response.window, Markup(plots.svg(plots.gantt(slices, deadline)))))
+    return found
+
+
+def _within(kinds: Mapping[str, int], bound: int | None) -> list[tuple[str, int]]:
+    """The parts of a bar that is ``bound`` long in all; empty without a bound.
+
+    For a later job of the busy period the periods before its release are taken
+    off its own time first, then off what stands before and after it.
+    """
+    if bound is None:
+        return []
+    debt = sum(kinds.values()) - bound
+    kept = dict(kinds)
+    for kind in ("own", *KINDS):
+        less = min(debt, kept[kind])
+        kept[kind] -= less
+        debt -= less
+    return list(kept.items())
+
+
+def _names(elements: Iterable[str]) -> str:
+    """The names in a row, families with their number."""
+    return ", ".join(
+        name if len(members) == 1 else f"{name} ({len(members)})"
+        for name, members in families(elements).items()
+    )
+
+
+def _visits(run: RunReport | None) -> list[tuple[str, str, int]]:
+    """(region, states in order of first visit, number of stays) for each region of the run."""
+    if run is None or run.observation is None:
+        return []
+    seen = run.observation
+    return [
+        (region, ", ".join(states), len(seen.visits(region)))
+        for region, states in seen.states_visited().items()
+    ]

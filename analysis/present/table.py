@@ -1,0 +1,95 @@
+"""The terminal table: the verdict first, then one row a task or message, worst first.
+
+It fits 80 columns and never says anything by colour alone; `rich` leaves the
+colour out when the output is no terminal.
+"""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ravenchart.analysis.findings import advice
+from ravenchart.analysis.system.timing import Analysis, Verdict
+from ravenchart.analysis.units import microseconds
+
+from .words import WORDS, load_lines, offset_lines, verdict_line
+
+WIDTH = 80
+"""Columns of a printed table."""
+
+LEGEND = (
+    "Times in us: T period, D deadline, C execution or transmission, J jitter,\n"
+    "B blocking, R response."
+)
+
+
+def show(analysis: Analysis, console: Console | None = None) -> None:
+    """Print the verdict, loads and limits, and the tables of tasks, messages and chains."""
+    out = console or Console(width=WIDTH, highlight=False)
+    style = "bold green" if analysis.schedulable else "bold red"
+    out.print(Text(verdict_line(analysis), style=style))
+    for line in load_lines(analysis):
+        out.print(Text(line))
+    out.print()
+    worst = analysis.worst_first()
+    out.print(_table(analysis, "task", [name for name in worst if name in analysis.tasks]))
+    if analysis.messages:
+        sent = [name for name in worst if name in analysis.messages]
+        out.print(_table(analysis, "message", sent))
+    if analysis.limited:
+        out.print(_chains(analysis))
+    out.print(Text(LEGEND, style="dim"))
+    for line in offset_lines(analysis.responses):
+        out.print(Text(line))
+    for line in advice.lines(analysis.advice):
+        out.print(Text(line))
+
+
+def _new_table(name: str, *columns: str) -> Table:
+    """A table of names, and of figures to the right."""
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column(name, overflow="fold", ratio=1)
+    for column in columns:
+        table.add_column(column, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    return table
+
+
+def _table(analysis: Analysis, kind: str, names: list[str]) -> Table:
+    """The rows of these tasks or messages, in that order."""
+    table = _new_table(kind, "T", "D", "C", "J", "B", "R", "slack")
+    for name in names:
+        met = analysis.verdict(name) is Verdict.MET
+        table.add_row(*_cells(analysis, name), style="" if met else "bold red")
+    return table
+
+
+def _cells(analysis: Analysis, name: str) -> tuple[str, ...]:
+    """The cells of one task or message."""
+    response = analysis.found.responses[name]
+    item = analysis.network.items()[name]
+    task = analysis.tasks.get(name)
+    cost = item.cost if task is None else task.budget
+    jitter = item.jitter + analysis.found.inherited.get(name, 0)
+    times = (item.period, item.deadline, cost, jitter, response.blocked)
+    bound, slack = analysis.found.from_event(name), analysis.slack(name)
+    return (
+        name,
+        *map(microseconds, times),
+        "-" if bound is None else microseconds(bound),
+        "-" if slack is None else microseconds(slack),
+        WORDS[analysis.verdict(name)],
+    )
+
+
+def _chains(analysis: Analysis) -> Table:
+    """The chains with limits."""
+    table = _new_table("chain", "reaction", "limit", "age", "limit")
+    for chain, found in analysis.limited:
+        times = (found.reaction, chain.reaction, found.age, chain.age)
+        cells = ["-" if time is None else microseconds(time) for time in times]
+        word = "ok" if found.met else "MISS"
+        table.add_row(chain.name, *cells, word, style="" if found.met else "bold red")
+    return table

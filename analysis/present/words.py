@@ -1,0 +1,179 @@
+"""The outcome of an analysis in sentences: verdict, loads, room left, and what limits it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.responses import Response
+from ravenchart.analysis.system.timing import Analysis, Verdict
+from ravenchart.analysis.units import microseconds, percent
+
+WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
+"""The verdict of a row in a word."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Something that a window is made of: its kind, what it is, and how it adds up."""
+
+    kind: str
+    """``jitter``, ``own``, ``blocking``, ``interference`` or ``overhead``."""
+    name: str
+    sum_of: str
+    time: int
+
+
+def verdict_line(analysis: Analysis) -> str:
+    """The outcome in one line."""
+    name, failed = analysis.system.name, analysis.failed()
+    tasks, messages = len(analysis.tasks), len(analysis.messages)
+    total = f"{tasks} tasks" + (f", {messages} messages" if messages else "")
+    over = [bus.name for bus in analysis.overloaded]
+    late = [chain.name for chain, found in analysis.limited if not found.met]
+    parts = []
+    if failed:
+        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+        parts.append(
+            f"{len(failed)} of {tasks + messages} deadlines may be missed: {failed[0]}{more}"
+        )
+    if over:
+        parts.append(f"overloaded: {', '.join(over)}")
+    if late:
+        parts.append(f"too slow: {', '.join(late)}")
+    lost = [message.name for message in analysis.undelivered]
+    short = [queue.key for queue in analysis.short_queues if queue.needed is not None]
+    if short and not failed:
+        parts.append(f"queues too short: {', '.join(dict.fromkeys(short))}")
+    if lost and not failed:
+        parts.append(f"not received in time: {', '.join(lost)}")
+    return f"{name}: {'; '.join(parts) or f'every deadline is met ({total})'}"
+
+
+def load_lines(analysis: Analysis) -> tuple[str, ...]:
+    """The load of each core and bus, how far the budgets may grow, and what limits them."""
+    system = analysis.system
+    lines = [
+        f"{core}: core load {percent(analysis.utilisation(core))}"
+        for node in system.nodes
+        for core in node.core_names
+    ]
+    lines += [
+        f"{bus.name}: bus load {percent(analysis.bus_load(bus))}, every frame at its longest"
+        for bus in system.buses
+    ]
+    return (*lines, growth_line(analysis), *binding_lines(analysis))
+
+
+def growth_line(analysis: Analysis) -> str:
+    """The margin of the whole system in one sentence."""
+    scaling = analysis.scaling
+    if scaling is None:
+        return "no execution time, however short, meets every deadline"
+    change = scaling.factor - 1
+    share = f"{float(abs(change) * 100):.1f} %"
+    if change >= 0:
+        return f"all execution times may grow by {share} before a task or frame is late"
+    return f"all execution times must shrink by {share} to meet every deadline"
+
+
+def binding(analysis: Analysis) -> str | None:
+    """What fails worst or, where nothing does, what would fail first as execution times grow."""
+    if failed := analysis.failed():
+        return failed[0]
+    return None if analysis.scaling is None else analysis.scaling.binding
+
+
+def binding_lines(analysis: Analysis) -> tuple[str, ...]:
+    """The constraint that limits the system, in one sentence."""
+    name = binding(analysis)
+    if name is None:
+        return ()
+    slack = analysis.slack(name)
+    room = "has no bound"
+    if slack is not None:
+        room = f"misses by {microseconds(-slack)} us" if slack < 0 else ""
+        room = room or f"comes first, with {microseconds(slack)} us left"
+    parts = sorted(window_parts(analysis, name), key=lambda part: -part.time)
+    if not parts:
+        return (f"{name} {room}",)
+    total = sum(part.time for part in parts)
+    return (
+        f"{name} {room}: {percent(Fraction(parts[0].time, total))} of its time is {parts[0].name}",
+    )
+
+
+def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:
+    """What the time of a task or message is made of, its lateness at the start included."""
+    response = analysis.found.responses[name]
+    if response.bound is None:
+        return ()
+    parts = _task_parts(response) if isinstance(response, Response) else _frame_parts(response)
+    jitter = response.late if isinstance(response, Response) else response.frame.jitter
+    if jitter:
+        releaser = analysis.network.released_by.get(name)
+        source = f"what leads to it, {releaser}" if releaser else "its late release"
+        parts.insert(0, Part("jitter", source, "", jitter))
+    return tuple(part for part in parts if part.time)
+
+
+def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
+    """Which responses come of offsets, in one sentence; none where all hold for any."""
+    names = [r.task.name for r in found if isinstance(r, Response) and r.alignment is not None]
+    if not names:
+        return ()
+    return (f"By their offsets: R of {', '.join(names)}. All others hold for any offsets.",)
+
+
+def _task_parts(response: Response) -> list[Part]:
+    jobs = response.worst_job + 1
+    parts = [Part("own", "its own work", f"{jobs} jobs" if jobs > 1 else "", response.own)]
+    if response.blocking is not None:
+        inside = f"{response.blocking.user} in {response.blocking.resource}"
+        parts.append(Part("blocking", inside, "", response.blocked))
+    by_name = {share.task.name: share for share in response.interference}
+    for family, members in families(by_name).items():
+        each = [by_name[member] for member in members]
+        releases = sum(share.releases for share in each)
+        costs = {share.task.plain_cost for share in each}
+        time = sum(share.time for share in each)
+        plain = len(costs) == 1 and releases * max(costs) == time
+        cost = microseconds(max(costs))
+        sum_of = f"{releases} x {cost}" if plain else f"{releases} releases"
+        parts.append(Part("interference", family, sum_of, time))
+    lost = response.overheads
+    for what, count, time in (
+        ("context switches", lost.switches, lost.switch_time),
+        ("ticks", lost.ticks, lost.tick_time),
+        ("making jobs ready", lost.releases, lost.release_time),
+    ):
+        if time:
+            parts.append(Part("overhead", what, f"{count} x {microseconds(time // count)}", time))
+    return parts
+
+
+def _frame_parts(response: FrameResponse) -> list[Part]:
+    own = response.own + response.frame.cost
+    parts = [Part("own", "its own frame", "", own)]
+    blocker = response.blocker or "a frame of somebody else"
+    parts.append(Part("blocking", blocker, "", response.blocked))
+    for share in response.interference:
+        sum_of = f"{share.instances} x {microseconds(share.frame.cost)}"
+        parts.append(Part("interference", share.frame.name, sum_of, share.time))
+    parts.append(Part("overhead", "errors", "", response.errors))
+    return parts
+
+
+def families(elements: Iterable[str]) -> dict[str, list[str]]:
+    """Elements by a common name: those that differ in their last part only share one.
+
+    ``bus.driver_rx.a`` and ``bus.driver_rx.b`` are ``bus.driver_rx.*``; what stands
+    alone keeps its own name.
+    """
+    found: dict[str, list[str]] = {}
+    for element in elements:
+        head, dot, _ = element.rpartition(".")
+        found.setdefault(f"{head}.*" if dot else element, []).append(element)
+    return {name if len(all_) > 1 else all_[0]: all_ for name, all_ in found.items()}

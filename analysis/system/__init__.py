@@ -1,0 +1,1 @@
+"""The timing of a `System`: its network of tasks and frames, latencies, queues, claims."""

@@ -1,0 +1,97 @@
+"""What each required command costs: in its caller's budget, or until somebody else has done it.
+
+A direct call is part of its caller's execution. A queued one waits for the row that serves
+it, and a call to another node for frames and receptions besides. All times count from the
+release of the caller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ravenchart.gen.derive.calls import published_by
+from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server
+from ravenchart.gen.resolve.devices import wcet_of
+
+if TYPE_CHECKING:
+    from .timing import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """A required command of a row; times in ns, None where there is no bound.
+
+    ``how`` it is provided: ``direct``, ``queued``, over a bus, ``copied`` or by a stand-in.
+    """
+
+    caller: str
+    command: str
+    provider: str
+    how: str
+    budget: int
+    """Of the caller, for one call."""
+    executed: int | None = 0
+    """Until the provider's row has executed it."""
+    answered: int | None = None
+    """Until the reply from another node has arrived; of what is read there, its age."""
+    limit: int | None = None
+    """Of that."""
+    waits: bool = False
+    """Whether somebody else executes it."""
+
+
+def costs(analysis: Analysis) -> Iterator[Cost]:
+    """Every required command, for each row that uses it."""
+    for binding in analysis.system.bindings:
+        need = binding.need
+        component = analysis.system.instance(binding.instance).component
+        for row in component.runnables():
+            if need.name in (row.reads if need.is_read else row.sends):
+                yield _cost(analysis, binding, f"{binding.instance}.{row.name}")
+
+
+def _cost(analysis: Analysis, binding: Binding, caller: str) -> Cost:
+    need, provider = binding.need, binding.provider
+    if isinstance(provider, Device):
+        cost = wcet_of(provider, need.name)
+        return Cost(caller, need.name, provider.name, "direct", cost)
+    if isinstance(provider, Remote):
+        message = next(m for m in analysis.system.messages if m.name == provider.request)
+        way = (f"message {provider.request}", provider.served)
+        whole = {chain.name: found.reaction for chain, found in analysis.limited}
+        answered = whole.get(provider.request) if provider.reply else None
+        return Cost(
+            caller,
+            need.name,
+            provider.served,
+            f"over {message.bus}",
+            0,
+            analysis.latency(way).reaction,
+            answered,
+            provider.time_limit or None,
+            waits=True,
+        )
+    if isinstance(provider, RemoteRead):
+        message = next(m for m in analysis.system.messages if m.name == provider.message)
+        age = analysis.latency((f"message {provider.message}", caller)).age
+        name, how = str(message.source), f"over {message.bus}"
+        return Cost(caller, need.name, name, how, 0, answered=age, limit=provider.time_limit)
+    if isinstance(provider, Server):
+        if published_by(binding) is not None:
+            name = f"{provider.instance}.{published_by(binding)}"
+            return Cost(caller, need.name, name, "copied", 0)
+        served = f"{provider.instance}.{provider.interface.server}"
+        found = from_release(analysis, (caller, served))
+        return Cost(caller, need.name, served, "queued", 0, found, waits=True)
+    stand_in = "" if need.stand_in is None else f"{binding.instance}.{need.stand_in.item}"
+    return Cost(caller, need.name, stand_in or "nothing", "stand-in", 0)
+
+
+def from_release(analysis: Analysis, way: Sequence[str]) -> int | None:
+    """The latency of a way from the release of the row that it begins with."""
+    first, *others = analysis.latency(way).hops
+    parts = [first.response, *(part for hop in others for part in (hop.wait, hop.response))]
+    known = [part for part in parts if part is not None]
+    return sum(known) if len(known) == len(parts) else None

@@ -1,0 +1,108 @@
+"""The critical instant of a task as a schedule: the worst that its bound stands for.
+
+Everything that can delay the task is released when its busy period begins, each with
+its whole jitter, and again as soon as it may be, or as its offset places it; the longest
+section below has just begun. What the schedule needs until the worst job is done is the
+response's window.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+
+from ravenchart.analysis.core.responses import Response, demand_of, release_time
+from ravenchart.analysis.core.tasks import Task
+from ravenchart.analysis.core.window import releases
+
+MOST_JOBS = 400
+"""A schedule of more jobs than this says nothing to the eye."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """Something that runs without a break, in ticks from the beginning of the busy period."""
+
+    name: str
+    kind: str
+    """``own``, ``blocking``, ``interference`` or ``overhead``."""
+    start: int
+    end: int
+
+
+Job = tuple[int, int, int, str, str]
+"""Release, precedence (least first), length, name and kind."""
+
+
+def schedule(response: Response) -> tuple[Slice, ...]:
+    """The slices until the worst job is done; none without a bound, or of too many jobs."""
+    if response.bound is None:
+        return ()
+    jobs = _jobs(response)
+    if len(jobs) > MOST_JOBS:
+        return ()
+    found: list[Slice] = []
+    heapify(jobs)
+    ready: list[tuple[int, int, int, str, str]] = []
+    now = response.blocked
+    if response.blocking is not None:
+        found.append(Slice(response.blocking.user, "blocking", 0, now))
+    while jobs or ready:
+        if not ready:
+            now = max(now, jobs[0][0])
+        while jobs and jobs[0][0] <= now:
+            release, precedence, length, name, kind = heappop(jobs)
+            heappush(ready, (precedence, release, length, name, kind))
+        precedence, release, left, name, kind = heappop(ready)
+        end = now + left if not jobs else min(now + left, max(now, jobs[0][0]))
+        if end > now:
+            _add(found, Slice(name, kind, now, end))
+        if end < now + left:
+            heappush(ready, (precedence, release, now + left - end, name, kind))
+        now = end
+    return tuple(found)
+
+
+def _add(found: list[Slice], piece: Slice) -> None:
+    """A slice, joined with the one before it where that only goes on."""
+    before = found[-1] if found else None
+    if before and (before.name, before.kind, before.end) == (piece.name, piece.kind, piece.start):
+        found[-1] = Slice(piece.name, piece.kind, before.start, piece.end)
+    else:
+        found.append(piece)
+
+
+def _jobs(response: Response) -> list[Job]:
+    """Everything that is released within the window, and the task's own jobs up to the worst."""
+    level, window = response.level, response.window
+    platform = level.platform
+    others = [task for task in level.order[: level.reach] if task.name != response.task.name]
+    jobs: list[Job] = []
+    for place, other in enumerate(others, 1):
+        jobs += _released(other, response, place, "interference")
+    own = demand_of(response.task, platform)
+    count = response.worst_job + 1
+    first = response.lead - response.worst_job * response.task.period
+    for job in range(count):
+        frame = (response.frame - response.worst_job + job) % len(own.costs)
+        time = max(0, first + job * response.task.period)
+        jobs.append((time, len(others) + 1 + job, own.costs[frame], response.task.name, "own"))
+    if platform.tick_cost:
+        ticks = releases(window, platform.tick_period, 0)
+        times = [n * platform.tick_period for n in range(ticks)]
+        jobs += [(time, 0, platform.tick_cost, "ticks and releases", "overhead") for time in times]
+    for task in level.order if platform.release else ():
+        for time in _times(task, response):
+            jobs.append((time, 0, release_time(task, platform), "ticks and releases", "overhead"))
+    return [job for job in jobs if job[2]]
+
+
+def _times(task: Task, response: Response) -> list[int]:
+    """When a task is released, at the soonest, within the window."""
+    return [time for time, _ in response.released(task)]
+
+
+def _released(task: Task, response: Response, place: int, kind: str) -> list[Job]:
+    """The jobs of a rival, in known frames or those in which they cost most."""
+    costs = demand_of(task, response.level.platform).costs
+    return [(time, place, costs[frame], task.name, kind) for time, frame in response.released(task)]

@@ -1,0 +1,149 @@
+"""The queues of a system: what may wait in each, against the depth that the model gives it.
+
+Every bound of a response or latency supposes that nothing is lost. Of a message that is
+in a queue for at most W after its event, and comes no closer than T, ceil(W / T) are in
+there at once. Where the reader takes one in each separation S, the last of n that wait
+together waits (n - 1) S: so there are no more than W / S + 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+from ravenchart.gen.derive.calls import callers_of, calls_from_afar
+from ravenchart.gen.model.commands import Provided
+from ravenchart.gen.model.component import Port, PortKind
+from ravenchart.gen.model.statechart import Overflow
+from ravenchart.gen.model.system import Connection, Instance
+from ravenchart.gen.origins import Origin
+
+from .commands import from_release
+from .latencies import Hop
+
+if TYPE_CHECKING:
+    from .timing import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Depth:
+    """A queue; ``needed`` is the depth that loses nothing, None where none is known to.
+
+    ``what`` may wait in it, in words; ``key`` is what the model calls its depth.
+    """
+
+    what: str
+    key: str
+    origin: Origin
+    given: int
+    needed: int | None
+
+    @property
+    def holds(self) -> bool:
+        """Nothing is lost."""
+        return self.needed is not None and self.needed <= self.given
+
+
+def depths(analysis: Analysis) -> Iterator[Depth]:
+    """Every queue between the parts of a system, with what it must hold.
+
+    Not those of a bus whose frames or their reception have no bound, and not those of
+    which the model says what becomes of values that do not fit, where no
+    limit of a chain depends on them.
+    """
+    system = analysis.system
+    for bus, node in product(system.buses, system.nodes):
+        sent = [m for m in system.messages if (m.bus, system.sender(m)) == (bus.name, node.name)]
+        times = [(analysis.found.from_event(m.element), m.period) for m in sent]
+        needed = _together(times) if sent else None
+        if needed is not None:
+            place = "" if len(system.nodes) == 1 else f" by {node.name}"
+            queue = f"frames may wait to be sent on {bus.name}{place}"
+            yield Depth(queue, "transmit_depth", bus.origin, bus.transmit_depth, needed)
+    for processor in system.processors:
+        own = analysis.found.responses[processor.name].bound
+        received = system.received(processor.released_by, processor.node)
+        taken = [analysis.deliveries[one.element] for one in received]
+        waits = [None if d.bound is None or own is None else d.bound - own for d in taken]
+        if not waits or processor.released_by is None:
+            continue
+        needed = _together(list(zip(waits, (d.message.period for d in taken), strict=True)))
+        if needed is None:
+            continue
+        needed = min(needed, max(w or 0 for w in waits) // processor.period + 1)
+        bus = system.bus(processor.released_by)
+        queue = f"frames of {bus.name} may wait for {processor.name}"
+        yield Depth(queue, "receive_depth", bus.origin, bus.receive_depth, needed)
+    for instance in system.instances:
+        for port in instance.component.inputs():
+            if port.kind is PortKind.QUEUED:
+                yield from _of_port(instance, port, analysis)
+        for provided in instance.component.provides:
+            yield from _of_requests(instance, provided, analysis)
+
+
+def _together(times: Sequence[tuple[int | None, int]]) -> int | None:
+    """How many are in a queue at once, by how long each is there and how often it comes."""
+    counts = [None if within is None else -(-within // period) for within, period in times]
+    known = [count for count in counts if count is not None]
+    return sum(known) if len(known) == len(counts) else None
+
+
+def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Depth]:
+    """The values that wait in a queued port for their handler."""
+    system, place = analysis.system, f"{instance.name}.{port.name}"
+    ways: list[tuple[str, ...]] = [
+        (f"message {message.name}", place)
+        for message in system.messages
+        if place in map(str, message.targets)
+    ]
+    for connection in system.connections:
+        if str(connection.target) == place:
+            ways += [(row, str(connection.source), place) for row in _senders(connection, analysis)]
+    needed: int | None = 0
+    for way in ways:
+        hop = analysis.latency(way).hops[-1]
+        one = 1 if hop.step.hop is not Hop.QUEUED else hop.backlog
+        one = None if hop.step.waits else one
+        needed = None if one is None or needed is None else max(needed, one)
+    expected = port.overflow is Overflow.DROP_OLDEST or port.on_overflow is not None
+    relied_on = any(place in chain.way for chain in system.chains)
+    if ways and (relied_on or not expected):
+        yield Depth(f"values may wait in {place}", "depth", port.origin, port.depth, needed)
+
+
+def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> Iterator[Depth]:
+    """The requests of an interface; its server takes all that wait.
+
+    Of a command of another node with a reply one call waits at most. Nothing is expected to
+    be lost where other nodes call, for they are not told; where none does, callers may
+    say what becomes of a call that does not fit.
+    """
+    system = analysis.system
+    afar = calls_from_afar(system, instance.name, provided)
+    near = callers_of(system, instance.name, provided)
+    expected = any(binding.need.on_full for binding in near)
+    if not (afar or near) or (expected and not afar):
+        return
+    served = f"{instance.name}.{provided.server}"
+    ways = [(f"message {m.name}", m.period) for m in afar if m.call and m.call.reply is None]
+    times = [(analysis.latency((way, served)).reaction, period) for way, period in ways]
+    for binding in near:
+        component = system.instance(binding.instance).component
+        for row in component.senders(binding.need.name):
+            serves = component.served_by(row.name)
+            once = serves.depth if serves else getattr(row, "steps_per_execution", 1)
+            within = from_release(analysis, (f"{binding.instance}.{row.name}", served))
+            times += [(within, row.timing.period)] * once
+    together = _together(times)
+    needed = None if together is None else together + len(afar) - len(ways)
+    what = f"requests may wait in {instance.name}.{provided.name}"
+    yield Depth(what, "queue", provided.origin, provided.depth, needed)
+
+
+def _senders(connection: Connection, analysis: Analysis) -> list[str]:
+    source = analysis.system.instance(connection.source.instance)
+    rows = source.component.senders(connection.source.port)
+    return [f"{source.name}.{row.name}" for row in rows]

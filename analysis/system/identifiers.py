@@ -1,0 +1,144 @@
+"""Orders of CAN identifiers that meet all deadlines of a bus, for `identifiers: audsley`.
+
+Audsley's assignment over the analysis of the bus alone (`core.assignment`). A message
+counts as it is declared, its sender without delay: the response of a sender may depend on
+received messages, so on the identifiers that are looked for. Of a queue of this node any
+frame may go before any other, and those have the same response in every order.
+
+Identifiers that the model gives bind places: the messages that have them keep their order,
+and between two of them there is room for so many others. Where that is room for all that
+are left or for none, an order is found whenever there is one; otherwise perhaps not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from ravenchart.analysis.core.assignment import Order, audsley_frames, responses_in_place
+from ravenchart.analysis.core.bus import Frame
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.frames import leading
+from ravenchart.analysis.units import duration, microseconds, percent
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.model.system import Bus, System
+
+from .network import network_of
+
+NO_ORDER = "RV-0908"
+"""No order of the identifiers of a bus meets all deadlines."""
+
+LARGEST = 3
+"""How many messages that do not fit a diagnostic names besides the first."""
+
+PLACES = 1 << 11
+"""Values of the 11 bits that decide between frames first; others count from 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where the frames of a bus may go; ``given`` are those whose rank is bound."""
+
+    model_order: tuple[str, ...]
+    given: frozenset[str]
+
+    def candidates(self, left: Sequence[Frame], placed: Sequence[Frame]) -> list[Frame]:
+        """The frames for the lowest place that is left, in the order to try.
+
+        The longest deadline first, of equal ones the later in the model; but a given one
+        above which not all others have room comes last.
+        """
+        bound = sorted((f for f in left if f.name in self.given), key=lambda frame: frame.rank)
+        open_ = [f for f in left if f.name not in self.given]
+        below = next((n for n, f in enumerate(placed) if f.name in self.given), None)
+        end = PLACES if below is None else leading(placed[below].rank)
+        begin = leading(bound[-1].rank) if bound else 0
+        room = end - begin - 1 - (len(placed) if below is None else below)
+        found = sorted(open_, key=self._urgency, reverse=True) if room > 0 else []
+        if not bound:
+            return found
+        above = set(range(1, begin)) - {leading(frame.rank) for frame in bound}
+        gap = begin - 1 - (leading(bound[-2].rank) if len(bound) > 1 else 0)
+        if gap >= len(open_):
+            return sorted([*found, bound[-1]], key=self._urgency, reverse=True)
+        return [*found, bound[-1]] if len(above) >= len(open_) else found
+
+    def _urgency(self, frame: Frame) -> tuple[int, int]:
+        return frame.deadline, self.model_order.index(frame.name)
+
+
+def order_of(bus: Bus, system: System) -> tuple[str, ...] | Diagnostic:
+    """The elements of the bus, most urgent first, when all deadlines are met; else why not."""
+    network = network_of(system)
+    frames, wire = network.frames[bus.name], network.buses[bus.name]
+    given = frozenset(m.element for m in system.frames if m.given)
+    places = Places(tuple(frame.name for frame in frames), given)
+    order = audsley_frames(frames, wire, places.candidates)
+    if order.complete:
+        return order.names
+    return _refusal(bus, system, frames, order, places, responses_in_place(frames, wire))
+
+
+def _refusal(
+    bus: Bus,
+    system: System,
+    frames: Sequence[Frame],
+    order: Order,
+    places: Places,
+    response: Callable[[Frame, Sequence[Frame], Sequence[Frame]], FrameResponse],
+) -> Diagnostic:
+    """What cannot go to the lowest place that is left, and why."""
+    by_name = {frame.name: frame for frame in frames}
+    messages = {message.element: message for message in system.frames}
+    left = [by_name[name] for name in order.unplaced]
+    placed = [by_name[name] for name in order.names]
+    tried = [
+        response(frame, [other for other in left if other is not frame], placed)
+        for frame in places.candidates(left, placed)
+    ]
+    first, rest = tried[0], tried[1:]
+    message = messages[first.frame.name]
+    if first.frame.queue:
+        text = "all of the bus may go before it, for it leaves in the order sent: no identifier "
+        notes = [(message.origin, f"{text}helps it")]
+    else:
+        text = f"{_some(len(left) - 1)} would go before it, {len(placed)} after it"
+        notes = [(message.origin, text)]
+    if first.blocker:
+        text = f"{messages[first.blocker].name} may hold it up for {duration(first.blocked)}"
+        notes.append((messages[first.blocker].origin, text))
+    notes += [
+        (messages[one.frame.name].origin, f"{messages[one.frame.name].name} {_needs(one)}")
+        for one in rest[:LARGEST]
+    ]
+    if len(rest) > LARGEST:
+        more = _some(len(rest) - LARGEST)
+        notes.append((bus.origin, f"{more} more cannot have that place"))
+    kept = next((f for f in left if f.name in places.given), None)
+    hint = "lengthen a `deadline:` or period of these, or raise the bit rate"
+    if kept is not None:
+        hint += f"; or leave out the `id` of {messages[kept.name].name}"
+    return error(
+        NO_ORDER,
+        message.origin,
+        f"no order of identifiers found that meets all deadlines of {bus.name}: {message.name} "
+        f"cannot have the lowest place that is left; it {_needs(first)}",
+        notes=notes,
+        hint=hint,
+    )
+
+
+def _some(number: int) -> str:
+    """So many messages."""
+    return f"{number} message{'' if number == 1 else 's'}"
+
+
+def _needs(response: FrameResponse) -> str:
+    """By how much it misses its deadline there."""
+    if response.bound is None:
+        load = percent(response.level.load)
+        return f"has no bound there: it and what goes before it need {load} of the bus"
+    return (
+        f"may take {microseconds(response.bound)} us there, and its deadline is "
+        f"{duration(response.frame.deadline)}"
+    )

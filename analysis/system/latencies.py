@@ -1,0 +1,242 @@
+"""Latencies from end to end through the rows of a system.
+
+A way of values through messages, ports, rows and data is taken hop by hop. A row
+that runs later in the same job than the row before it follows at once; any other row
+samples what it reads at its own times, or takes one value in a job from a queued
+port, of as many as the writer puts there. A region that takes its occurrences one by
+one has no bound: nothing is known here of how many wait.
+
+A received frame waits in the queue of its bus for the reception, which takes
+one at a time and keeps its least separation.
+
+`core.chains` does the sums. It gets the rows as items of their own, each with its
+period and its response inside the job.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+
+from ravenchart.analysis.core import can
+from ravenchart.analysis.core.bus import Bus, Frame
+from ravenchart.analysis.core.chains import Chain, Hop, Latency, Step, latency
+from ravenchart.analysis.core.holistic import Holistic, Network
+from ravenchart.analysis.core.platform import Platform
+from ravenchart.analysis.core.responses import Level, Response
+from ravenchart.analysis.core.tasks import Task
+from ravenchart.gen.language.terms import named
+from ravenchart.gen.model.component import Activity, Port, PortKind
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Message, Processor, Reception, System
+
+__all__ = ["Delivery", "Hop", "Latencies", "Latency", "deliveries"]
+
+
+@dataclass(frozen=True, slots=True)
+class Delivery:
+    """How long a received message takes from its event until it is handed over on a node.
+
+    ``bound`` is None where frames come faster than they are taken; ``wait`` is the part
+    spent in the queue.
+    """
+
+    reception: Reception
+    bound: int | None
+    wait: int | None
+
+    @property
+    def message(self) -> Message:
+        """What is received."""
+        return self.reception.message
+
+
+def deliveries(system: System, found: Holistic) -> dict[str, Delivery]:
+    """Every message on every node that hands it over, by the element of its reception.
+
+    The separation counts from when the reception first ran, which can be as late as
+    its response.
+    """
+    made: dict[str, Delivery] = {}
+    for processor in system.processors:
+        frames = reception_frames(processor, system, found)
+        turns = {r.frame.name: r.bound for r in can.analyse(frames, Bus(bit_time=1))}
+        own = found.responses[processor.name].bound
+        for one in system.received(processor.released_by, processor.node):
+            bound, late = turns.get(one.element), found.from_event(one.driver)
+            if bound is None or own is None or late is None:
+                made[one.element] = Delivery(one, None, None)
+            else:
+                turn = bound - processor.period
+                made[one.element] = Delivery(one, turn + 2 * own, turn + own - late)
+    return made
+
+
+def reception_frames(processor: Processor, system: System, found: Holistic) -> list[Frame]:
+    """What waits for a reception, as frames of one sender: each takes the separation.
+
+    First come, first served, like a first-in first-out queue of a bus. None where the
+    time of an arrival has no bound.
+    """
+    frames = []
+    received = system.received(processor.released_by, processor.node)
+    for number, one in enumerate(received):
+        late = found.from_event(one.driver)
+        if late is None:
+            return []
+        times = (one.message.period, one.message.limit, processor.period, late)
+        frames.append(Frame(one.element, number, *times, queue=processor.name))
+    return frames
+
+
+@dataclass(frozen=True, slots=True)
+class Latencies:
+    """Rows, drivers, frames and deliveries as items of chains, with their responses."""
+
+    system: System
+    network: Network
+    found: Holistic
+    rows: Mapping[str, tuple[Processor, int]]
+    """Each row's processor, and its place in the table."""
+
+    @classmethod
+    def of(
+        cls, system: System, network: Network, found: Holistic, delivered: Mapping[str, Delivery]
+    ) -> Latencies:
+        """From the responses of a system's network."""
+        items: list[tuple[Task, int | None]] = []
+        for task in network.tasks:
+            response = found.responses[task.name]
+            bounds = {r.row.name: r.bound for r in getattr(response, "rows", ())}
+            for row in task.rows:
+                item = _item(row.name, task.period * row.every, row.cost)
+                items.append((item, bounds.get(row.name)))
+        released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
+        periods = {task.name: task.period for task in network.tasks}  # others where those are tried
+        for element, one in delivered.items():
+            period = periods[one.reception.driver]
+            items.append((_item(handed(element), period, 1), one.bound))
+            released[handed(element)] = one.reception.driver
+        tasks = [task for task in network.tasks if not task.rows]
+        tasks += [item for item, _ in items]
+        view = replace(network, tasks=tuple(tasks), released_by=released)
+        responses = dict(found.responses)
+        for item, bound in items:
+            responses[item.name] = Response(item, Level((item,), 1, Platform()), None, bound)
+        places = {
+            slot.element: (processor, place)
+            for processor in system.processors
+            for place, slot in enumerate(processor.slots)
+        }
+        best = dict.fromkeys(responses, 0)
+        return cls(system, view, replace(found, responses=responses, best=best), places)
+
+    def along(self, name: str, way: Sequence[str], reaction: int = 0, age: int = 0) -> Latency:
+        """The latency of a way, which lists messages, ports, rows and data."""
+        steps: list[Step] = []
+        released = dict(self.network.released_by)
+        kept = ""  # why a job may leave what comes next as it was
+        for place, following in zip_longest(way, way[1:], fillvalue=""):
+            if place.startswith("message "):
+                found = named(self.system.messages, place.removeprefix("message "))
+                received = self.system.reception(found, following)
+                steps += _of_message(found, received, steps, released)
+                continue
+            row, port = place, self._input(place)
+            if port is not None:
+                row = f"{place.partition('.')[0]}.ports"
+            elif place not in self.rows:
+                continue
+            if kept:
+                steps[-1] = replace(steps[-1], keeps=kept)
+            steps.append(self._row(row, port, place, steps, released))
+            kept = "" if port is not None else self._kept(row, following)
+        if kept:
+            steps[-1] = replace(steps[-1], keeps=kept)
+        network = replace(self.network, released_by=released)
+        return latency(Chain(name, tuple(steps), reaction, age), network, self.found)
+
+    def _input(self, place: str) -> Port | None:
+        """An input port; None for what is none."""
+        instance, _, name = place.partition(".")
+        for port in self.system.instance(instance).component.inputs():
+            if port.name == name:
+                return port
+        return None
+
+    def _kept(self, row: str, following: str) -> str:
+        """Why jobs of a row may leave what it leads to as it was; "" where none does."""
+        owner, _, name = row.partition(".")
+        component = self.system.instance(owner).component
+        item = named(component.runnables(), name)
+        if not following or component.renews(item, following.rpartition(".")[2]):
+            return ""
+        return f"{row} gives {following} a new value in some of its jobs only"
+
+    def _row(
+        self,
+        row: str,
+        port: Port | None,
+        place: str,
+        steps: Sequence[Step],
+        released: dict[str, str],
+    ) -> Step:
+        """A row: later in the same job as the step before, or at its own times."""
+        queued = port is not None and port.kind is PortKind.QUEUED and bool(steps)
+        senders = self._senders(place) if queued else ()
+        puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
+        before = steps[-1].name if steps else ""
+        made = Step(row, Hop.QUEUED if queued else Hop.SAMPLED, puts=puts)
+        if before in self.rows and row in self.rows and puts == 1 and len(senders) < 2:
+            (processor, first), (other, then) = self.rows[before], self.rows[row]
+            divisors = {processor.slots[first].divisor, other.slots[then].divisor}
+            phases = {processor.slots[first].phase, other.slots[then].phase}
+            if processor is other and first < then and len(divisors) == len(phases) == 1:
+                released[row] = before
+                made = Step(row, Hop.RELEASED)
+        if len(senders) > 1:
+            names = " and ".join(sender.name for sender in senders)
+            made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
+        owner, _, name = row.partition(".")
+        regions = self.system.instance(owner).component.regions
+        if any(region.name == name and region.takes_turns for region in regions):
+            waits = f"{row} takes events, time-outs and completions one by one, oldest first"
+            made = replace(made, waits=waits)
+        return made
+
+    def _senders(self, place: str) -> tuple[Region | Activity, ...]:
+        """The rows that send to a port over a connection; a message has one."""
+        for connection in self.system.connections:
+            if str(connection.target) == place:
+                source = self.system.instance(connection.source.instance)
+                return source.component.senders(connection.source.port)
+        return ()
+
+
+def handed(element: str) -> str:
+    """The handing over of a received message, as an item."""
+    return f"{element}.reception"
+
+
+def _sending(system: System) -> set[str]:
+    return {message.sending for message in system.messages}
+
+
+def _of_message(
+    message: Message, received: Reception | None, steps: Sequence[Step], released: dict[str, str]
+) -> list[Step]:
+    """The driver's work and the frame, then its reception where there is one."""
+    names = [message.element]
+    if message.source is not None:
+        names.insert(0, message.sending)
+        if steps:
+            released[names[0]] = steps[-1].name
+    if received is not None:
+        names += [received.driver, handed(received.element)]
+    return [Step(name, Hop.RELEASED) for name in names]
+
+
+def _item(name: str, period: int, cost: int) -> Task:
+    """A row or a handing over, as far as chains look at it."""
+    return Task(name, 0, period, period, cost)

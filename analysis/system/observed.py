@@ -1,0 +1,335 @@
+"""What one run of a controller showed: its trace file, read with the generator's map.
+
+The file holds one record a line, times in nanoseconds from the controller's start:
+``E clock``, the machine's clock at that start, ``M digest`` of the model that the program was
+generated from, ``T time kind element value``, then the
+counts ``P processor releases misses worst_response``, ``A row worst_execution``,
+``H fault count``, ``L what count``, ``W host_latency``, ``N now`` before the counts that
+were read then, ``F feeds``, and ``END``. Without ``END`` the run was cut off. The map tells
+what each element number stands for.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import NO_TIME
+
+KINDS = frozenset(
+    {"sent", "arrived", "handled", "raised", "activity", "transition", "state", "fault"}
+)
+"""What a T line may tell, in lower case."""
+
+
+_GOOD = ("sent", "received")
+"""Last words of the L lines that count no losses."""
+
+
+class TraceError(Exception):
+    """A trace or map that cannot be read; the text names the file's line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One numbered element; ``leaves`` are a region's or bus's, ``transitions`` a region's."""
+
+    number: int
+    name: str
+    kind: str
+    origin: str
+    leaves: tuple[str, ...] = ()
+    transitions: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TraceMap:
+    """The generator's map: which model, and its numbered elements."""
+
+    system: str
+    digest: str
+    elements: Mapping[int, Element]
+
+    def named(self, name: str, kind: str) -> Element:
+        """The element of that kind and name, whatever their case; KeyError where none is."""
+        for element in self.elements.values():
+            if element.kind == kind and element.name.lower() == name.lower():
+                return element
+        raise KeyError(name)
+
+    def of_kind(self, kind: str) -> tuple[Element, ...]:
+        """The elements of one kind, by number."""
+        return tuple(e for _, e in sorted(self.elements.items()) if e.kind == kind)
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One T line; ``kind`` in lower case, ``text`` the state or transition it tells of."""
+
+    time: Ns
+    kind: str
+    element: Element
+    value: int
+
+    @property
+    def text(self) -> str:
+        """The leaf or transition that ``value`` stands for, else the number itself."""
+        names = {"state": self.element.leaves, "transition": self.element.transitions}
+        choices = names.get(self.kind, ())
+        return choices[self.value] if choices else str(self.value)
+
+
+@dataclass(frozen=True, slots=True)
+class Releases:
+    """How one processor fared: releases, deadlines missed, longest response.
+
+    The counts were read at ``now`` or a little later; None where the trace does not say when.
+    """
+
+    releases: int
+    misses: int
+    worst_response: Ns
+    now: Ns | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Visit:
+    """A stay in one leaf state; ``end`` is None for the last one."""
+
+    state: str
+    start: Ns
+    end: Ns | None
+
+
+@dataclass(slots=True)
+class Observation:
+    """Everything that one trace file says; keys are element names or words of the file."""
+
+    map: TraceMap
+    records: list[Record] = field(default_factory=list)
+    processors: dict[str, Releases] = field(default_factory=dict)
+    executions: dict[str, Ns] = field(default_factory=dict)
+    faults: dict[str, int] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+    """The L lines: frames that went well, and everything that was lost."""
+    host_latency: Ns | None = None
+    """Longest time for which the host withheld the core, where a probe measured it."""
+    stolen: Ns | None = None
+    """Time that a hypervisor took of the core during the whole run, as its kernel counts it."""
+    now: Ns | None = None
+    """When the counts were read, in the controller's own time."""
+    feeds: int | None = None
+    """How often the supervision fed the watchdog, where there is one."""
+    complete: bool = False
+    digest: str = ""
+    """SHA-256 of the model that the program was generated from, as the program says."""
+    start: Ns = NO_TIME
+    """The machine's clock when this controller's time was 0."""
+    ready: Ns = NO_TIME
+    """From when on all controllers ran."""
+
+    @property
+    def misses(self) -> int:
+        """Deadlines missed on all processors."""
+        return sum(p.misses for p in self.processors.values())
+
+    @property
+    def losses(self) -> dict[str, int]:
+        """The counts of what was lost: all but frames sent and received."""
+        return {what: n for what, n in self.counts.items() if what.rpartition(".")[2] not in _GOOD}
+
+    @property
+    def trace_lost(self) -> int:
+        """Records that did not fit into the controller's trace buffer."""
+        return sum(n for what, n in self.losses.items() if what.lower().endswith("trace"))
+
+    @property
+    def end(self) -> Ns:
+        """Time of the last record."""
+        return self.records[-1].time if self.records else Ns(0)
+
+    def of(self, kind: str, element: str) -> tuple[Record, ...]:
+        """The records of one kind about one element, in order."""
+        wanted = element.lower()
+        return tuple(r for r in self.records if r.kind == kind and r.element.name.lower() == wanted)
+
+    def visits(self, region: str) -> tuple[Visit, ...]:
+        """The stays of one region in its leaf states, or of a controller on a bus, in order."""
+        stays: list[Visit] = []
+        for record in self.of("state", region):
+            if stays and stays[-1].state == record.text:
+                continue
+            if stays:
+                stays[-1] = Visit(stays[-1].state, stays[-1].start, record.time)
+            stays.append(Visit(record.text, record.time, None))
+        return tuple(stays)
+
+    def states_visited(self) -> dict[str, tuple[str, ...]]:
+        """The leaf states that each region, and controller, was in, each once, in first order."""
+        return {
+            element.name: tuple(dict.fromkeys(v.state for v in self.visits(element.name)))
+            for element in (*self.map.of_kind("region"), *self.map.of_kind("bus"))
+        }
+
+
+def read_map(text: str, file: str = "trace.json") -> TraceMap:
+    """The map in ``text``; TraceError when it is not one."""
+    try:
+        raw: Any = json.loads(text)
+        elements = [_element(item) for item in raw["elements"]]
+        numbered = {e.number: e for e in elements}
+        if len(numbered) != len(elements):
+            raise TraceError(f"{file}: error: two elements have the same id")
+        return TraceMap(str(raw["system"]), str(raw["digest"]), numbered)
+    except json.JSONDecodeError as fault:
+        raise TraceError(f"{file}:{fault.lineno}: error: not JSON: {fault.msg}") from None
+    except (KeyError, TypeError, ValueError) as fault:
+        raise TraceError(f"{file}: error: not a trace map: {_reason(fault)}") from None
+
+
+def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -> Observation:
+    """What the lines tell; TraceError names the first line that cannot be read."""
+    seen = Observation(trace_map)
+    for number, line in enumerate(lines, start=1):
+        words = line.split()
+        if not words:
+            continue
+        try:
+            if seen.complete:
+                raise ValueError("nothing may follow END")
+            _take(words, seen)
+        except ValueError as fault:
+            raise TraceError(f"{file}:{number}: error: {fault}") from None
+    return seen
+
+
+def of_model(seen: Observation, digest: str, file: str = "trace") -> None:
+    """TraceError where the program that wrote a trace was not generated from this model."""
+    if seen.digest != digest:
+        found = f"has the digest {seen.digest[:12]}" if seen.digest else "has no digest"
+        raise TraceError(
+            f"{file}: error: the trace {found}, and the model has {digest[:12]}: the program that "
+            "wrote it was generated from another model; generate, build and run again"
+        )
+
+
+def together(parts: Mapping[str, Observation]) -> Observation:
+    """What several controllers on one machine showed, by node: as if it were one.
+
+    Times count from the first start of all; elements are numbered anew, and counts are
+    those of their node, in front of whose words its name stands.
+    """
+    first = min(part.start for part in parts.values())
+    elements: dict[int, Element] = {}
+    whole = Observation(TraceMap("", "", elements), start=first, complete=True)
+    for node, part in parts.items():
+        own = {e: replace(e, number=e.number + len(elements)) for e in part.map.elements.values()}
+        late = part.start - first
+        whole.records += [
+            replace(r, time=Ns(r.time + late), element=own[r.element]) for r in part.records
+        ]
+        elements |= {e.number: e for e in own.values()}
+        whole.processors |= part.processors
+        whole.executions |= part.executions
+        whole.counts |= {f"{node}.{what}": n for what, n in part.counts.items()}
+        for fault, n in part.faults.items():
+            whole.faults[fault] = whole.faults.get(fault, 0) + n
+        if part.host_latency is not None:
+            whole.host_latency = max(whole.host_latency or Ns(0), part.host_latency)
+        whole.complete = whole.complete and part.complete
+        whole.ready = max(whole.ready, Ns(late))
+        whole.digest = part.digest
+        whole.map = replace(part.map, elements=elements)
+    whole.records.sort(key=lambda record: record.time)
+    return whole
+
+
+def _take(words: list[str], seen: Observation) -> None:
+    """Add one line to what was seen; ValueError says what is wrong with it."""
+    match words:
+        case ["T", time, kind, element, value]:
+            seen.records.append(_record(time, kind, element, value, seen.map))
+        case ["M", digest]:
+            seen.digest = digest
+        case ["E", clock]:
+            seen.start = Ns(_count(clock))
+        case ["P", number, releases, misses, worst]:
+            counts = Releases(_count(releases), _count(misses), Ns(_count(worst)), seen.now)
+            seen.processors[_known(number, seen.map, "processor").name] = counts
+        case ["A", number, worst]:
+            seen.executions[_known(number, seen.map, "row").name] = Ns(_count(worst))
+        case ["H", kind, count]:
+            seen.faults[kind] = _count(count)
+        case ["L", what, count]:
+            seen.counts[what] = _count(count)
+        case ["W", latency]:
+            seen.host_latency = Ns(_count(latency))
+        case ["N", now]:
+            seen.now = Ns(_count(now))
+        case ["F", feeds]:
+            seen.feeds = _count(feeds)
+        case ["END"]:
+            seen.complete = True
+        case _:
+            raise ValueError(f"not a trace line: {' '.join(words)[:60]!r}")
+
+
+def _record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> Record:
+    """One T line."""
+    if kind.lower() not in KINDS:
+        raise ValueError(f"unknown kind {kind!r}")
+    name = kind.lower()
+    regions = {"state": ("region", "bus"), "transition": ("region",)}.get(name, ())
+    element = _known(number, trace_map, *regions)
+    record = Record(Ns(_number(time)), name, element, _number(value))
+    choices = {"state": element.leaves, "transition": element.transitions}.get(name)
+    if choices is not None and not 0 <= record.value < len(choices):
+        raise ValueError(f"{element.name} has no {name} number {value}")
+    return record
+
+
+def _known(number: str, trace_map: TraceMap, *kinds: str) -> Element:
+    """The element with that number, of one of those kinds where any are given."""
+    element = trace_map.elements.get(_number(number))
+    if element is None:
+        raise ValueError(f"the map has no element {number}")
+    if kinds and element.kind not in kinds:
+        wanted = " or a ".join(kinds)
+        raise ValueError(f"element {number}, {element.name}, is a {element.kind}, not a {wanted}")
+    return element
+
+
+def _element(item: Any) -> Element:
+    """One element of the map."""
+    return Element(
+        number=int(item["id"]),
+        name=str(item["element"]),
+        kind=str(item["kind"]),
+        origin=str(item.get("origin", "")),
+        leaves=tuple(map(str, item.get("leaves", ()))),
+        transitions=tuple(map(str, item.get("transitions", ()))),
+    )
+
+
+def _number(word: str) -> int:
+    """An integer, in the only form that the controller writes."""
+    digits = word.removeprefix("-")
+    if not (digits.isascii() and digits.isdigit()) or len(digits) > 19:
+        raise ValueError(f"{word[:20]!r} is not a number")
+    return int(word)
+
+
+def _count(word: str) -> int:
+    """A number that is not negative."""
+    number = _number(word)
+    if number < 0:
+        raise ValueError(f"{word} is negative")
+    return number
+
+
+def _reason(fault: Exception) -> str:
+    """What an exception of the reader says."""
+    return f"{fault.args[0]} is missing" if isinstance(fault, KeyError) else str(fault)

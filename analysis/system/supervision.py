@@ -1,0 +1,57 @@
+"""How soon the silence of each processor is found, or that nothing looks for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.gen.derive.completion import SUPERVISOR
+from ravenchart.gen.language.terms import Ns
+
+from .timing import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Silence:
+    """One processor under supervision; times from when a release was due.
+
+    Silent after ``limit`` without completion, found by ``found`` at the latest: None where the
+    supervisor has no bound.
+    """
+
+    processor: str
+    limit: Ns
+    found: Ns | None
+    raises: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """A node with its processors; ``silences`` is None where nothing supervises them."""
+
+    node: str
+    processors: tuple[str, ...]
+    silences: tuple[Silence, ...] | None
+
+
+def watches(analysis: Analysis) -> tuple[Watch, ...]:
+    """Each node that has processors."""
+    system = analysis.system
+    found: list[Watch] = []
+    for node in system.nodes:
+        here = [p for p in system.processors if p.node == node.name]
+        names = tuple(p.name for p in here)
+        own = node.supervision
+        if not here:
+            continue
+        if own is None:
+            found.append(Watch(node.name, names, None))
+            continue
+        response = analysis.found.from_event(f"{node.name}.{SUPERVISOR}")
+        silences = []
+        for one in here:
+            limit = Ns(one.deadline + own.margin)
+            latest = None if response is None else Ns(limit + own.period + response)
+            raised = tuple(f"{instance}.{event}" for instance, event in one.on_silence)
+            silences.append(Silence(one.name, limit, latest, raised))
+        found.append(Watch(node.name, names, tuple(silences)))
+    return tuple(found)

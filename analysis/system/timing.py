@@ -1,0 +1,218 @@
+"""The timing of a whole system: every response, latency and load, from `analysis.core`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from fractions import Fraction
+from functools import cached_property
+
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.core.can_response import FrameResponse
+from ravenchart.analysis.core.holistic import Holistic, Network
+from ravenchart.analysis.core.responses import Level, Response, RowResponse
+from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
+from ravenchart.analysis.core.tasks import plain
+from ravenchart.analysis.findings.advice import Advice, of_model
+from ravenchart.gen.model.system import Bus, Chain, Message, System
+from ravenchart.gen.model.system import Task as ModelTask
+from ravenchart.gen.origins import Origin
+
+from . import latencies
+from .depths import Depth, depths
+from .graph import Ways
+from .latencies import Delivery, Latencies
+from .network import network_of
+
+FACTOR_STEPS = 1000
+"""Factors of execution times are counted in 1 / this."""
+
+
+class Verdict(Enum):
+    """What the analysis says of one task or message."""
+
+    MET = "met"
+    MISSED = "missed"
+    NO_BOUND = "no bound"
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What the analysis found for a system; names are those of its elements.
+
+    ``found`` counts the rows of a table in the jobs that run them, and these where offsets
+    place them; ``plain`` has the bounds with every row in every job at any time, as one
+    reckons by hand.
+    """
+
+    system: System
+    network: Network
+    found: Holistic
+    plain: Holistic
+
+    @cached_property
+    def tasks(self) -> dict[str, ModelTask]:
+        """The tasks of the system by element."""
+        return {task.element: task for task in self.system.tasks}
+
+    @cached_property
+    def messages(self) -> dict[str, Message]:
+        """The messages of the system by element."""
+        return {message.element: message for message in self.system.frames}
+
+    def origin(self, name: str) -> Origin:
+        """Where a task or message stands in the model."""
+        return (self.tasks.get(name) or self.messages[name]).origin
+
+    @cached_property
+    def for_all_offsets(self) -> Analysis:
+        """The same where offsets are unknown: itself where none made a response shorter."""
+        if not any(response.alignment for response in self.responses):
+            return self
+        tasks = tuple(replace(task, offset=None) for task in self.network.tasks)
+        network = replace(self.network, tasks=tasks)
+        return replace(self, network=network, found=holistic.analyse(network))
+
+    @cached_property
+    def responses(self) -> tuple[Response, ...]:
+        """The responses of the tasks, in the system's order."""
+        return tuple(r for r in self.found.responses.values() if isinstance(r, Response))
+
+    def frames(self, bus: Bus) -> tuple[FrameResponse, ...]:
+        """The responses of a bus's messages, most urgent first."""
+        found = (self.found.responses[f.name] for f in self.network.frames[bus.name])
+        sent = [one for one in found if isinstance(one, FrameResponse)]
+        return tuple(sorted(sent, key=lambda one: one.frame.rank))
+
+    def response(self, element: str) -> Response:
+        """The response of the task with that id; KeyError where there is none."""
+        response = self.found.responses[element]
+        if not isinstance(response, Response):
+            raise KeyError(element)
+        return response
+
+    def rows(self) -> Iterator[tuple[ModelTask, RowResponse]]:
+        """Every row of every table with its response, where it has a bound."""
+        for response in self.responses:
+            for row in response.rows:
+                yield self.tasks[response.task.name], row
+
+    @cached_property
+    def row_names(self) -> frozenset[str]:
+        """The rows of all tables."""
+        return frozenset(row.name for task in self.network.tasks for row in task.rows)
+
+    def verdict(self, name: str) -> Verdict:
+        """Met when the time from the event that leads to it is at most its deadline."""
+        if self.found.responses[name].bound is None:
+            return Verdict.NO_BOUND
+        return Verdict.MET if self.found.meets(name) else Verdict.MISSED
+
+    def slack(self, name: str) -> int | None:
+        """Deadline less response; negative when missed, None without a bound."""
+        needed = self.found.from_event(name)
+        return None if needed is None else self.found.deadline(name) - needed
+
+    def worst_first(self) -> tuple[str, ...]:
+        """Tasks and messages: those without a bound, then by slack, smallest first."""
+
+        def key(name: str) -> tuple[bool, int]:
+            slack = self.slack(name)
+            return slack is not None, slack or 0
+
+        return tuple(sorted(self.found.responses, key=key))
+
+    def failed(self) -> tuple[str, ...]:
+        """What is not met, worst first."""
+        return tuple(n for n in self.worst_first() if self.verdict(n) is not Verdict.MET)
+
+    @property
+    def schedulable(self) -> bool:
+        """Every deadline is met, every received frame is taken, every limit kept, nothing lost.
+
+        But for queues of which no depth is known to hold all.
+        """
+        kept = all(found.met for _, found in self.limited)
+        full = any(queue.needed is not None for queue in self.short_queues)
+        return self.found.met and not self.undelivered and kept and not full
+
+    @cached_property
+    def short_queues(self) -> tuple[Depth, ...]:
+        """The queues that may lose what does not fit."""
+        return tuple(one for one in depths(self) if not one.holds)
+
+    @cached_property
+    def advice(self) -> Advice | None:
+        """What to change; None where there is room enough, or too much to look at."""
+        return of_model(self)
+
+    @property
+    def undelivered(self) -> tuple[Message, ...]:
+        """Messages that may wait for their reception without bound."""
+        lost = (one.message for one in self.deliveries.values() if one.bound is None)
+        return tuple(dict.fromkeys(lost))
+
+    @property
+    def overloaded(self) -> tuple[Bus, ...]:
+        """Buses whose messages and errors may need more than all of their time."""
+        return tuple(bus for bus in self.system.buses if self.bus_load(bus) > 1)
+
+    def utilisation(self, core: str) -> Fraction:
+        """Share of one core that its tasks and overheads may need together."""
+        order = tuple(task for task in self.network.tasks if task.core == core)
+        return Level(order, len(order), self.network.platforms[core]).load
+
+    def bus_load(self, bus: Bus) -> Fraction:
+        """Share of a bus that messages and errors need, at their longest and most frequent."""
+        frames = self.frames(bus)
+        return frames[-1].level.load if frames else Fraction(0)
+
+    @cached_property
+    def ways(self) -> Ways:
+        """The ways that values can take."""
+        return Ways.of(self.system)
+
+    @cached_property
+    def deliveries(self) -> dict[str, Delivery]:
+        """How each received message gets through the queue of its bus, by reception."""
+        return latencies.deliveries(self.system, self.found)
+
+    @cached_property
+    def _latencies(self) -> Latencies:
+        return Latencies.of(self.system, self.network, self.found, self.deliveries)
+
+    def latency(self, way: Sequence[str]) -> latencies.Latency:
+        """The latency of a way, which lists messages, ports, rows and data."""
+        return self._latencies.along(f"{way[0]} to {way[-1]}".replace("message ", ""), way)
+
+    @cached_property
+    def limited(self) -> tuple[tuple[Chain, latencies.Latency], ...]:
+        """The chains that the model limits, where there is a way, with their latencies."""
+        found = []
+        for chain in self.system.chains:
+            if chain.way:
+                limits = (chain.reaction or 0, chain.age or 0)
+                found.append((chain, self._latencies.along(chain.name, chain.way, *limits)))
+        return tuple(found)
+
+    @cached_property
+    def chains(self) -> tuple[latencies.Latency, ...]:
+        """From each message received to each message that it can influence: the shortest way."""
+        return tuple(self.latency(way) for way in self.ways.between_messages())
+
+    @cached_property
+    def scaling(self) -> NetworkScaling | None:
+        """How far all execution times can be scaled together; buses stay as they are."""
+        return self.scaling_of(*self.tasks)
+
+    def scaling_of(self, *names: str) -> NetworkScaling | None:
+        """How far the execution times of these tasks can be scaled, all others as they are."""
+        return network_scaling(self.network, set(names), FACTOR_STEPS)
+
+
+def analyse(system: System) -> Analysis:
+    """The timing of ``system``."""
+    network = network_of(system)
+    summed = replace(network, tasks=tuple(plain(task) for task in network.tasks))
+    return Analysis(system, network, holistic.analyse(network), holistic.analyse(summed))

@@ -1,0 +1,1 @@
+"""Charts executed as modelled, in virtual time, by docs/semantics.md."""

@@ -1,0 +1,226 @@
+"""A whole system in virtual time.
+
+At each instant everything that is due runs, the processor of the highest
+priority first, each its table in order, and takes no time. What a processor
+released by a bus would receive comes as stimuli; what leaves on a bus is gone.
+Activities that the user writes do nothing.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections import deque
+from collections.abc import Iterator
+
+from ravenchart.gen.language.terms import Ns, Value
+from ravenchart.gen.model.component import Activity, PortKind
+from ravenchart.gen.model.component import Port as InputPort
+from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
+from ravenchart.gen.model.system import End, Instance, Slot, System, Work
+
+from .expressions import Outbox, Port, View, default, perform
+from .region import RegionRun
+from .stimuli import Arrived, Raised, Stimuli
+from .traces import Record
+
+
+class Mailbox:
+    """What has arrived at an input port and waits for the handler."""
+
+    def __init__(self, port: InputPort) -> None:
+        """An empty one; that of a sampled port keeps the last value."""
+        sampled = port.kind is PortKind.SAMPLED
+        self.depth = 1 if sampled else port.depth
+        self.policy = Overflow.DROP_OLDEST if sampled else port.overflow
+        self.waiting: deque[Value] = deque()
+        self.has_lost = False
+        """Since the handler looked."""
+
+    def put(self, value: Value) -> None:
+        """Keep a value, or lose one."""
+        if len(self.waiting) < self.depth:
+            self.waiting.append(value)
+            return
+        self.has_lost = True
+        if self.policy is Overflow.DROP_OLDEST:
+            self.waiting.popleft()
+            self.waiting.append(value)
+
+
+class InstanceRun:
+    """A component instance under way."""
+
+    def __init__(self, instance: Instance) -> None:
+        """Before anything has run."""
+        self.instance = instance
+        self.component = instance.component
+        self.parameters = dict(instance.parameters)
+        self.data = {data.name: data.initial for data in self.component.data}
+        self.ports = {port.name: Port(default(port.type)) for port in self.component.inputs()}
+        self.mailboxes = {port.name: Mailbox(port) for port in self.component.inputs()}
+        policies = {e.name: e.overflow for e in self.component.events if e.overflow is not None}
+        self.regions = {
+            region.name: RegionRun(region, policies, self._works_in(region))
+            for region in self.component.regions
+        }
+
+    def _works_in(self, region: Region) -> list[str]:
+        """The states of a region that have a do activity."""
+        places = [a.while_in for a in self.component.activities if a.while_in is not None]
+        return [place.state for place in places if place.region == region.name]
+
+    def view(self) -> View:
+        """What an execution that begins now sees."""
+        active = {name: run.published for name, run in self.regions.items()}
+        return View(dict(self.data), self.parameters, dict(self.ports), active)
+
+    # --- events
+
+    def offer(self, event: str, value: Value | None) -> None:
+        """Offer an event to every region that names it; what overflows is told once."""
+        for full in self._enqueue(event, value):
+            self._enqueue(full, None)
+
+    def _enqueue(self, event: str, value: Value | None) -> list[str]:
+        """The events that report what was lost."""
+        told: list[str] = []
+        for run in self.regions.values():
+            if _names(run.region, event) and not run.offer(event, value):
+                told += [run.region.on_overflow] if run.region.on_overflow is not None else []
+        return told
+
+    # --- rows
+
+    def run_ports(self) -> None:
+        """The port region: one arrival of each port at most."""
+        timing = self.component.port_region
+        assert timing is not None
+        for port in self.component.inputs():
+            mailbox, before = self.mailboxes[port.name], self.ports[port.name]
+            happened: list[tuple[str | None, Value | None]] = []
+            if mailbox.has_lost:
+                happened.append((port.on_overflow, None))
+                mailbox.has_lost = False
+            if mailbox.waiting:
+                value = mailbox.waiting.popleft()
+                self.ports[port.name] = Port(value, "fresh")
+                happened.append((port.on_arrival, value))
+            elif before.state != "never_received":
+                age = before.age + 1
+                old = port.max_age is not None and age > port.max_age // timing.period
+                self.ports[port.name] = Port(before.value, "stale" if old else before.state, age)
+                if old and before.state == "fresh":
+                    happened.append((port.on_stale, None))
+            for event, value_of_event in happened:
+                if event is not None:
+                    self.offer(event, value_of_event if self._is_typed(event) else None)
+
+    def _is_typed(self, event: str) -> bool:
+        return any(e.name == event and e.type is not None for e in self.component.events)
+
+    def publish(self, view: View, written: tuple[str, ...]) -> None:
+        """Let others see the data that an execution wrote."""
+        self.data |= {name: view.data[name] for name in written}
+
+
+def _names(region: Region, event: str) -> bool:
+    """Whether a region waits for an event or defers it."""
+    triggers = any(t.trigger == OnEvent(event) for t in region.transitions)
+    return triggers or any(event in state.defers for state in region.states)
+
+
+class Machine:
+    """A system under way."""
+
+    def __init__(self, system: System) -> None:
+        """Before the epoch."""
+        self.system = system
+        self.instances = {one.name: InstanceRun(one) for one in system.instances}
+
+    def run(self, stimuli: Stimuli) -> Iterator[Record]:
+        """Everything up to the last instant: the steps that executed a behaviour."""
+        coming = deque(stimuli.entries)
+        for now, slots in self._instants(stimuli.until):
+            while coming and coming[0].at <= now:
+                self._take(coming.popleft())
+            for slot in slots:
+                yield from self._execute(now, slot)
+
+    def _instants(self, until: Ns) -> Iterator[tuple[Ns, list[Slot]]]:
+        """Each release instant with the rows that run then, in order."""
+        processors = [p for p in self.system.processors if p.released_by is None]
+        releases = [(p.offset, -p.priority, index, 0) for index, p in enumerate(processors)]
+        heapq.heapify(releases)
+        while releases and releases[0][0] <= until:
+            now = releases[0][0]
+            slots: list[Slot] = []
+            while releases[0][0] == now:
+                _, rank, index, count = releases[0]
+                own = processors[index]
+                slots += [s for s in own.slots if count % s.divisor == s.phase]
+                heapq.heapreplace(releases, (Ns(now + own.period), rank, index, count + 1))
+            yield now, slots
+
+    def _take(self, entry: Raised | Arrived) -> None:
+        match entry:
+            case Raised():
+                self.instances[entry.instance].offer(entry.event, entry.value)
+            case Arrived():
+                self._put(entry.end, entry.value)
+
+    def _put(self, end: End, value: Value) -> None:
+        self.instances[end.instance].mailboxes[end.port].put(value)
+
+    def _execute(self, now: Ns, slot: Slot) -> Iterator[Record]:
+        """One execution of a row."""
+        match slot.work:
+            case Work.PORT_REGION:
+                self.instances[slot.owner].run_ports()
+            case Work.REGION:
+                yield from self._run_region(now, self.instances[slot.owner], slot.name)
+            case Work.ACTIVITY:
+                own = self.instances[slot.owner]
+                activity = next(a for a in own.component.activities if a.name == slot.name)
+                self._run_activity(own, activity)
+            case Work.BUS_RECEIVE | Work.BUS_WATCH:
+                pass
+
+    def _run_region(self, now: Ns, own: InstanceRun, name: str) -> Iterator[Record]:
+        run = own.regions[name]
+        view = own.view()
+        run.begin()
+        for _ in range(run.region.steps_per_execution):
+            step = run.step(view)
+            self._deliver(own, step.out)
+            if step.lost and run.region.on_overflow is not None:
+                own.offer(run.region.on_overflow, None)
+            if step.behaviours:
+                yield Record(now, own.instance.name, name, tuple(step.behaviours))
+        run.publish()
+        own.publish(view, run.region.writes)
+
+    def _run_activity(self, own: InstanceRun, activity: Activity) -> None:
+        place = activity.while_in
+        if activity.flow is None:
+            return
+        if place is not None and place.state not in own.regions[place.region].published:
+            return
+        view, out = own.view(), Outbox()
+        perform(activity.flow, view, out)
+        own.publish(view, activity.writes)
+        raised = dict(out.raised)
+        if place is not None and DONE in raised:
+            own.regions[place.region].finish(place.state)
+        in_order = [(event, raised[event]) for event in activity.raises if event in raised]
+        out.raised = [one for one in in_order if one[0] != DONE]
+        self._deliver(own, out)
+
+    def _deliver(self, own: InstanceRun, out: Outbox) -> None:
+        """Send, ports in model order, then raise, in the order raised."""
+        for port in own.component.outputs():
+            if port.name in out.sent:
+                for connection in self.system.connections:
+                    if connection.source == End(own.instance.name, port.name):
+                        self._put(connection.target, out.sent[port.name])
+        for event, value in out.raised:
+            own.offer(event, value)

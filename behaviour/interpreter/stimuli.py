@@ -1,0 +1,273 @@
+"""What comes from outside while a model runs: the file of `--events`.
+
+    - {at: 50 ms, raise: motor.Start}
+    - {at: 60 ms, raise: motor.Go, with: 250}
+    - {at: 70 ms, put: motor.order, value: {kind: Move, target: 1000}}
+    - {until: 2 s}
+
+Times count from the epoch of the processors and never decrease. What comes at an
+instant comes before what runs then; the last instant is that of `until`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.files.located import Map, grow_list
+from ravenchart.gen.language.quantities import duration, shown
+from ravenchart.gen.language.terms import (
+    BOOLEAN,
+    EnumerationType,
+    IntegerType,
+    Named,
+    Ns,
+    RecordType,
+    Scalar,
+    ScalarType,
+    Type,
+    Value,
+    named,
+)
+from ravenchart.gen.model.statechart import DONE
+from ravenchart.gen.model.system import NO_TIME, End, Instance, System
+from ravenchart.gen.origins import Origin
+
+N = TypeVar("N", bound=Named)
+
+
+@dataclass(frozen=True, slots=True)
+class Raised:
+    """An event of an instance, with its value if it carries one."""
+
+    at: Ns
+    instance: str
+    event: str
+    value: Value | None
+
+    @property
+    def place(self) -> tuple[str, str]:
+        """Instance and event."""
+        return self.instance, self.event
+
+
+@dataclass(frozen=True, slots=True)
+class Arrived:
+    """A value for an input port."""
+
+    at: Ns
+    end: End
+    value: Value
+
+    @property
+    def place(self) -> tuple[str, str]:
+        """Instance and port."""
+        return self.end.instance, self.end.port
+
+
+@dataclass(frozen=True, slots=True)
+class Stimuli:
+    """What comes in, in order of time, and the last instant."""
+
+    entries: tuple[Raised | Arrived, ...]
+    until: Ns
+
+
+FORMS = "`{at, raise, with}`, `{at, put, value}` or, at the end, `{until}`"
+
+
+def read(text: str, file: str, system: System) -> tuple[Stimuli | None, tuple[Diagnostic, ...]]:
+    """The stimuli in a file for ``system``; None when something is wrong with them."""
+    tree, found = grow_list(text, file)
+    reading = _Reading(system, list(found))
+    if tree is None:
+        if not found:
+            message = "an events file is a list of `- {...}` lines"
+            reading.wrong("RV-1001", Origin(file, 1, 1), message, f"each is {FORMS}")
+        return None, tuple(reading.found)
+    until = None
+    for item, place in zip(tree, tree.items_at, strict=True):
+        if until is not None:
+            reading.wrong("RV-1006", place.origin, "nothing comes after `until`")
+            break
+        if isinstance(item, Map):
+            until = reading.take(item)
+        else:
+            reading.wrong("RV-1002", place.origin, "this is no mapping", f"each is {FORMS}")
+    if until is None and not reading.found:
+        last = tree.items_at[-1].origin if tree else tree.origin
+        hint = "end with the last instant, such as `- {until: 2 s}`"
+        reading.wrong("RV-1006", last, "the list does not end with `until`", hint)
+    if reading.found or until is None:
+        return None, tuple(reading.found)
+    return Stimuli(tuple(reading.entries), until), ()
+
+
+@dataclass(slots=True)
+class _Reading:
+    """The entries read so far."""
+
+    system: System
+    found: list[Diagnostic]
+    entries: list[Raised | Arrived] = field(default_factory=list)
+    now: Ns = NO_TIME
+
+    def wrong(self, code: str, origin: Origin, message: str, hint: str | None = None) -> None:
+        """Report an error."""
+        self.found.append(error(code, origin, message, hint=hint))
+
+    def take(self, item: Map) -> Ns | None:
+        """Read one entry; the last instant when it says that."""
+        keys = set(item)
+        if keys == {"until"}:
+            return self.time(item, "until")
+        known = next((k for k in ({"raise", "with"}, {"put", "value"}) if keys & k), {"raise"})
+        wanted = {"at", *known}
+        for key in item:
+            if key not in wanted:
+                message = f"`{key}` has no place here"
+                self.wrong("RV-1002", item.keys_at[key], message, f"an entry is {FORMS}")
+        for key in sorted(wanted - {"with"} - keys):
+            self.wrong("RV-1002", item.origin, f"the key `{key}` is missing")
+        if keys <= wanted and wanted - {"with"} <= keys:
+            at = self.time(item, "at")
+            if at is not None and "raise" in item:
+                self.raised(at, item)
+            elif at is not None:
+                self.put(at, item)
+        return None
+
+    def time(self, item: Map, key: str) -> Ns | None:
+        """A time that is not before the one above."""
+        origin = item.values_at[key].origin
+        given = item[key]
+        time = duration(given) if isinstance(given, str) else None
+        if given == 0 and not isinstance(given, bool):
+            time = NO_TIME
+        if time is None:
+            hint = "a number with ns, us, ms or s, such as `50 ms`"
+            self.wrong("RV-1003", origin, f"`{key}` takes a time", hint)
+        elif time < self.now:
+            message = f"{shown(time)} is before {shown(self.now)} of the entry above"
+            self.wrong("RV-1003", origin, message, "put the entries in order of time")
+            time = None
+        self.now = time or self.now
+        return time
+
+    def raised(self, at: Ns, item: Map) -> None:
+        """An event of an instance."""
+        found = self.member(item, "raise")
+        if found is None:
+            return
+        instance, name = found
+        origin = item.values_at["raise"].origin
+        events = instance.component.events
+        event = _find(events, name)
+        if event is None:
+            of = "by its do activities alone" if name.lower() == DONE else _one_of(events)
+            self.wrong("RV-1004", origin, f"{instance.name} has no event `{name}`", of)
+            return
+        value = None
+        if event.type is None and "with" in item:
+            message = f"the event {event.name} carries no value"
+            self.wrong("RV-1005", item.keys_at["with"], message, "remove `with`")
+            return
+        if event.type is not None:
+            if "with" not in item:
+                message = f"the event {event.name} carries a value of type {event.type.name}"
+                self.wrong("RV-1005", origin, message, "give it by `with: ...`")
+                return
+            value = self.value(event.type, item, "with")
+            if value is None:
+                return
+        self.entries.append(Raised(at, instance.name, event.name, value))
+
+    def put(self, at: Ns, item: Map) -> None:
+        """A value for an input port."""
+        found = self.member(item, "put")
+        if found is None:
+            return
+        instance, name = found
+        ports = instance.component.inputs()
+        port = _find(ports, name)
+        if port is None:
+            message = f"{instance.name} has no input port `{name}`"
+            self.wrong("RV-1004", item.values_at["put"].origin, message, _one_of(ports))
+            return
+        value = self.value(port.type, item, "value")
+        if value is not None:
+            self.entries.append(Arrived(at, End(instance.name, port.name), value))
+
+    def member(self, item: Map, key: str) -> tuple[Instance, str] | None:
+        """The instance of ``instance.name``, and the name."""
+        origin = item.values_at[key].origin
+        owner, dot, name = str(item[key]).partition(".")
+        if not isinstance(item[key], str) or not dot:
+            self.wrong("RV-1002", origin, f"`{key}` takes `instance.name`")
+            return None
+        instance = _find(self.system.instances, owner)
+        if instance is None:
+            message = f"there is no instance `{owner}`"
+            self.wrong("RV-1004", origin, message, _one_of(self.system.instances))
+            return None
+        return instance, name
+
+    # --- values
+
+    def value(self, kind: Type, item: Map, key: str) -> Value | None:
+        """A value of a type."""
+        given, origin = item[key], item.values_at[key].origin
+        if not isinstance(kind, RecordType):
+            return self.scalar(kind, given, origin)
+        if not isinstance(given, Map):
+            fields = ", ".join(f"{one.name}: ..." for one in kind.fields)
+            message = f"{kind.name} is a record"
+            self.wrong("RV-1005", origin, message, f"`{key}: {{{fields}}}`")
+            return None
+        keys = {name.lower(): name for name in given}
+        values: list[tuple[str, Scalar]] = []
+        for one in kind.fields:
+            name = keys.pop(one.name.lower(), None)
+            if name is None:
+                self.wrong("RV-1005", origin, f"the field `{one.name}` of {kind.name} is missing")
+                continue
+            value = self.scalar(one.type, given[name], given.values_at[name].origin)
+            if value is not None:
+                values.append((one.name, value))
+        for name in keys.values():
+            message = f"{kind.name} has no field `{name}`"
+            self.wrong("RV-1005", given.keys_at[name], message, _one_of(kind.fields))
+        return tuple(values) if len(values) == len(kind.fields) and not keys else None
+
+    def scalar(self, kind: ScalarType, given: object, origin: Origin) -> Scalar | None:
+        """A scalar value of a type."""
+        match kind, given:
+            case IntegerType(), int() if not isinstance(given, bool):
+                if kind.first <= given <= kind.last:
+                    return given
+            case EnumerationType(), bool() if kind == BOOLEAN:
+                return str(given)
+            case EnumerationType(), str():
+                for literal in kind.literals:
+                    if literal.lower() == given.lower():
+                        return literal
+        if isinstance(kind, IntegerType):
+            wanted = f"{kind.first} .. {kind.last}"
+        else:
+            wanted = f"one of {', '.join(kind.literals)}"
+        self.wrong("RV-1005", origin, f"a value of type {kind.name} is {wanted}")
+        return None
+
+
+def _find(items: tuple[N, ...], name: str) -> N | None:
+    try:
+        return named(items, name)
+    except KeyError:
+        return None
+
+
+def _one_of(items: Iterable[Named]) -> str | None:
+    names = [item.name for item in items]
+    return f"one of: {', '.join(names)}" if names else None

@@ -1,0 +1,1 @@
+"""What follows from a resolved system: distribution, tables, priorities, tasks, identifiers."""

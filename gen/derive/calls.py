@@ -1,0 +1,155 @@
+"""Who calls what: the rows behind the bindings of a system."""
+
+from __future__ import annotations
+
+from ravenchart.gen.model.commands import (
+    Binding,
+    Device,
+    DeviceType,
+    DriverCommand,
+    Need,
+    Provided,
+    Remote,
+    Server,
+)
+from ravenchart.gen.model.component import Activity, Component
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Message, System
+
+
+def readers(component: Component, need: Need) -> tuple[Region | Activity, ...]:
+    """The rows of a component that read a command."""
+    return tuple(row for row in component.runnables() if need.name in row.reads)
+
+
+def publications(system: System, instance: str, row: Region | Activity) -> tuple[Message, ...]:
+    """The messages that bring what a row writes to the readers on other nodes."""
+    return tuple(
+        message
+        for message in system.messages
+        if message.every
+        and message.source is not None
+        and message.source.instance == instance
+        and message.source.port in row.writes
+    )
+
+
+def rows_of(system: System, binding: Binding) -> tuple[str, ...]:
+    """The rows of the instance that use the command."""
+    need = binding.need
+    return tuple(
+        f"{binding.instance}.{row.name}"
+        for row in system.instance(binding.instance).component.runnables()
+        if need.name in (row.reads if need.is_read else row.sends)
+    )
+
+
+def callers(system: System, device: Device) -> tuple[str, ...]:
+    """The rows that call a piece of equipment, each once."""
+    rows = (
+        row
+        for binding in system.bindings
+        if isinstance(binding.provider, Device) and device in binding.provider.leaves()
+        for row in rows_of(system, binding)
+    )
+    return tuple(dict.fromkeys(rows))
+
+
+def called(system: System, device: Device) -> tuple[DriverCommand, ...]:
+    """The commands of a device that something is bound to, by itself or in an array."""
+    names = {
+        binding.need.name
+        for binding in system.bindings
+        if isinstance(binding.provider, Device)
+        and (binding.provider == device or _holds(binding.provider, device))
+    }
+    return tuple(one for one in device.provides if one.name in names)
+
+
+def _holds(array: Device, device: Device) -> bool:
+    return any(member == device or _holds(member, device) for member in array.members)
+
+
+def device_types(system: System) -> tuple[DeviceType, ...]:
+    """The types of the devices that are called, each once."""
+    return tuple(dict.fromkeys(device.type for device in system.devices if device.type))
+
+
+def published_by(binding: Binding) -> str | None:
+    """The data item of the provider that a read command reads; None where it does not."""
+    if not isinstance(binding.provider, Server):
+        return None
+    published = binding.provider.interface.published
+    return next((one.item for one in published if one.name == binding.need.name), None)
+
+
+def readers_through(system: System, instance: str, item: str) -> tuple[str, ...]:
+    """The rows that read a data item through a command: published, or a stand-in."""
+    found: list[str] = []
+    for binding in system.bindings:
+        provider, stand_in = binding.provider, binding.need.stand_in
+        if isinstance(provider, Server):
+            if provider.instance == instance and published_by(binding) == item:
+                found += rows_of(system, binding)
+        elif provider is None and stand_in and binding.instance == instance:
+            found += rows_of(system, binding) if stand_in.item == item else ()
+    return tuple(found)
+
+
+def callers_of(system: System, instance: str, provided: Provided) -> tuple[Binding, ...]:
+    """The bindings whose calls are requests of a provided interface."""
+    return tuple(
+        b
+        for b in system.bindings
+        if isinstance(b.provider, Server)
+        and (b.provider.instance, b.provider.interface) == (instance, provided)
+        and published_by(b) is None
+    )
+
+
+def repliers(system: System, binding: Binding) -> tuple[str, ...]:
+    """The rows that deliver the replies to a call: whoever makes it, serves or receives it."""
+    if isinstance(binding.provider, Server):
+        return (f"{binding.provider.instance}.{binding.provider.interface.server}",)
+    if isinstance(binding.provider, Remote):
+        return receivers(system, binding.provider.reply)
+    return rows_of(system, binding) if binding.provider is not None else ()
+
+
+def receivers(system: System, name: str | None) -> tuple[str, ...]:
+    """The rows that receive the message of that name."""
+    return tuple(
+        processor.slots[0].element
+        for message in system.messages
+        if message.name == name
+        for one in system.receptions(message)
+        for processor in system.processors
+        if (processor.released_by, processor.node) == (message.bus, one.node)
+    )
+
+
+def calls_from_afar(system: System, instance: str, provided: Provided) -> tuple[Message, ...]:
+    """The messages whose calls are requests of a provided interface."""
+    return tuple(
+        message
+        for message in system.messages
+        if message.call is not None
+        and message.name == message.call.request
+        and (message.call.server.instance, message.call.server.interface) == (instance, provided)
+    )
+
+
+def awaited(component: Component, need: Need) -> bool:
+    """Whether anybody waits for the replies to a call, or for the time-out of one."""
+    return need.on_timeout is not None or delivered(component, need)
+
+
+def delivered(component: Component, need: Need) -> bool:
+    """Whether anybody takes the replies to a call."""
+    return need.on_reply is not None or need.reply_item in replies_read(component)
+
+
+def replies_read(component: Component) -> tuple[str, ...]:
+    """The items of last replies that some row looks at."""
+    items = (need.reply_item for need in component.needs)
+    return tuple(item for item in items if item is not None and component.users(item))

@@ -1,0 +1,224 @@
+"""Components on several nodes: what travels between them, and what runs on each.
+
+A connection whose ends are on different nodes becomes a message of the bus; neither
+component knows. The program of a node is that of a system which has this node only:
+what comes from another is, to it, a message from outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from ravenchart.gen.language.names import problem_of
+from ravenchart.gen.model.commands import Remote, RemoteRead
+from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
+from ravenchart.gen.model.system import (
+    Bus,
+    Connection,
+    Instance,
+    Message,
+    Node,
+    Processor,
+    Shutdown,
+    Slot,
+    System,
+    Work,
+)
+
+from .calls import called
+from .identifiers import OPEN
+
+
+@dataclass(frozen=True, slots=True)
+class Carrier:
+    """Makes messages of the connections between nodes.
+
+    There is one of each output port, called like instance and port, with the period of
+    what sends it, unless the model has a message of that port; then it has more targets.
+    What no classic frame can carry is CAN FD where the bus has a rate for that.
+    """
+
+    instances: Mapping[str, Instance]
+    bus: Bus | None
+
+    def carried(
+        self, connections: Sequence[Connection], messages: Sequence[Message]
+    ) -> tuple[tuple[Connection, ...], tuple[Message, ...]]:
+        """The connections that are left, and all messages.
+
+        Left are those inside a node, and between nodes those that no message can carry:
+        the rules say of them what is missing.
+        """
+        left: list[Connection] = []
+        found = {message.name.lower(): message for message in messages}
+        for connection in connections:
+            own = next((m for m in found.values() if m.source == connection.source), None)
+            if not self._is_across(connection):
+                left.append(connection)
+            elif own is not None:
+                targets = (*own.targets, connection.target)
+                found[own.name.lower()] = replace(own, targets=targets)
+            else:
+                made = self._message(connection)
+                if made is None or made.name.lower() in found:
+                    left.append(connection)
+                else:
+                    found[made.name.lower()] = made
+        return tuple(left), tuple(found.values())
+
+    def _is_across(self, connection: Connection) -> bool:
+        source, target = connection.source.instance, connection.target.instance
+        return self.instances[source].node != self.instances[target].node
+
+    def _message(self, connection: Connection) -> Message | None:
+        """A message with the value of the connection's source, laid out as small as it is."""
+        end = connection.source
+        component = self.instances[end.instance].component
+        name, type_ = f"{end.instance}_{end.port}", component.port(end.port).type
+        period = component.send_period(end.port)
+        if self.bus is None or period is None or problem_of(name) is not None:
+            return None
+        signals = signals_of(type_)
+        fd = self.bus.data_rate is not None and not fits_classic(signals)
+        return Message(
+            name=name,
+            origin=connection.origin,
+            bus=self.bus.name,
+            identifier=OPEN,
+            extended=False,
+            type=type_,
+            signals=signals,
+            length=length_of(signals, fd=fd),
+            source=end,
+            targets=(connection.target,),
+            period=period,
+            fd=fd,
+        )
+
+
+def placed(system: System) -> System:
+    """The system with a node for each of its processors.
+
+    Without `node` a processor is where the instance of its first row is; and one that is
+    released by a bus is on every node that receives from it, with the node's name behind
+    its own where there are several.
+    """
+    found: list[Processor] = []
+    for processor in system.processors:
+        own = next((slot.owner for slot in processor.slots if not slot.of_bus), None)
+        if processor.node:
+            found.append(processor)
+        elif own is not None:
+            found.append(replace(processor, node=system.instance(own).node))
+        else:
+            bus = processor.released_by
+            if bus is not None:
+                homes = [node.name for node in system.nodes if system.received(bus, node.name)]
+            else:
+                homes = _joining(system, processor.slots[0].owner)
+            found += [_on(processor, home, several=len(homes) > 1) for home in homes]
+    watched = (_with_watches(system, processor) for processor in found)
+    return replace(system, processors=tuple(p for p in watched if p.slots))
+
+
+def _joining(system: System, bus: str) -> list[str]:
+    """The nodes that send or receive on a bus."""
+    return [node.name for node in system.nodes if system.joins(bus, node.name)]
+
+
+def _with_watches(system: System, processor: Processor) -> Processor:
+    """The processor with each watch named after its node where the bus has several.
+
+    The watch of a bus that carries nothing falls away.
+    """
+    slots: list[Slot] = []
+    for slot in processor.slots:
+        homes = _joining(system, slot.owner) if slot.work is Work.BUS_WATCH else []
+        if len(homes) > 1:
+            slots.append(replace(slot, name=f"{Work.BUS_WATCH.value}_{processor.node}"))
+        elif homes or slot.work is not Work.BUS_WATCH:
+            slots.append(slot)
+    return replace(processor, slots=tuple(slots))
+
+
+def _on(processor: Processor, node: str, *, several: bool) -> Processor:
+    """The copy on a node of a processor that only serves a bus."""
+    if not several:
+        return replace(processor, node=node)
+    slots = tuple(
+        replace(slot, name=f"{slot.name}_{node}") if slot.work is Work.BUS_RECEIVE else slot
+        for slot in processor.slots
+    )
+    return replace(processor, name=f"{processor.name}_{node}", node=node, slots=slots)
+
+
+def _heard_here(bus: Bus, here: set[str]) -> Bus:
+    """The bus, with the events of these instances."""
+    return replace(
+        bus,
+        on_error_passive=tuple(pair for pair in bus.on_error_passive if pair[0] in here),
+        on_bus_off=tuple(pair for pair in bus.on_bus_off if pair[0] in here),
+        on_recovered=tuple(pair for pair in bus.on_recovered if pair[0] in here),
+        recovers_on=tuple(pair for pair in bus.recovers_on if pair[0] in here),
+    )
+
+
+def part_of(system: System, node: Node) -> System:
+    """What runs on a node, as a system of its own, without tasks, objects and chains."""
+    here = {instance.name for instance in system.instances if instance.node == node.name}
+    messages = tuple(
+        replace(
+            message,
+            source=message.source if system.sender(message) == node.name else None,
+            targets=tuple(end for end in message.targets if end.instance in here),
+        )
+        for message in system.messages
+        if system.sender(message) == node.name
+        or any(end.instance in here for end in message.targets)
+    )
+    used = {message.bus for message in messages}
+    bindings = tuple(b for b in system.bindings if b.instance in here)
+    raises = tuple(pair for pair in system.shutdown.raises if pair[0] in here)
+    part = replace(system, bindings=bindings)
+    return replace(
+        part,
+        nodes=(node,),
+        buses=tuple(_heard_here(bus, here) for bus in system.buses if bus.name in used),
+        instances=tuple(i for i in system.instances if i.name in here),
+        connections=tuple(c for c in system.connections if c.source.instance in here),
+        messages=messages,
+        traffic=(),
+        processors=tuple(p for p in system.processors if p.node == node.name),
+        shutdown=Shutdown(raises, system.shutdown.grace),
+        chains=(),
+        devices=tuple(device for device in system.devices if called(part, device)),
+        tasks=(),
+        objects=(),
+    )
+
+
+def as_one(system: System) -> System:
+    """The same components on one node: what messages carry between them, connections do."""
+    if len(system.nodes) == 1:
+        return system
+    node = system.nodes[0]
+    wires = tuple(
+        Connection(message.origin, message.source, target)
+        for message in system.messages
+        if message.source is not None and message.call is None and not message.every
+        for target in message.targets
+    )
+    bindings = (
+        replace(b, provider=b.provider.server) if isinstance(b.provider, Remote | RemoteRead) else b
+        for b in system.bindings
+    )
+    return replace(
+        system,
+        nodes=(node,),
+        bindings=tuple(bindings),
+        instances=tuple(replace(instance, node=node.name) for instance in system.instances),
+        connections=(*system.connections, *wires),
+        processors=tuple(replace(processor, node=node.name) for processor in system.processors),
+        tasks=tuple(replace(task, node=node.name) for task in system.tasks),
+    )

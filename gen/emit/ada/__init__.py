@@ -1,0 +1,1 @@
+"""Ada as nodes, their only printer, and the names of generated units."""

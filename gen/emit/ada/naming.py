@@ -1,0 +1,162 @@
+"""Names in the generated Ada: one place decides how a model element is called."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from ravenchart.gen.language.terms import (
+    BOOLEAN,
+    EnumerationType,
+    IntegerType,
+    RecordType,
+    Scalar,
+    Type,
+    Value,
+    default,
+)
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Instance, Processor, Slot, System
+
+from .syntax import Aggregate, Arg, Expr, Ref, number
+
+
+@lru_cache(maxsize=65_536)
+def ada_case(name: str) -> str:
+    """``joint_x`` as ``Joint_X``; capitals already there stay."""
+    return "_".join(word[:1].upper() + word[1:] for word in name.split("_"))
+
+
+_IN_LETTERS = {
+    "/": "_Per_", "%": "Percent", "^": "_", "\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u",
+    "\N{DEGREE SIGN}": "deg", "\N{SUPERSCRIPT TWO}": "2", "\N{SUPERSCRIPT THREE}": "3",
+    "\N{GREEK CAPITAL LETTER OMEGA}": "Ohm", "\N{OHM SIGN}": "Ohm",
+}  # fmt: skip
+
+
+def _in_letters(unit: str) -> str:
+    """A unit as a part of an Ada name."""
+    words = "".join(_IN_LETTERS.get(c, c) for c in unit)
+    safe = "".join(c if c.isascii() and c.isalnum() else "_" for c in words)
+    return ada_case("_".join(part for part in safe.split("_") if part) or "Count")
+
+
+@lru_cache(maxsize=64)
+def _unit_names(units: tuple[str, ...]) -> dict[str, str]:
+    """A name for each unit; where case or signs alone tell two apart, the later one is numbered."""
+    names: dict[str, str] = {}
+    taken: set[str] = set()
+    plain = {unit: f"Unit_{_in_letters(unit)}" for unit in units}
+    later: list[str] = []
+    for unit, name in plain.items():
+        if name.lower() in taken:
+            later.append(unit)
+        else:
+            taken.add(name.lower())
+            names[unit] = name
+    for unit in later:
+        numbered = (f"{plain[unit]}_{n}" for n in range(2, len(units) + len(taken) + 2))
+        names[unit] = next(name for name in numbered if name.lower() not in taken)
+        taken.add(names[unit].lower())
+    return names
+
+
+def unit_type(system: System, unit: str | None) -> str:
+    """The Ada type that integers counted in ``unit`` belong to."""
+    if unit is None:
+        return "Ravenchart.Number"
+    return f"{ada_case(system.name)}.{_unit_names(system.units)[unit]}"
+
+
+def type_name(system: System, of_type: Type) -> str:
+    """The expanded name of a model type, visible from every generated unit."""
+    if of_type == BOOLEAN:
+        return "Boolean"
+    return f"{ada_case(system.name)}.{ada_case(of_type.name)}"
+
+
+def default_name(system: System, of_type: RecordType) -> str:
+    """The constant that stands for a value nobody has given yet."""
+    return f"{ada_case(system.name)}.Default_{ada_case(of_type.name)}"
+
+
+def counted(given: int, unit: str | None) -> Expr:
+    """An integer of a unit; the sign of plain numbers is not directly visible everywhere."""
+    if unit is None and given < 0:
+        return Ref(f"Ravenchart.Number'Val ({given:_})")
+    return number(given)
+
+
+def scalar(system: System, of_type: IntegerType | EnumerationType, value: Scalar) -> Expr:
+    """A scalar value as Ada text."""
+    if isinstance(of_type, IntegerType):
+        return counted(int(value), of_type.unit)
+    if of_type == BOOLEAN:
+        return Ref(str(value).capitalize())
+    return Ref(f"{ada_case(system.name)}.{ada_case(str(value))}")
+
+
+def value(system: System, of_type: Type, given: Value) -> Expr:
+    """A value of any model type as Ada text."""
+    if not isinstance(of_type, RecordType):
+        assert not isinstance(given, tuple)
+        return scalar(system, of_type, given)
+    assert isinstance(given, tuple)
+    return Aggregate(
+        tuple(
+            Arg(ada_case(field), scalar(system, of_type.field(field).type, item))
+            for field, item in given
+        )
+    )
+
+
+def default_value(system: System, of_type: Type) -> Expr:
+    """The default as an expression; a record's is its constant."""
+    if isinstance(of_type, RecordType):
+        return Ref(default_name(system, of_type))
+    return value(system, of_type, default(of_type))
+
+
+def component_package(system: System, component: Component) -> str:
+    """Package of a component type."""
+    return f"{ada_case(system.name)}.{ada_case(component.name)}"
+
+
+def states_package(region: Region) -> str:
+    """Nested package that holds a region's leaf states."""
+    return f"{ada_case(region.name)}_States"
+
+
+def region_package(system: System, component: Component, region: Region) -> str:
+    """Child package with the logic of a region."""
+    return f"{component_package(system, component)}.{ada_case(region.name)}"
+
+
+def instance_package(system: System, instance: Instance) -> str:
+    """Package of a component instance."""
+    return f"{ada_case(system.name)}.{ada_case(instance.name)}"
+
+
+def processor_package(system: System, processor: Processor) -> str:
+    """Package of a processor."""
+    return f"{ada_case(system.name)}.{ada_case(processor.name)}"
+
+
+def row_name(slot: Slot) -> str:
+    """Literal of a row in its processor's table."""
+    return f"{ada_case(slot.owner)}_{ada_case(slot.name)}"
+
+
+def constant_name(element: str) -> str:
+    """An element id as one Ada name."""
+    return "_".join(ada_case(part) for part in element.split("."))
+
+
+def priority(level: int) -> Ref:
+    """A priority of the model as one of the target, counted from the default."""
+    return Ref("System.Priority'First" if level == 0 else f"System.Default_Priority + {level}")
+
+
+def root_package(system: System) -> str:
+    """The root of the generated units."""
+    return ada_case(system.name)

@@ -1,0 +1,392 @@
+"""The Ada constructs that Ravenchart emits, as typed nodes.
+
+An emitter builds a `Unit` from these nodes; `ada_text.print_unit` lays it out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from ravenchart.gen.frozen import frozen
+
+# --- Expressions -------------------------------------------------------------
+
+
+@frozen
+class Ref:
+    """A name or literal, as it is to stand in the text."""
+
+    text: str
+
+
+@frozen
+class Chain:
+    """Operands joined by one operator; operands that are chains get parentheses."""
+
+    operator: str
+    operands: tuple[Expr, ...]
+
+
+@frozen
+class Prefix:
+    """``not``, ``-`` or ``abs`` before one operand."""
+
+    operator: str
+    operand: Expr
+
+
+class Arg(NamedTuple):
+    """One association of a call or aggregate; positional when ``name`` is None."""
+
+    name: str | None
+    value: Expr
+
+
+@frozen
+class Call:
+    """A function call, conversion or attribute with arguments."""
+
+    name: str
+    args: tuple[Arg, ...]
+
+
+@frozen
+class Aggregate:
+    """A parenthesised list of associations, qualified by ``of_type`` where given.
+
+    Components that it does not name are those of ``base``.
+    """
+
+    args: tuple[Arg, ...]
+    of_type: str | None = None
+    base: str | None = None
+
+
+@frozen
+class IfExpr:
+    """``(if a then b elsif c then d else e)``; without ``otherwise``, an implication."""
+
+    branches: tuple[tuple[Expr, Expr], ...]
+    otherwise: Expr | None
+
+
+@frozen
+class CaseExpr:
+    """``(case s is when c => e, ...)``."""
+
+    selector: Expr
+    branches: tuple[tuple[str, Expr], ...]
+
+
+@frozen
+class ForAll:
+    """``(for all v in domain => condition)``."""
+
+    variable: str
+    domain: str
+    condition: Expr
+
+
+@frozen
+class ForSome:
+    """``(for some v in domain => condition)``."""
+
+    variable: str
+    domain: str
+    condition: Expr
+
+
+Expr = Ref | Chain | Prefix | Call | Aggregate | IfExpr | CaseExpr | ForAll | ForSome
+
+# --- Statements --------------------------------------------------------------
+
+
+@frozen
+class Assign:
+    """``target := value;``"""
+
+    target: str
+    value: Expr
+
+
+@frozen
+class Do:
+    """A procedure call."""
+
+    name: str
+    args: tuple[Arg, ...] = ()
+
+
+@frozen
+class If:
+    """``if ... then ... elsif ... else ... end if;``"""
+
+    branches: tuple[tuple[Expr, tuple[Stmt, ...]], ...]
+    otherwise: tuple[Stmt, ...] = ()
+
+
+@frozen
+class Case:
+    """``case ... is when ... => ... end case;``"""
+
+    selector: Expr
+    branches: tuple[tuple[str, tuple[Stmt, ...]], ...]
+
+
+@frozen
+class Loop:
+    """``head loop ... end loop;``; an empty ``head`` loops until an exit."""
+
+    head: str
+    body: tuple[Stmt, ...]
+
+
+@frozen
+class Say:
+    """A simple statement given as it stands: ``null``, ``exit when X``, ``delay until T``."""
+
+    text: str
+
+
+@frozen
+class Return:
+    """``return value;``"""
+
+    value: Expr
+
+
+@frozen
+class Pragma:
+    """A pragma, among statements or declarations."""
+
+    name: str
+    args: tuple[Expr, ...] = ()
+
+
+@frozen
+class Comment:
+    """Comment lines; wrapped to the width."""
+
+    text: str
+
+
+Stmt = Assign | Do | If | Case | Loop | Say | Return | Pragma | Comment
+
+# --- Declarations ------------------------------------------------------------
+
+
+class Aspect(NamedTuple):
+    """One aspect; a Boolean one has no value."""
+
+    name: str
+    value: Expr | None = None
+
+
+class Param(NamedTuple):
+    """One formal parameter; ``mode`` is ``in``, ``out`` or ``in out``."""
+
+    name: str
+    mode: str
+    type: str
+
+
+@frozen
+class EnumType:
+    """An enumeration type."""
+
+    name: str
+    literals: tuple[str, ...]
+
+
+@frozen
+class PlainType:
+    """``type name is definition;`` or, with ``subtype``, a subtype."""
+
+    name: str
+    definition: str
+    subtype: bool = False
+
+
+class Component(NamedTuple):
+    """One record component."""
+
+    name: str
+    type: str
+    initial: Expr | None = None
+
+
+@frozen
+class RecordType:
+    """A record type."""
+
+    name: str
+    components: tuple[Component, ...]
+
+
+@frozen
+class Object:
+    """An object or, without type, a named number."""
+
+    name: str
+    type: str | None
+    value: Expr | None = None
+    constant: bool = False
+    aspects: tuple[Aspect, ...] = ()
+
+
+@frozen
+class Subprogram:
+    """A subprogram: its spec, or its body when ``body`` or ``expression`` is given."""
+
+    name: str
+    params: tuple[Param, ...] = ()
+    result: str | None = None
+    aspects: tuple[Aspect, ...] = ()
+    declarations: tuple[Decl, ...] = ()
+    body: tuple[Stmt, ...] | None = None
+    expression: Expr | None = None
+
+
+@frozen
+class Instance:
+    """``package name is new generic (...);``, or a ``procedure``."""
+
+    name: str
+    generic: str
+    args: tuple[Arg, ...]
+    kind: str = "package"
+
+
+@frozen
+class Package:
+    """A package spec, or a body; nested or the unit itself."""
+
+    name: str
+    items: tuple[Decl, ...]
+    aspects: tuple[Aspect, ...] = ()
+    is_body: bool = False
+
+
+@frozen
+class Protected:
+    """A single protected object: its spec with what it holds, or without that its body."""
+
+    name: str
+    items: tuple[Subprogram, ...]
+    kept: tuple[Object, ...] = ()
+    aspects: tuple[Aspect, ...] = ()
+
+
+@frozen
+class Rename:
+    """``package name renames other;``"""
+
+    name: str
+    other: str
+
+
+@frozen
+class UseType:
+    """``use type name;``"""
+
+    name: str
+
+
+Decl = (
+    EnumType
+    | PlainType
+    | RecordType
+    | Object
+    | Subprogram
+    | Instance
+    | Package
+    | Protected
+    | Rename
+    | UseType
+    | Pragma
+    | Comment
+)
+
+
+@frozen
+class Unit:
+    """A compilation unit with its context clause and header comment."""
+
+    header: str
+    withs: tuple[str, ...]
+    item: Package | Subprogram | Instance
+
+    @property
+    def file_name(self) -> str:
+        """GNAT's name for the file that holds it."""
+        match self.item:
+            case Package(is_body=is_body):
+                pass
+            case Subprogram(body=body):
+                is_body = body is not None
+            case Instance():
+                is_body = False
+        stem = self.item.name.lower().replace(".", "-")
+        return f"{stem}.{'adb' if is_body else 'ads'}"
+
+
+# --- Shorthands --------------------------------------------------------------
+
+TRUE = Ref("True")
+FALSE = Ref("False")
+NULL = Say("null")
+SPARK = Aspect("SPARK_Mode")
+
+
+def number(value: int) -> Ref:
+    """An integer literal with underscores; a negative one in parentheses."""
+    return Ref(f"{value:_}" if value >= 0 else f"(-{-value:_})")
+
+
+def call(name: str, *args: Expr, **named: Expr) -> Call:
+    """A function call with positional and then named arguments."""
+    return Call(name, arguments(*args, **named))
+
+
+def do(name: str, *args: Expr, **named: Expr) -> Do:
+    """A procedure call with positional and then named arguments."""
+    return Do(name, arguments(*args, **named))
+
+
+def arguments(*args: Expr, **named: Expr) -> tuple[Arg, ...]:
+    """Associations, positional first."""
+    return (*[Arg(None, a) for a in args], *[Arg(n, a) for n, a in named.items()])
+
+
+def chain(operator: str, operands: Sequence[Expr], empty: Expr = TRUE) -> Expr:
+    """The operands joined; one stands alone, none gives ``empty``."""
+    if not operands:
+        return empty
+    return operands[0] if len(operands) == 1 else Chain(operator, tuple(operands))
+
+
+def both(*operands: Expr) -> Expr:
+    """``and then`` over the operands."""
+    return chain("and then", operands)
+
+
+def equal(left: Expr, right: Expr) -> Expr:
+    """``left = right``."""
+    return Chain("=", (left, right))
+
+
+def names_in(construct: object) -> Iterator[str]:
+    """The text of each name and literal in it."""
+    if isinstance(construct, Ref):
+        yield construct.text
+        return
+    slots = getattr(construct, "__slots__", ())
+    parts = construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
+    for part in parts:
+        yield from names_in(part)
+
+
+def member(left: Expr, choices: str) -> Expr:
+    """``left in choices``."""
+    return Chain("in", (left, Ref(choices)))

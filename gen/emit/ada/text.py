@@ -1,0 +1,371 @@
+"""The printer of the Ada constructs: the only place that knows about layout.
+
+Three spaces, 79 columns, one statement a line; long parameter lists and
+expressions break one item a line (`layout` decides).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+from .layout import SOFT, Doc, cat, group, laid_out, nest, upright
+from .syntax import (
+    NULL,
+    Aggregate,
+    Arg,
+    Aspect,
+    Assign,
+    Call,
+    Case,
+    CaseExpr,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    EnumType,
+    Expr,
+    ForAll,
+    ForSome,
+    If,
+    IfExpr,
+    Instance,
+    Loop,
+    Object,
+    Package,
+    Param,
+    PlainType,
+    Pragma,
+    Prefix,
+    Protected,
+    RecordType,
+    Ref,
+    Rename,
+    Return,
+    Say,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+)
+
+WIDTH = 79
+ONE_LINE = 60
+"""Longer parameter lists go one to a line."""
+
+
+def _join(docs: Sequence[Doc], separator: str = "") -> list[Doc]:
+    """The documents with a separator and a soft place between them."""
+    between = (separator, SOFT) if separator else (SOFT,)
+    parts = [part for doc in docs for part in (doc, *between)]
+    return parts[: -len(between)]
+
+
+def _lines(docs: Sequence[Doc]) -> Doc:
+    """Each on a line of its own, nested, with a line break before each."""
+    return nest(*(part for doc in docs for part in (SOFT, doc)))
+
+
+def _args(args: Sequence[Arg]) -> Doc:
+    return cat("(", nest(*_join([_arg(a) for a in args], ","), by=1), ")")
+
+
+def _arg(arg: Arg) -> Doc:
+    value = expression(arg.value)
+    return value if arg.name is None else group(arg.name, " =>", nest(SOFT, value, by=2))
+
+
+_RELATIONS = ("=", "/=", "<", "<=", ">", ">=", "in", "not in")
+_LOGICAL = ("and then", "or else")
+
+
+def _operand(expr: Expr, operator: str = "") -> Doc:
+    """One operand; no parentheses where the precedence of Ada is plain to a reader."""
+    doc = expression(expr)
+    plain = not isinstance(expr, Chain) or (operator in _LOGICAL and expr.operator in _RELATIONS)
+    return doc if plain else cat("(", nest(doc, by=1), ")")
+
+
+def _signed(expr: Expr, operator: str = "") -> Doc:
+    """An operand after an operator: there Ada has no sign, ``abs`` or ``not`` of its own."""
+    nested = isinstance(expr, Prefix) and (expr.operator == "-" or not operator)
+    return _bare(expression(expr)) if nested else _operand(expr, operator)
+
+
+def _bare(*docs: Doc) -> Doc:
+    """Between parentheses, one column in."""
+    return group("(", nest(*docs, by=1), ")")
+
+
+def _choices(text: str) -> Doc:
+    """``A | B``, in as many lines as it takes."""
+    first, *others = text.split(" | ")
+    return cat(first, *(group(SOFT, "| ", choice) for choice in others)) if others else first
+
+
+@lru_cache(maxsize=8192)
+def expression(expr: Expr) -> Doc:
+    """The layout of one expression; a program has few that it does not repeat."""
+    match expr:
+        case Ref(text):
+            return _choices(text) if " | " in text else text
+        case Chain(operator, operands):
+            #  GNAT wants to see what a sign before a product is of
+            begin = _signed if operator in ("*", "/") else _operand
+            head = begin(operands[0], operator)
+            rest = [_signed(o, operator) for o in operands[1:]]
+            return group(head, *(cat(SOFT, f"{operator} ", nest(r, by=2)) for r in rest))
+        case Prefix(operator, operand):
+            return cat(operator if operator == "-" else f"{operator} ", _signed(operand))
+        case Call(name, args):
+            return group(name, nest(SOFT, _args(args), by=2))
+        case Aggregate(args, _, str(base)):
+            changed = _join([_arg(a) for a in args], ",")
+            return _bare(f"{base}{_DELTA}", nest(SOFT, *changed, by=2))
+        case Aggregate(args, of_type):
+            return group(f"{of_type}'" if of_type else "", _args(args))
+        case IfExpr(branches, otherwise):
+            parts = [
+                cat(
+                    "if " if i == 0 else "elsif ",
+                    nest(expression(c)),
+                    nest(SOFT, "then ", nest(expression(v))),
+                )
+                for i, (c, v) in enumerate(branches)
+            ]
+            if otherwise is not None:
+                parts.append(cat("else ", nest(expression(otherwise))))
+            return _bare(*_join(parts))
+        case CaseExpr(selector, branches):
+            rows = [
+                group("when ", nest(_choices(f"{choice} =>")), nest(SOFT, expression(value)))
+                for choice, value in branches
+            ]
+            body = nest(SOFT, *_join(rows, ","), by=2)
+            return upright("(", nest("case ", expression(selector), " is", body, by=1), ")")
+        case ForAll(variable, domain, condition) | ForSome(variable, domain, condition):
+            word = "all" if isinstance(expr, ForAll) else "some"
+            return _bare(f"for {word} {variable} in {domain} =>", nest(SOFT, expression(condition)))
+
+
+@lru_cache(maxsize=8192)
+def _comment(text: str) -> Doc:
+    lines: list[str] = []
+    for paragraph in text.split("\n"):
+        line = ""
+        for word in paragraph.split():
+            if line and len(line) + 1 + len(word) > WIDTH - 10:
+                lines.append(line)
+                line = word
+            else:
+                line = f"{line} {word}".strip()
+        lines.append(line)
+    return upright(*_join([f"--  {line}".rstrip() for line in lines]))
+
+
+def _block(statements: Sequence[Stmt]) -> Doc:
+    return _lines([statement(s) for s in statements or (NULL,)])
+
+
+def statement(stmt: Stmt) -> Doc:
+    """The layout of one statement."""
+    match stmt:
+        case Assign(target, value):
+            return group(f"{target} :=", nest(SOFT, expression(value), by=2), ";")
+        case Do(name, ()):
+            return f"{name};"
+        case Do(name, args):
+            return group(name, nest(SOFT, _args(args), by=2), ";")
+        case If(branches, otherwise):
+            parts: list[Doc] = []
+            for index, (condition, body) in enumerate(branches):
+                head = group(
+                    "if " if index == 0 else "elsif ", nest(expression(condition)), SOFT, "then"
+                )
+                parts += [head, _block(body), SOFT]
+            if otherwise:
+                parts += ["else", _block(otherwise), SOFT]
+            return upright(*parts, "end if;")
+        case Case(selector, branches):
+            rows = [upright(f"when {choice} =>", _block(body)) for choice, body in branches]
+            return upright("case ", expression(selector), " is", _lines(rows), SOFT, "end case;")
+        case Loop(head, body):
+            start = f"{head} loop" if head else "loop"
+            return upright(start, _block(body), SOFT, "end loop;")
+        case Say(text):
+            return f"{text};"
+        case Return(value):
+            return group("return", nest(SOFT, expression(value), by=2), ";")
+        case Pragma(name, args):
+            return _pragma(name, args)
+        case Comment(text):
+            return _comment(text)
+
+
+def _pragma(name: str, args: Sequence[Expr]) -> Doc:
+    if not args:
+        return f"pragma {name};"
+    return group(f"pragma {name}", nest(SOFT, _args(arguments(*args)), by=2), ";")
+
+
+@lru_cache(maxsize=8192)
+def _aspects(aspects: Sequence[Aspect]) -> Doc:
+    docs = [
+        a.name if a.value is None else group(f"{a.name} =>", nest(SOFT, expression(a.value), by=2))
+        for a in aspects
+    ]
+    return cat(SOFT, group("with", nest(SOFT, *_join(docs, ","), by=2)))
+
+
+@lru_cache(maxsize=8192)
+def _params(params: Sequence[Param]) -> Doc:
+    texts = [f"{'' if p.mode == 'in' else p.mode + ' '}{p.type}" for p in params]
+    plain = sum(len(p.name) + len(t) + 5 for p, t in zip(params, texts, strict=True))
+    #  names are padded only where each stands on a line of its own
+    width = max(len(p.name) for p in params) if plain > ONE_LINE else 0
+    docs = [f"{p.name:<{width}} : {t}" for p, t in zip(params, texts, strict=True)]
+    return nest(SOFT, "(", nest(*_join(docs, ";"), by=1), ")", by=2)
+
+
+def _subprogram(sub: Subprogram) -> Doc:
+    keyword = "function" if sub.result else "procedure"
+    head = group(
+        f"{keyword} {sub.name}",
+        _params(sub.params) if sub.params else "",
+        nest(SOFT, f"return {sub.result}", by=2) if sub.result else "",
+    )
+    aspects = _aspects(sub.aspects) if sub.aspects else ""
+    if sub.expression is not None:
+        inner = expression(sub.expression)
+        if not isinstance(sub.expression, (IfExpr, CaseExpr, ForAll, ForSome)):
+            inner = _bare(inner)
+        return upright(group(head, " is", nest(SOFT, inner, by=2)), aspects, ";")
+    if sub.body is None:
+        return upright(head, aspects, ";")
+    declarations = _lines([_declaration(d) for d in sub.declarations])
+    start = [SOFT, "is"] if sub.aspects else [" is"]
+    return upright(
+        head,
+        aspects,
+        *start,
+        declarations,
+        SOFT,
+        "begin",
+        _block(sub.body),
+        SOFT,
+        f"end {sub.name};",
+    )
+
+
+def _declaration(decl: Decl) -> Doc:
+    match decl:
+        case EnumType(name, literals):
+            items = nest(*_join(literals, ","), by=1)
+            return group(f"type {name} is", nest(SOFT, "(", items, ");", by=2))
+        case PlainType(name, definition, subtype):
+            parts = f"{definition};".replace(" range ", "\n range ").replace(" .. ", "\n.. ")
+            whole, *bounds = [part.strip() for part in parts.split("\n")]
+            head = f"{'subtype' if subtype else 'type'} {name} is"
+            return group(head, nest(SOFT, whole, *(cat(SOFT, b) for b in bounds), by=2))
+        case RecordType(name, ()):
+            return f"type {name} is null record;"
+        case RecordType(name, components):
+            width = max(len(c.name) for c in components)
+            rows = [_component(f"{c.name:<{width}} : {c.type}", c.initial) for c in components]
+            return upright(f"type {name} is record", _lines(rows), SOFT, "end record;")
+        case Object(name, type_name, value, constant, aspects):
+            words = [w for w in ("constant" if constant else "", type_name or "") if w]
+            head = f"{name} : {' '.join(words)}"
+            start = (
+                (head,) if value is None else (f"{head} :=", nest(SOFT, expression(value), by=2))
+            )
+            return group(*start, _aspects(aspects) if aspects else "", ";")
+        case Subprogram():
+            return _subprogram(decl)
+        case Instance(name, generic, args, kind):
+            head = f"{kind} {name} is new {generic}"
+            return group(head, nest(SOFT, _args(args), by=2), ";")
+        case Package():
+            return _package(decl)
+        case Protected():
+            return _protected(decl)
+        case Rename(name, other):
+            return f"package {name} renames {other};"
+        case UseType(name):
+            return f"use type {name};"
+        case Pragma(name, args):
+            return _pragma(name, args)
+        case Comment(text):
+            return _comment(text)
+
+
+def _component(head: str, initial: Expr | None) -> Doc:
+    if initial is None:
+        return f"{head};"
+    return group(f"{head} :=", nest(SOFT, expression(initial), by=2), ";")
+
+
+_TIGHT = (Object, PlainType, Rename, UseType, Pragma)
+
+
+def _items(items: Sequence[Decl]) -> list[Doc]:
+    """Declarations, set apart by blank lines.
+
+    A comment belongs to the subprogram before it, or else to what follows;
+    one-line neighbours of a kind stand together.
+    """
+    docs: list[Doc] = []
+    before: Decl | None = None
+    trailing = False
+    for item in items:
+        is_trailing = isinstance(item, Comment) and isinstance(before, Subprogram)
+        led = isinstance(before, Comment) and not trailing
+        alike = isinstance(item, _TIGHT) and type(item) is type(before)
+        tight = before is None or is_trailing or led or alike
+        docs.append(_declaration(item) if tight else cat("", SOFT, _declaration(item)))
+        before, trailing = item, is_trailing
+    return docs
+
+
+def _package(package: Package) -> Doc:
+    keyword = "package body" if package.is_body else "package"
+    head = f"{keyword} {package.name}"
+    aspects = cat(_aspects(package.aspects), SOFT, "is") if package.aspects else " is"
+    return upright(head, aspects, _lines(_items(package.items)), SOFT, f"end {package.name};")
+
+
+def _protected(decl: Protected) -> Doc:
+    operations = _lines(_items(decl.items))
+    if not decl.kept:
+        return upright(f"protected body {decl.name} is", operations, SOFT, f"end {decl.name};")
+    head = cat(_aspects(decl.aspects), SOFT, "is")
+    kept = _lines(_items(decl.kept))
+    parts = (f"protected {decl.name}", head, operations, SOFT, "private", kept)
+    return upright(*parts, SOFT, f"end {decl.name};")
+
+
+_DELTA = " with delta"
+"""What the language of the other units does not have."""
+
+
+def print_item(unit: Unit) -> str:
+    """The text of ``unit`` without its header and context, ending in a newline."""
+    return _laid_out(_declaration(unit.item))
+
+
+def print_unit(unit: Unit, item: str | None = None) -> str:
+    """The text of ``unit``, ending in a newline; ``item`` is what `print_item` made of it."""
+    text = print_item(unit) if item is None else item
+    parts: list[Doc] = [_comment(unit.header), ""]
+    if _DELTA in text:
+        parts += ["pragma Ada_2022;", 'pragma Warnings (Off, "*array aggregate using*");', ""]
+    parts += [f"with {name};" for name in unit.withs]
+    head = _laid_out(upright(*_join(parts)))
+    gap = "\n" if unit.withs else ""
+    return head + gap + text
+
+
+def _laid_out(doc: Doc) -> str:
+    text = laid_out(doc, WIDTH - 3)
+    return "\n".join(map(str.rstrip, text.split("\n"))) + "\n"

@@ -1,0 +1,1 @@
+"""Buses in Ada: codecs, layout tables, controllers; and the DBC."""

@@ -1,0 +1,249 @@
+"""How scalars become the bits of a signal and back: the step from values to bits.
+
+Provers take integers and bits apart, so each step between them is a function of its own,
+proved by itself. Scalars that are coded alike share one, which is named after their
+type; those with a coding given in the model have their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from ravenchart.gen.emit.ada.naming import ada_case, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    TRUE,
+    Aspect,
+    CaseExpr,
+    Chain,
+    Expr,
+    IfExpr,
+    Object,
+    Param,
+    Pragma,
+    Ref,
+    Return,
+    Subprogram,
+    both,
+    call,
+    chain,
+    equal,
+    member,
+    number,
+)
+from ravenchart.gen.language.terms import EnumerationType, IntegerType
+from ravenchart.gen.model.signals import Signal, automatic
+from ravenchart.gen.model.system import System
+
+WORD = "Interfaces.Unsigned_64"
+NUMBER = "Ravenchart.Number"
+AS_BITS = "Whole_As_Bits"
+"""A number in as many bits as it has: by itself, which provers are slow to see elsewhere."""
+
+
+def container(signal: Signal) -> str:
+    """The smallest type of bits that holds a signal: provers work bit by bit."""
+    return f"Interfaces.Unsigned_{next(n for n in (8, 16, 32, 64) if signal.width <= n)}"
+
+
+def bits(value: int) -> Ref:
+    """A pattern of bits."""
+    return Ref(f"16#{value:X}#")
+
+
+def all_of(*facts: Expr) -> Expr:
+    """``and then`` over facts, without those that are always so."""
+    return both(*(fact for fact in facts if fact != TRUE))
+
+
+def within_width(raw: Expr, signal: Signal) -> Expr | None:
+    """Are the bits no more than the signal has? None: its type of bits has no more."""
+    if container(signal) == f"Interfaces.Unsigned_{signal.width}":
+        return None
+    return Chain("<=", (raw, bits((1 << signal.width) - 1)))
+
+
+def is_plain(signal: Signal) -> bool:
+    """Is it coded as where nothing is given, in as many bits, wherever it stands?"""
+    usual = automatic(signal.field, signal.type)
+    return (signal.coding, container(signal)) == (usual.coding, container(usual))
+
+
+class Coding:
+    """What is emitted for one signal's coding.
+
+    What bits stand for is an expression function. Its inverse is stated by it. A coding
+    of a type stands in the package of the codecs, one of a signal in that of its codec: a
+    fixed word and one name of the model make each name, so no two are the same.
+    """
+
+    def __init__(self, system: System, signal: Signal) -> None:
+        """For a signal of a codec."""
+        self.system, self.signal = system, signal
+        self.is_shared = is_plain(signal)
+        of_type = f"Type_{ada_case(signal.type.name)}"
+        self.name = of_type if self.is_shared else f"Signal_{ada_case(signal.name)}"
+        self.bits_of = f"Bits_Of_{self.name}"
+        self.value_of = f"Value_Of_{self.name}"
+        self.ada_type = type_name(system, signal.type)
+        self.container = container(signal)
+
+    @property
+    def is_wide_number(self) -> bool:
+        """Does it need `as_bits`?"""
+        return self.container == WORD and isinstance(self.signal.type, IntegerType)
+
+    def valid(self, raw: Expr) -> Expr:
+        """Do these bits stand for a value?"""
+        low, high = self.signal.raw_range
+        if self.signal.codes:
+            patterns = sorted(self._pattern(code) for code in self.signal.codes)
+            return member(raw, " | ".join(f"{pattern:_}" for pattern in patterns))
+        full = 1 << self.signal.width
+        if high - low + 1 == full and within_width(raw, self.signal) is None:
+            return TRUE
+        if low >= 0:
+            return member(raw, f"{low:_} .. {high:_}") if low else Chain("<=", (raw, number(high)))
+        if high < 0:
+            return member(raw, f"{full + low:_} .. {full + high:_}")
+        return member(raw, f"0 .. {high:_} | {full + low:_} .. {full - 1:_}")
+
+    def spec(self) -> Subprogram:
+        """What bits stand for."""
+        raw, valid = Ref("Raw"), self.valid(Ref("Raw"))
+        return Subprogram(
+            self.value_of,
+            (Param("Raw", "in", self.container),),
+            self.ada_type,
+            aspects=() if valid == TRUE else (Aspect("Pre", valid),),
+            expression=self._value(raw),
+        )
+
+    def body(self) -> Subprogram:
+        """The bits of a value."""
+        result = Ref(f"{self.bits_of}'Result")
+        survives = equal(call(self.value_of, result), Ref("Item"))
+        made = Subprogram(
+            self.bits_of,
+            (Param("Item", "in", self.ada_type),),
+            self.container,
+            aspects=(Aspect("Post", all_of(self.valid(result), survives)),),
+        )
+        if self.signal.codes:
+            return replace(made, expression=CaseExpr(Ref("Item"), tuple(self._by_literal())))
+        if isinstance(self.signal.type, EnumerationType):
+            position = call(f"{self.ada_type}'Pos", Ref("Item"))
+            return replace(made, expression=call(self.container, position))
+        #  provers go from integers to bits in steps: a number, its bits, what they count
+        last = f"{(1 << self.signal.width) - 1:_}"
+        made_bits = self.container
+        if self.is_wide_number:
+            last, made_bits = f"2**{self.signal.width} - 1", AS_BITS
+        whole = Object("Whole", f"{NUMBER} range 0 .. {last}", self._whole(), constant=True)
+        raw = Object("Raw", self.container, call(made_bits, Ref("Whole")), constant=True)
+        kept = Pragma("Assert", (equal(call(NUMBER, Ref("Raw")), Ref("Whole")),))
+        return replace(made, declarations=(whole, raw), body=(kept, Return(Ref("Raw"))))
+
+    def _pattern(self, code: int) -> int:
+        """A code as its bits."""
+        return code % (1 << self.signal.width)
+
+    def _by_literal(self) -> list[tuple[str, Expr]]:
+        """Each literal with the bits of its code."""
+        assert isinstance(self.signal.type, EnumerationType)
+        pairs = zip(self.signal.type.literals, self.signal.codes, strict=True)
+        return [
+            (literal_name(self.system, self.signal, name), number(self._pattern(code)))
+            for name, code in pairs
+        ]
+
+    def _value(self, raw: Expr) -> Expr:
+        """The value that bits stand for."""
+        signal = self.signal
+        if signal.codes:
+            *first, (last, _) = self._by_literal()
+            tests = tuple((equal(raw, code), Ref(name)) for name, code in first)
+            return IfExpr(tests, Ref(last)) if tests else Ref(last)
+        if isinstance(signal.type, EnumerationType):
+            return call(f"{self.ada_type}'Val", raw)
+        low, high = signal.raw_range
+        counted = call(NUMBER, raw)
+        above = _more(counted, signal.offset)
+        below = _more(counted, signal.offset - (1 << signal.width))
+        if low < 0 <= high:
+            above = IfExpr(((Chain("<=", (counted, number(high))), above),), below)
+        return call(self.ada_type, below if high < 0 else above)
+
+    def _whole(self) -> Expr:
+        """The bits of a number as an integer from 0 on."""
+        low, high = self.signal.raw_range
+        offset = self.signal.offset
+        counted = call(NUMBER, Ref("Item"))
+        above = _more(counted, -offset)
+        below = _more(counted, (1 << self.signal.width) - offset)
+        if low < 0 <= high:
+            return IfExpr(((Chain(">=", (counted, number(offset))), above),), below)
+        return below if high < 0 else above
+
+
+def as_bits() -> Subprogram:
+    """`AS_BITS`."""
+    whole = Ref("Whole")
+    return Subprogram(
+        AS_BITS,
+        (Param("Whole", "in", NUMBER),),
+        WORD,
+        aspects=(
+            Aspect("Pre", Chain(">=", (whole, number(0)))),
+            Aspect("Post", equal(call(NUMBER, Ref(f"{AS_BITS}'Result")), whole)),
+        ),
+        expression=call(WORD, whole),
+    )
+
+
+def _more(term: Expr, addend: int) -> Expr:
+    """The sum, as people write it."""
+    if not addend:
+        return term
+    return Chain("+" if addend > 0 else "-", (term, number(abs(addend))))
+
+
+def literal_name(system: System, signal: Signal, value: int | str) -> str:
+    """A value of a signal's type, as a choice."""
+    if not isinstance(signal.type, EnumerationType):
+        return f"{int(value):_}"
+    name = ada_case(str(value))
+    return name if signal.type.name == "Boolean" else f"{ada_case(system.name)}.{name}"
+
+
+def word_bits(signal: Signal, words: Callable[[int], str]) -> Expr:
+    """The bits of a signal, taken out of the words of a frame."""
+    parts: list[Expr] = []
+    for piece in signal.pieces():
+        word = words(piece.word)
+        shifted = f"Interfaces.Shift_Right ({word}, {piece.start})" if piece.start else word
+        part: Expr = Ref(f"{shifted} and 16#{(1 << piece.width) - 1:X}#")
+        parts.append(call("Interfaces.Shift_Left", part, number(piece.low)) if piece.low else part)
+    if len(parts) > 1:
+        parts = [Ref(f"({p.text})") if isinstance(p, Ref) else p for p in parts]
+    whole = chain("or", parts)
+    return whole if container(signal) == WORD else call(container(signal), whole)
+
+
+def placed(signal: Signal, local: str, word: int) -> list[Expr]:
+    """The bits of a signal where they stand in one word of the frame."""
+    widened: Expr = Ref(local) if container(signal) == WORD else call(WORD, Ref(local))
+    pieces = signal.pieces()
+    parts: list[Expr] = []
+    for piece in pieces:
+        if piece.word != word:
+            continue
+        part = widened
+        if len(pieces) > 1:
+            if piece.low:
+                part = call("Interfaces.Shift_Right", part, number(piece.low))
+            part = Chain("and", (part, bits((1 << piece.width) - 1)))
+        parts.append(
+            call("Interfaces.Shift_Left", part, number(piece.start)) if piece.start else part
+        )
+    return parts

@@ -1,0 +1,108 @@
+"""The CAN database (DBC) of a bus, written by cantools from the same layout as the codecs.
+
+Physical values are what the model's values count: a value of a type in `0.1 degC` is
+a tenth of its number.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from decimal import Decimal
+
+from cantools.database import Database
+from cantools.database.can import Message as DbcMessage
+from cantools.database.can import Node
+from cantools.database.can import Signal as DbcSignal
+from cantools.database.can.formats.dbc.dbc_attribute import DbcAttribute
+from cantools.database.can.formats.dbc.dbc_attribute_definition import DbcAttributeDefinition
+from cantools.database.can.formats.dbc.dbc_specifics import DbcSpecifics
+from cantools.database.conversion import BaseConversion
+from cantools.database.namedsignalvalue import NamedSignalValue
+
+from ravenchart.gen.language.terms import EnumerationType, IntegerType
+from ravenchart.gen.language.units import count_of
+from ravenchart.gen.model.signals import ByteOrder, Signal
+from ravenchart.gen.model.system import Bus, End, Message, System
+
+OUTSIDE = "Outside"
+"""The sender of what comes from beyond the system."""
+
+
+def emit_dbc(system: System, bus: Bus) -> str:
+    """The text of the bus's database."""
+    own = [m for m in system.messages if m.bus == bus.name]
+    messages = [_message(system, m) for m in own]
+    nodes = [Node(name=n.name, comment=None) for n in system.nodes]
+    nodes.append(Node(name=OUTSIDE, comment=None))
+    specifics = _flexible(bus) if any(m.fd for m in own) else None
+    database = Database(messages=messages, nodes=nodes, version="", dbc_specifics=specifics)
+    text = str(database.as_dbc_string(sort_signals=None))
+    return text.replace("\r\n", "\n").rstrip("\n") + "\n"
+
+
+def _flexible(bus: Bus) -> DbcSpecifics:
+    """What makes a database one of CAN FD: cantools then tells the format of each frame."""
+    kind = DbcAttributeDefinition[str]("BusType", "CAN", None, "STRING")
+    switched = "0" if bus.data_rate is None else "1"
+    switch = DbcAttributeDefinition[str]("CANFD_BRS", switched, "BO_", "ENUM", choices=["0", "1"])
+    return DbcSpecifics(
+        attributes=OrderedDict({"BusType": DbcAttribute("CAN FD", kind)}),
+        attribute_definitions=OrderedDict({"BusType": kind, "CANFD_BRS": switch}),
+    )
+
+
+def _message(system: System, message: Message) -> DbcMessage:
+    receivers = list(dict.fromkeys(_node(system, end) for end in message.targets)) or [OUTSIDE]
+    selector = next((s for s in message.signals if s.selects), None)
+    return DbcMessage(
+        frame_id=message.identifier,
+        name=message.name,
+        length=message.length,
+        signals=[_signal(s, selector, receivers) for s in message.signals],
+        senders=[OUTSIDE if message.source is None else _node(system, message.source)],
+        cycle_time=message.period // 1_000_000,
+        is_extended_frame=message.extended,
+        is_fd=message.fd,
+        sort_signals=None,
+    )
+
+
+def _node(system: System, end: End) -> str:
+    return system.instance(end.instance).node
+
+
+def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> DbcSignal:
+    choices: OrderedDict[int, str | NamedSignalValue] | None = None
+    low, high = signal.raw_range
+    scale, unit = Decimal(1), None
+    if isinstance(signal.type, EnumerationType):
+        codes = signal.codes or range(len(signal.type.literals))
+        pairs = zip(codes, signal.type.literals, strict=True)
+        choices = OrderedDict[int, str | NamedSignalValue](pairs)
+    elif isinstance(signal.type, IntegerType):
+        scale, unit = count_of(signal.type.unit)
+        low, high = signal.type.first, signal.type.last
+    conversion = BaseConversion.factory(
+        scale=_plain(scale), offset=_plain(signal.offset * scale), choices=choices
+    )
+    is_paged = bool(signal.pages) and selector is not None
+    return DbcSignal(
+        name=signal.name,
+        start=signal.start,
+        length=signal.width,
+        byte_order="little_endian" if signal.order is ByteOrder.INTEL else "big_endian",
+        is_signed=signal.signed,
+        conversion=conversion,
+        minimum=_plain(low * scale),
+        maximum=_plain(high * scale),
+        unit=unit,
+        receivers=receivers,
+        is_multiplexer=signal.selects,
+        multiplexer_ids=list(signal.pages) if is_paged else None,
+        multiplexer_signal=selector.name if is_paged and selector is not None else None,
+    )
+
+
+def _plain(value: Decimal | int) -> int | float:
+    """A number as cantools takes it: whole ones stay exact."""
+    return int(value) if value == int(value) else float(value)

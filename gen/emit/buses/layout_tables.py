@@ -1,0 +1,200 @@
+"""The layout table of a message in Ada, its frame, and what contracts say by them.
+
+A row is what the model says of a signal, number by number; `Ravenchart.Can.Layouts` gives it
+its meaning. Nothing here is shared with `coding`, which makes the bodies of the codecs: an
+error on one side is a contract that cannot be proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ravenchart.gen.emit.ada.naming import ada_case, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    CaseExpr,
+    Chain,
+    Decl,
+    Do,
+    Expr,
+    Object,
+    Param,
+    PlainType,
+    Ref,
+    Subprogram,
+    arguments,
+    both,
+    call,
+    chain,
+    number,
+)
+from ravenchart.gen.language.terms import EnumerationType, IntegerType
+from ravenchart.gen.model.signals import ByteOrder, Signal
+from ravenchart.gen.model.system import Message, System
+
+LAYOUTS = "Ravenchart.Can.Layouts"
+"""What the rows of layout tables mean."""
+
+LEMMAS = "Ravenchart.Can.Layout_Lemmas"
+"""What the bits of a signal of a longer frame are, by words."""
+
+NUMBER = "Ravenchart.Number"
+
+
+FD = "Ravenchart.Can.Fd_Frames"
+"""Words of longer frames, and their bit rates."""
+
+ANY = "Ravenchart.Can.Any_Frames"
+"""Frames of both families."""
+
+
+FRAME_ROW = PlainType("Row_Of_Frame", f"{LAYOUTS}.Frame_Row", subtype=True)
+"""A short name: those of messages may be long."""
+
+FITS = "Fits_In"
+"""Does a frame hold all signals of a layout?"""
+
+
+def frame_row(message: Message) -> Object:
+    """The frame that carries a message."""
+    columns = {
+        "Family": Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}"),
+        "Id": number(message.identifier),
+        "Format": Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}"),
+        "Length": number(message.length),
+    }
+    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    return Object(_frame_name(message), FRAME_ROW.name, made, constant=True)
+
+
+def is_framed(message: Message, frame: Expr) -> Expr:
+    """Is a frame the one of a message, by the table?"""
+    return call(f"{LAYOUTS}.Is_Framed", frame, Ref(f"Codecs.{_frame_name(message)}"))
+
+
+def is_received(message: Message, codec: str) -> Expr:
+    """Does the filter let a message in, and does its frame hold all its signals?"""
+    row = f"Codecs.{_frame_name(message)}"
+    accepted = call("Accepts", Ref(f"{row}.Id"), Ref(f"{row}.Format"))
+    return both(accepted, call(f"Codecs.{codec}.{FITS}", Ref(row)))
+
+
+class LayoutTable:
+    """The rows of one message, in the package of its codec."""
+
+    def __init__(self, system: System, signals: Sequence[Signal]) -> None:
+        """The table of these signals."""
+        self.system, self.signals = system, signals
+
+    def row(self, signal: Signal) -> list[Decl]:
+        """The row of a signal, and the codes of its literals where the model gives some."""
+        columns = {
+            "Start": number(signal.start),
+            "Width": number(signal.width),
+            "Order": Ref(f"{LAYOUTS}.{_ORDERS[signal.order]}"),
+            "Signed": Ref(str(signal.signed)),
+            "Offset": number(signal.offset),
+        }
+        made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+        rows: list[Decl] = [Object(_row(signal), f"{LAYOUTS}.Signal", made, constant=True)]
+        return [*rows, self._codes(signal)] if signal.codes else rows
+
+    def _codes(self, signal: Signal) -> Subprogram:
+        assert isinstance(signal.type, EnumerationType)
+        pairs = zip(signal.type.literals, signal.codes, strict=True)
+        prefix = "" if signal.type.name == "Boolean" else f"{ada_case(self.system.name)}."
+        codes = tuple((f"{prefix}{ada_case(name)}", number(code)) for name, code in pairs)
+        item = Param("Item", "in", type_name(self.system, signal.type))
+        return Subprogram(_code(signal), (item,), NUMBER, expression=CaseExpr(Ref("Item"), codes))
+
+    def fits(self) -> Subprogram:
+        """Does a frame hold all signals?"""
+        held = [call(f"{LAYOUTS}.Holds", Ref("Row"), Ref(_row(s))) for s in self.signals]
+        row = Param("Row", "in", f"{LAYOUTS}.Frame_Row")
+        return Subprogram(FITS, (row,), "Boolean", expression=both(*held))
+
+    def bits_in(self, signal: Signal, frame: str) -> Expr:
+        """The bits of a signal, by its row."""
+        return call(f"{LAYOUTS}.Raw", Ref(frame), Ref(_row(signal)))
+
+    def lemmas_of_bits(self, signal: Signal, frame: str) -> tuple[Expr, tuple[Do, ...]]:
+        """By words what `bits_in` of a longer frame is, and the lemmas that say so.
+
+        Provers reckon a row and a frame at once very slowly. What is wrong here is a
+        precondition that fails.
+        """
+        upwards = signal.order is ByteOrder.INTEL
+        byte, bit = divmod(signal.start, 8)
+        first = signal.start if upwards else 8 * byte + 7 - bit
+        word, last = first // 64, (first + signal.width - 1) // 64
+        if upwards:
+            shift = first % 64
+        else:
+            shift = (first + signal.width if last > word else -first - signal.width) % 64
+        name = f"{_ORDERS[signal.order]}_{'Over' if last > word else 'Within'}"
+        ones = Ref(f"16#{(1 << signal.width) - 1:X}#")
+        row = Ref(_row(signal))
+        given = arguments(Ref(frame), row, number(word), number(shift))
+        words: list[Expr] = [Ref(f"{frame} ({index})") for index in range(word, last + 1)]
+        if not upwards:
+            words = [call(f"{LAYOUTS}.Reversed", one) for one in words]
+        ways = ["Right"] if last == word else ["Right", "Left"] if upwards else ["Left", "Right"]
+        by = [shift, 64 - shift]
+        parts = [
+            call(f"Interfaces.Shift_{way}", one, number(places))
+            for way, one, places in zip(ways, words, by, strict=False)
+        ]
+        taken = Chain("and", (chain("or", parts, number(0)), ones))
+        mask = Do(f"{LEMMAS}.Lemma_Mask", arguments(row, ones))
+        return taken, (mask, Do(f"{LEMMAS}.Lemma_{name}", given))
+
+    def number_in(self, signal: Signal, frame: str) -> Expr:
+        """The raw value of a signal of a frame, by its row."""
+        return call(f"{LAYOUTS}.Number_In", Ref(frame), Ref(_row(signal)))
+
+    def counted(self, signal: Signal, raw: Expr) -> Expr:
+        """The raw value that bits are, by the row."""
+        return call(f"{LAYOUTS}.Counted", raw, Ref(_row(signal)))
+
+    def raw_value(self, signal: Signal, item: Expr) -> Expr:
+        """The raw value that stands for a value of the model."""
+        if signal.codes:
+            return call(_code(signal), item)
+        if isinstance(signal.type, EnumerationType):
+            return call(f"{type_name(self.system, signal.type)}'Pos", item)
+        value = call(NUMBER, item)
+        return Chain("-", (value, Ref(f"{_row(signal)}.Offset"))) if signal.offset else value
+
+    def raw_values(self, signal: Signal) -> str:
+        """All raw values that stand for something, as choices."""
+        if signal.codes:
+            return " | ".join(f"{code:_}" for code in sorted(signal.codes))
+        if isinstance(signal.type, IntegerType):
+            first, last = signal.type.first - signal.offset, signal.type.last - signal.offset
+            return f"{first:_} .. {last:_}"
+        return f"0 .. {len(signal.type.literals) - 1:_}"
+
+
+_ORDERS = {ByteOrder.INTEL: "Intel", ByteOrder.MOTOROLA: "Motorola"}
+
+
+def _frame_name(message: Message) -> str:
+    return f"Frame_{ada_case(message.name)}"
+
+
+def _row(signal: Signal) -> str:
+    return f"Signal_{ada_case(signal.name)}"
+
+
+def _code(signal: Signal) -> str:
+    return f"Code_Of_{ada_case(signal.name)}"
+
+
+def place(signal: Signal) -> str:
+    """Where a signal stands, in words."""
+    if signal.order is ByteOrder.INTEL:
+        words = f"bits {signal.start} .. {signal.start + signal.width - 1}"
+    else:
+        words = f"{signal.width} bits from {signal.start} on, the most significant first"
+    return f"{words}, signed" if signal.signed else words

@@ -1,0 +1,345 @@
+"""Buses: the controller, one procedure for each message sent, and the receiver."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    FALSE,
+    SPARK,
+    TRUE,
+    Aggregate,
+    Arg,
+    Aspect,
+    Call,
+    CaseExpr,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    Expr,
+    If,
+    Instance,
+    Object,
+    Package,
+    Param,
+    Pragma,
+    Ref,
+    Return,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    both,
+    call,
+    equal,
+    member,
+    number,
+)
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE, agrees, fact
+from ravenchart.gen.emit.commands.remote_calls import received_as
+from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
+from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.model.system import Bus, End, Message, System, Task, Work
+
+from .codecs import codec_name, words_of
+from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
+from .watch import emit_watch
+
+DRIVER_STACK = 65_536
+"""Bytes of stack for each task of a CAN driver on a host."""
+
+
+def _sent(system: System, bus: Bus) -> tuple[Message, ...]:
+    return tuple(m for m in system.messages if m.bus == bus.name and m.source is not None)
+
+
+def _received(system: System, bus: Bus) -> tuple[Message, ...]:
+    return tuple(m for m in system.messages if m.bus == bus.name and m.targets)
+
+
+def _taker(message: Message, target: End) -> str:
+    """The procedure of a receiver."""
+    return f"Put_{ada_case(target.port)}" if message.call is None else received_as(message)
+
+
+def _format(message: Message) -> Ref:
+    return Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}")
+
+
+def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
+    """The controller of a bus, sending on it, and the distribution of what it receives."""
+    root, name = root_package(system), f"{root_package(system)}.{ada_case(bus.name)}"
+    sent, received = _sent(system, bus), _received(system, bus)
+    transmit = system.object(f"{bus.name}.transmit").ceiling
+    receive = system.object(f"{bus.name}.receive").ceiling
+    drivers = [t for t in system.tasks if t.element.startswith(f"{bus.name}.driver")]
+    driver = max(drivers, key=lambda t: t.priority)
+    standard = [fact(m.element, "Id").text for m in received if not m.extended]
+    extended = [fact(m.element, "Id").text for m in received if m.extended]
+    wanted: list[tuple[str, Expr]] = []
+    for label, ids in (("Standard", standard), ("Extended", extended)):
+        accepts = member(Ref("Id"), " | ".join(ids)) if ids else Ref("False")
+        wanted.append((f"Ravenchart.Can.{label}", accepts))
+    items: list[Decl] = [
+        Subprogram(
+            "Accepts",
+            (
+                #  GNAT takes this word as: not referenced, and meant so
+                Param("Id" if received else "Unused_Id", "in", "Ravenchart.Can.Identifier"),
+                Param("Format", "in", "Ravenchart.Can.Frame_Format"),
+            ),
+            "Boolean",
+            expression=CaseExpr(Ref("Format"), tuple(wanted)),
+        ),
+        Comment(f"[{bus.name}] the identifiers that this node receives"),
+        Instance(
+            "Controller",
+            "Ravenchart.Can.Controllers",
+            arguments(
+                Transmit_Ceiling=priority(transmit),
+                Receive_Ceiling=priority(receive),
+                Driver_Priority=fact(driver.element, "Priority"),
+                Transmit_Depth=number(bus.transmit_depth),
+                Receive_Depth=number(bus.receive_depth),
+                Stack_Bytes=number(DRIVER_STACK),
+                Accepts=Ref("Accepts"),
+                Setting=_setting(bus),
+            ),
+        ),
+    ]
+    items += _checks(bus, driver)
+    if received:
+        items.append(
+            Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
+        )
+        items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in received]
+    if not all(m.fd for m in sent):
+        items.append(UseType("Interfaces.Unsigned_64"))
+    if any(m.fd for m in sent):
+        items += [UseType(f"{FD}.Fd_Words"), UseType(f"{FD}.Bit_Rate_Use")]
+    for message in sent:
+        items.append(_frame_spec(system, bus, message))
+        items.append(
+            Comment(f"[{message.name}] its frame by the layout table; none of its bits is cut off.")
+        )
+        items.append(_send_spec(system, message))
+        items.append(Comment(f"[{message.name}] hand one frame to the controller; never blocks."))
+    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
+    if sent or received:
+        withs |= {f"{root}.Codecs", LAYOUTS}
+    if sent:
+        withs |= {ANY, "Interfaces"}
+    if any(m.fd for m in sent):
+        withs |= {FD}
+    units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
+    if sent:
+        made = (_frame_body(system, bus, m) for m in sent)
+        handed = (_send_body(system, m) for m in sent)
+        bodies = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
+        context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+        if traced(system):
+            context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+        units.append(
+            Unit(header, tuple(sorted(context)), Package(name, bodies, (SPARK,), is_body=True))
+        )
+    if received:
+        units += _receiver(system, bus, header)
+    return units + emit_watch(system, bus, header)
+
+
+def _checks(bus: Bus, driver: Task) -> list[Decl]:
+    """The controller runs as the certificate says."""
+    same = [
+        equal(Ref(f"Controller.Given_Setting.{what}"), rate) for what, rate in _rates(bus).items()
+    ]
+    level = fact(driver.element, "Priority")
+    return [
+        UseType("Ravenchart.Can.Bits_Per_Second"),
+        agrees("Controller.Given_Priority", level, bus.name, "priority of its driver"),
+        Pragma("Assert", (both(*same),)),
+    ]
+
+
+def _rates(bus: Bus) -> dict[str, Expr]:
+    """The bit rates as certified; 0 for one that the bus does not have."""
+    return {
+        "Bit_Rate": fact(bus.name, "Bit_Rate"),
+        "Data_Rate": fact(bus.name, "Data_Rate") if bus.data_rate else number(0),
+    }
+
+
+def _setting(bus: Bus) -> Expr:
+    """How the controller is configured."""
+    settings = {
+        **_rates(bus),
+        "Takes_Fd": TRUE if bus.takes_fd else FALSE,
+        "Recovery": Ref(
+            f"Ravenchart.Can.{'On_Request' if bus.recovers_by_request else 'Automatic'}"
+        ),
+    }
+    return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
+
+
+def _send_spec(system: System, message: Message) -> Subprogram:
+    return Subprogram(
+        f"Send_{ada_case(message.name)}", (Param("Item", "in", type_name(system, message.type)),)
+    )
+
+
+def _frame_name(message: Message) -> str:
+    return f"Frame_Of_{ada_case(message.name)}"
+
+
+def _frame_spec(system: System, bus: Bus, message: Message) -> Subprogram:
+    """The frame that carries an item: as the layout table has it, with all that is packed."""
+    result = Ref(f"{_frame_name(message)}'Result")
+    facts = [is_framed(message, result)]
+    if message.fd:
+        facts += [
+            equal(call(f"{ANY}.Words", result), _packed(message)),
+            equal(Ref(f"{result.text}.Fd.Rate"), _rate(bus)),
+        ]
+    else:
+        facts.append(equal(call(f"{ANY}.Payload", result), _packed(message)))
+    return Subprogram(
+        _frame_name(message),
+        _send_spec(system, message).params,
+        f"{ANY}.Any_Frame",
+        aspects=(Aspect("Post", both(*facts)),),
+    )
+
+
+def _packed(message: Message) -> Expr:
+    """All words that carry an item."""
+    packed: Expr = call(f"Codecs.{codec_name(message)}.Pack", Ref("Item"))
+    if message.fd and words_of(message) == 1:
+        return Aggregate((Arg("0", packed), Arg("others", number(0))), of_type=f"{FD}.Fd_Words")
+    return packed
+
+
+def _rate(bus: Bus) -> Ref:
+    return Ref(f"{FD}.{'Constant' if bus.data_rate is None else 'Switched'}_Rate")
+
+
+def _frame_body(system: System, bus: Bus, message: Message) -> Subprogram:
+    head = {
+        "Id": fact(message.element, "Id"),
+        "Format": _format(message),
+        "Length": fact(message.element, "Length"),
+    }
+    if message.fd:
+        carried = {"Words": _packed(message), "Rate": _rate(bus)}
+    else:
+        carried = {"Payload": _packed(message)}
+    made = call(f"{ANY}.Whole_Frame", **head, **carried)
+    spec = _frame_spec(system, bus, message)
+    return Subprogram(spec.name, spec.params, spec.result, body=(Return(made),))
+
+
+def _send_body(system: System, message: Message) -> Subprogram:
+    frame = call(_frame_name(message), Ref("Item"))
+    lost: list[Stmt] = [
+        Do(
+            "Health_Counts.Counters.Record_Fault",
+            arguments(Ref("Ravenchart.Health.Queue_Overflow")),
+        ),
+        *note(system, "Fault", message.name, "message", _overflow_number()),
+    ]
+    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    return Subprogram(
+        f"Send_{ada_case(message.name)}",
+        _send_spec(system, message).params,
+        declarations=(
+            UseType("Ravenchart.Can.Send_Status"),
+            Object("Frame", f"{ANY}.Any_Frame", frame, constant=True),
+            Object("Status", "Ravenchart.Can.Send_Status"),
+        ),
+        body=(
+            #  and not the frame of another message of the same type
+            Pragma("Assert", (is_framed(message, Ref("Frame")),)),
+            Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
+            *note(system, "Sent", message.name, "message"),
+            If(((full, tuple(lost)),)),
+        ),
+    )
+
+
+def _overflow_number() -> Expr:
+    return Call(
+        "Ravenchart.Health.Fault_Kind'Pos", arguments(Ref("Ravenchart.Health.Queue_Overflow"))
+    )
+
+
+def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
+    root = root_package(system)
+    name = f"{root}.{ada_case(bus.name)}.Receiver"
+    received = _received(system, bus)
+    slot = bus_row(system, bus, Work.BUS_RECEIVE)
+    spec: tuple[Decl, ...] = (
+        Subprogram("Wait"),
+        Comment(f"[{bus.name}.receive.release] suspend until a frame is there."),
+        UseType(ELEMENT_ID),
+        run_spec("Receive", slot),
+        Comment(f"[{bus.name}.receive] decode it and hand it to its receivers."),
+    )
+    rows: list[tuple[Expr, tuple[Stmt, ...]]] = []
+    declarations: list[Decl] = [
+        UseType("Ravenchart.Can.Identifier"),
+        UseType("Ravenchart.Can.Frame_Format"),
+        Object("Valid", "Boolean"),
+    ]
+    for message in received:
+        item = f"{ada_case(message.name)}_Item"
+        declarations.append(Object(item, type_name(system, message.type)))
+        matches = Chain(
+            "and then",
+            (
+                equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
+                equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
+            ),
+        )
+        puts = tuple(
+            Do(f"{ada_case(t.instance)}.{_taker(message, t)}", arguments(Ref(item)))
+            for t in message.targets
+        )
+        unpack = Do(
+            f"Codecs.{codec_name(message)}.Unpack",
+            arguments(_data(message), Ref(item), Ref("Valid")),
+        )
+        family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
+        carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
+        good = Chain("and then", (Ref("Valid"), carried))
+        known = Pragma("Assert", (is_framed(message, Ref("Frame")),))
+        deliver = (known, *note(system, "Arrived", message.name, "message"), *puts)
+        rows.append((matches, (unpack, If(((good, deliver),)))))
+    body: tuple[Decl, ...] = (
+        Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
+        Subprogram(
+            "Wait",
+            declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
+            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref("Unused_Stamp"))),),
+        ),
+        Subprogram(
+            "Run_Receive",
+            (EXECUTED,),
+            declarations=tuple(declarations),
+            body=(If(tuple(rows)), executed(slot)),
+        ),
+    )
+    context = {f"{root}.Codecs", ANY, LAYOUTS}
+    context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
+    if traced(system):
+        context |= {f"{root}.Trace", "Ravenchart.Traces"}
+    return [
+        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
+        Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
+    ]
+
+
+def _data(message: Message) -> Expr:
+    """The data of a frame, as the codec of a message takes them."""
+    if not message.fd:
+        return call(f"{ANY}.Payload", Ref("Frame"))
+    words = f"{ANY}.Words (Frame)"
+    return Ref(f"{words} (0)" if words_of(message) == 1 else words)

@@ -1,0 +1,126 @@
+"""The watch of a bus: one look at the controller, and the events that its faults raise."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Assign,
+    Call,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    Expr,
+    If,
+    Object,
+    Package,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    call,
+    number,
+)
+from ravenchart.gen.emit.language.events import event_value
+from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
+from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.model.system import Bus, Slot, System, Work
+
+NOTICES = "Ravenchart.Can.Fault_Notices"
+
+
+def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
+    """The unit that looks at the controller; none where nobody wants to know."""
+    if bus.watch is None:
+        return []
+    root = root_package(system)
+    name = f"{root}.{ada_case(bus.name)}.Watch"
+    slot = bus_row(system, bus, Work.BUS_WATCH)
+    spec: tuple[Decl, ...] = (
+        UseType(ELEMENT_ID),
+        run_spec("Watch", slot),
+        Comment(
+            f"[{bus.name}.watch] look at the controller, and raise the events of what has "
+            "happened to it since the last look."
+        ),
+    )
+    context = {NOTICES}
+    owners = {instance for instance, _ in bus.raises}
+    context |= {f"{root}.{ada_case(i)}" for i in owners}
+    context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
+    if traced(system):
+        context |= {f"{root}.Trace", "Ravenchart.Traces", "Ravenchart.Health"}
+    return [
+        Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
+        Unit(
+            header,
+            tuple(sorted(context)),
+            Package(name, _body(system, bus, slot), (SPARK,), is_body=True),
+        ),
+    ]
+
+
+def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
+    items: list[Decl] = [
+        Comment(f"[{bus.name}.watch] the controller at the last look"),
+        Object("Seen", f"{NOTICES}.Fault_Log"),
+    ]
+    looks = bus.recovery_looks
+    locals_: list[Decl] = [
+        Object("Now", f"{NOTICES}.Fault_Log"),
+        Object("Found", f"{NOTICES}.Notices"),
+    ]
+    steps: list[Stmt] = [
+        Do("Controller.Read_Faults", arguments(Ref("Now"))),
+        Assign("Found", call(f"{NOTICES}.Between", Ref("Seen"), Ref("Now"))),
+    ]
+    element = f"{system.nodes[0].name}.{bus.name}"
+    if traced(system):
+        locals_.insert(0, UseType("Ravenchart.Can.Controller_State"))
+        position = call("Ravenchart.Can.Controller_State'Pos", Ref("Now.State"))
+        changed = Chain("/=", (Ref("Now.State"), Ref("Seen.State")))
+        steps.append(If(((changed, note(system, "State", element, "bus", position)),)))
+    steps.append(Assign("Seen", Ref("Now")))
+    for field, fault, events in (
+        ("Error_Passive", "Can_Error_Passive", bus.on_error_passive),
+        ("Bus_Off", "Can_Bus_Off", bus.on_bus_off),
+        ("Recovered", None, bus.on_recovered),
+    ):
+        told: tuple[Stmt, ...] = ()
+        if fault is not None:
+            kind = Ref(f"Ravenchart.Health.{fault}")
+            told = note(
+                system,
+                "Fault",
+                element,
+                "bus",
+                Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind)),
+            )
+        told += tuple(_offer(system, instance, event) for instance, event in events)
+        if told:
+            steps.append(If(((Ref(f"Found.{field}"), told),)))
+    if looks:
+        items += [
+            Comment("looks until recovery from bus-off is requested"),
+            Object("Left", f"{NOTICES}.Look_Count", number(looks)),
+        ]
+        locals_.append(Object("Is_Due", "Boolean"))
+        counted: list[Expr] = [
+            Ref("Left"), Ref("Found"), Ref("Now.State"), number(looks), Ref("Is_Due")
+        ]  # fmt: skip
+        steps.append(Do(f"{NOTICES}.Count_Off", arguments(*counted)))
+        steps.append(If(((Ref("Is_Due"), (Do("Controller.Request_Recovery"),)),)))
+    steps.append(executed(slot))
+    items.append(
+        Subprogram("Run_Watch", (EXECUTED,), declarations=tuple(locals_), body=tuple(steps))
+    )
+    return tuple(items)
+
+
+def _offer(system: System, instance: str, event: str) -> Stmt:
+    root = root_package(system)
+    value = event_value(system.instance(instance).component, event, prefix=f"{root}.")
+    return Do(f"{root}.{ada_case(instance)}.Offer", arguments(value))

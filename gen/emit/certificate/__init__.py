@@ -1,0 +1,1 @@
+"""The timing certificate in Ada, and what the program takes from it."""

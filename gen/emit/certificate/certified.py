@@ -1,0 +1,39 @@
+"""The code takes its facts from the timing certificate, and a build fails where it does not.
+
+An instance of the runtime shows what it was given. Scalars are compared by the compiler,
+tables and settings by gnatprove.
+"""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import constant_name as name_of
+from ravenchart.gen.emit.ada.naming import row_name
+from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Pragma, Ref, both
+from ravenchart.gen.model.system import Processor
+
+from .terms import differs
+
+CERTIFICATE = "Timing_Certificate"
+
+
+def fact(element: str, what: str) -> Ref:
+    """A number of an element in the certificate, as the program sees it."""
+    return Ref(f"{CERTIFICATE}.{name_of(element)}_{what}")
+
+
+def agrees(given: str, certified: Expr, element: str, what: str) -> Decl:
+    """A build fails where an instance was given anything but what is certified."""
+    return differs(Ref(given), certified, element, f"has another {what} than its certificate")
+
+
+def rows_agree(processor: Processor, table: str) -> list[Decl]:
+    """The same for the rows of a table."""
+    found: list[Decl] = []
+    for slot in processor.slots:
+        row = f"{table} ({row_name(slot)})"
+        same = [
+            Chain("=", (Ref(f"{row}.{what}"), fact(slot.element, what)))
+            for what in ("Divisor", "Phase")
+        ]
+        found.append(Pragma("Assert", (both(*same),)))
+    return found

@@ -1,0 +1,126 @@
+"""The chains of a model in the timing certificate: sums of what tasks and messages claim.
+
+Which sums, the model says (`certificate_hops`); claims are numbers only.
+"""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.model.claims import ChainClaim
+from ravenchart.gen.model.system import Chain as ModelChain
+from ravenchart.gen.model.system import Processor, System
+
+from .hops import Hop, hops_of
+from .terms import assured, least, name_of, named, plus, refuse, stated, times
+
+SUFFIX = {"row": "Done", "item": "R", "handed": "Handed"}
+"""What the response of a step is called."""
+
+
+def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[Decl]:
+    """The reaction time and the age of a chain as sums.
+
+    What is released by the step before it counts from the same event, so of such
+    steps the last one stands for all. An output is renewed as often as the rows that
+    make it run, at the least: where a queue is filled, and where a sampled row begins
+    what is sampled next. What repeats the values of a queue renews nothing.
+    """
+    own = f"Chain_{ada_case(chain.name)}"
+    hops = hops_of(system, chain)
+    words = [f"[{chain.name}] from end to end."]
+    reaction: list[Expr] = []
+    age: list[Expr] = []
+    items: list[Decl] = []
+    queued = False
+    waits = iter(claim.waits)
+    for place, hop in enumerate(hops):
+        before = hops[place - 1] if place else None
+        if hop.how == "released" and before is not None:
+            del reaction[-1], age[-1]  # its response counts from the same event
+        elif hop.how == "sampled":
+            words.append(f"{hop.element} samples.")
+            reaction.append(_period(system, hop))
+            if before is not None and not queued:
+                age.append(_period(system, before))
+            queued = False
+        elif before is not None:
+            words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
+            wait = f"{own}_Wait_{place + 1}"
+            items += _queue(system, wait, (before, hop), next(waits, 0), chain.name)
+            reaction.append(Ref(wait))
+            age += [_renewal(system, hops[:place]), Ref(wait)]
+            queued = True
+        reaction.append(_response(hop))
+        age.append(_response(hop))
+    items = [Comment(" ".join(words)), *items]
+    waiting = [hop.element for hop in hops if hop.open]
+    kept = [hop.element for hop in hops[:-1] if not hop.sure]
+    kept += [hop.element for hop in hops if hop.open and hop.how == "queued"]
+    for what, terms, bound, limit, without in (
+        ("Reaction", reaction, claim.reaction, chain.reaction, waiting),
+        ("Age", age, claim.age, chain.age, kept),
+    ):
+        if limit is None:
+            continue
+        items += [
+            stated(f"{own}_{what}", bound),
+            stated(f"{own}_{what}_Limit", limit),
+            named(f"{own}_{what}_Needs", plus(*terms)),
+        ]
+        label, low = f"chain {chain.name}", what.lower()
+        needs, claimed = Ref(f"{own}_{what}_Needs"), Ref(f"{own}_{what}")
+        items += least(claimed, [needs], label, f"can have a longer {low} than claimed")
+        problem = f"can exceed the limit of its {low}"
+        items.append(refuse(claimed, Ref(f"{own}_{what}_Limit"), label, problem))
+        items.append(assured(needs, Ref(f"{own}_{what}_Limit")))
+        if not hops or without:
+            problem = f"can have any {low}: " + (without[0] if without else "its way is broken")
+            items.append(refuse(number(1), number(0), label, problem))
+    return items
+
+
+def _response(hop: Hop) -> Expr:
+    return Ref(f"{name_of(hop.element)}_{SUFFIX[hop.kind]}")
+
+
+def _period(system: System, hop: Hop) -> Expr:
+    """The distance of its outputs."""
+    if hop.kind != "row":
+        return Ref(f"{name_of(hop.element)}_T")
+    processor = system.processor_of(hop.element)
+    return times(number(_divisor(processor, hop.element)), Ref(f"{name_of(processor.name)}_T"))
+
+
+def _renewal(system: System, hops: tuple[Hop, ...]) -> Expr:
+    """How often new values come out of these steps: what only passes them on adds nothing."""
+    makes = [hop for hop in hops if hop.how == "sampled"]
+    return _period(system, makes[-1] if makes else hops[0])
+
+
+def _divisor(processor: Processor, row: str) -> int:
+    return next(slot.divisor for slot in processor.slots if slot.element == row)
+
+
+def _queue(
+    system: System, wait: str, hops: tuple[Hop, Hop], claimed: int, chain: str
+) -> list[Decl]:
+    """How long an item waits for its reader, who takes one in a job.
+
+    The wait is longest for the last item that lateness lets come at once, or for the
+    last that the next job of the writer puts in.
+    """
+    before, hop = hops
+    late, period, cycle = _response(before), _period(system, before), _period(system, hop)
+    burst = f"{wait}_Burst"
+    label, many = f"chain {chain}", number(hop.at_once)
+    last = times(Ref(burst), many, cycle)
+    gone = Chain("*", (number(-1), Ref(burst), period))
+    following = plus(times(plus(Ref(burst), number(1)), many, cycle), late, gone)
+    problem = "can wait longer in a queue than claimed"
+    return [
+        named(burst, plus(Chain("/", (late, period)), number(1))),
+        stated(wait, claimed),
+        refuse(times(many, cycle), period, label, "can fill a queue"),
+        *least(Ref(wait), [last, following], label, problem),
+    ]

@@ -1,0 +1,106 @@
+"""How long the frames of a message are, in the timing certificate.
+
+From the start of the frame to the next one, with as many stuff bits as there can be. A CAN
+FD frame has a part at the nominal rate, which ends behind the bit that switches and goes on
+behind the CRC, and a body in between, at the data rate where the bus has one (ISO 11898-1).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import Chain, Decl, Expr, Ref, number
+from ravenchart.gen.model.system import Bus, Message
+
+from .terms import ONE, ceiling, name_of, named, plus, stated, times
+
+UNSTUFFED = 13
+"""CRC delimiter, acknowledgement and its delimiter, end of frame, three bits to the next frame."""
+
+CONTROL = 5
+"""Error state indicator and length code of a CAN FD frame: what of its body can be stuffed
+besides the data."""
+
+
+def explained(bus: Bus) -> str:
+    """What the numbers of a message's length mean."""
+    text = (
+        "Stuffed: bits that stuffing can lengthen by a quarter; Bits: the longest frame, with 10 "
+        "bits that are not stuffed and 3 to the next frame."
+    )
+    if bus.takes_fd:
+        text += (
+            " Of a CAN FD frame, Head: bits up to the switch of the bit rate; Early: stuff bits "
+            "there; Body: the longest part from there to the end of the CRC; Bits: the rest."
+        )
+    return text
+
+
+def _head(message: Message) -> int:
+    """Bits up to the switch; of a classic frame all that stuffing can lengthen, but the data."""
+    if message.fd:
+        return 36 if message.extended else 17
+    return 54 if message.extended else 34
+
+
+def _checks(message: Message) -> int:
+    """Count of stuff bits, CRC and the fixed stuff bits of a CAN FD frame."""
+    return 4 + 17 + 6 if message.length <= 16 else 4 + 21 + 7
+
+
+def length_terms(message: Message, bus: Bus) -> list[Decl]:
+    """The bits of a message's longest frame, and its time."""
+    own, line = name_of(message.element), ada_case(bus.name)
+    stuffed, bits, rate = Ref(f"{own}_Stuffed"), Ref(f"{own}_Bits"), Ref(f"{line}_Bit_Rate")
+    second = Ref("10**9")
+    if not message.fd:
+        return [
+            named(stuffed.text, Ref(f"{_head(message)} + 8 * {own}_Length")),
+            named(bits.text, plus(stuffed, number(UNSTUFFED), _quarter(stuffed))),
+            named(f"{own}_C", ceiling(times(bits, second), rate)),
+        ]
+    head, early, body = (Ref(f"{own}_{part}") for part in ("Head", "Early", "Body"))
+    behind = _less(stuffed, head), _less(_quarter(stuffed), early)
+    cost: Expr = ceiling(times(plus(bits, body), second), rate)
+    if bus.data_rate is not None:
+        fast = Ref(f"{line}_Data_Rate")
+        cost = ceiling(times(plus(times(bits, fast), times(body, rate)), second), times(rate, fast))
+    return [
+        stated(head.text, _head(message)),
+        named(early.text, _quarter(head)),
+        named(stuffed.text, Ref(f"{head.text} + {CONTROL} + 8 * {own}_Length")),
+        named(body.text, plus(*behind, number(_checks(message)))),
+        named(bits.text, plus(head, early, number(UNSTUFFED))),
+        named(f"{own}_C", cost),
+    ]
+
+
+def _quarter(stuffed: Expr) -> Expr:
+    """Stuff bits at most: one behind the first five bits, then one behind every four."""
+    return Chain("/", (_less(stuffed, ONE), number(4)))
+
+
+def _less(left: Expr, right: Expr) -> Expr:
+    return Chain("-", (left, right))
+
+
+def rate_terms(bus: Bus) -> list[Decl]:
+    """The rates of a bus, and one bit in nanoseconds."""
+    line = ada_case(bus.name)
+    rate = f"{line}_Bit_Rate"
+    switched = [] if bus.data_rate is None else [stated(f"{line}_Data_Rate", bus.data_rate)]
+    bit = named(f"{line}_Bit", ceiling(number(10**9), Ref(rate)))
+    return [stated(rate, bus.bit_rate), *switched, bit]
+
+
+def span(message: Message, bus: Bus) -> Fraction:
+    """The longest frame, in bits at the nominal rate."""
+    head = _head(message)
+    if not message.fd:
+        stuffed = head + 8 * message.length
+        return Fraction(stuffed + UNSTUFFED + (stuffed - 1) // 4)
+    stuffed = head + CONTROL + 8 * message.length
+    early = (head - 1) // 4
+    body = stuffed - head + (stuffed - 1) // 4 - early + _checks(message)
+    return head + early + UNSTUFFED + Fraction(body * bus.bit_rate, bus.data_rate or bus.bit_rate)

@@ -1,0 +1,130 @@
+"""What a chain's values wait for, read from the model: the steps that its claims are about.
+
+A row later in the same table, run as often, follows at once; any other row samples at
+its own times, and the handler of a queued port takes one value in a job. The driver
+and the frame follow what sends, and a reception hands over what arrives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from ravenchart.gen.language.terms import named
+from ravenchart.gen.model.component import Activity, PortKind
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Chain, Processor, Slot, System
+
+
+@dataclass(frozen=True, slots=True)
+class Hop:
+    """One step of a chain: a row, a task, a message, or a message's handing over.
+
+    ``how`` values come to it: ``released`` by the step before or the chain's event,
+    ``sampled``, or ``queued`` with so many at once. ``open``: values may wait for as long
+    as its region has other things to do, or as others fill the same queue. ``sure``: each
+    of its jobs makes a new output, and it has a job in every period.
+    """
+
+    element: str
+    kind: str
+    """``row``, ``item`` (a task or message) or ``handed``."""
+    how: str
+    at_once: int = 1
+    open: bool = False
+    sure: bool = True
+
+
+def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
+    """The steps of a chain, from its way; none where that is broken."""
+    hops: list[Hop] = []
+    sure = True  # whether the row before renews what stands between it and the next
+    for number, place in enumerate(chain.way):
+        if place.startswith("message "):
+            following = next(iter(chain.way[number + 1 :]), "")
+            hops += _message(system, place.removeprefix("message "), following)
+            continue
+        owner, _, name = place.partition(".")
+        component = system.instance(owner).component
+        rows = {item.name: item for item in component.runnables()}
+        handled = name in {port.name for port in component.inputs()}
+        if not handled and name not in rows:
+            continue
+        if not sure:
+            hops[-1] = replace(hops[-1], sure=False)
+        sure = True
+        if handled:
+            hops.append(_handler(system, owner, name, hops))
+        else:
+            row = rows[name]
+            hops.append(_row(system, place, row, hops))
+            if number + 1 < len(chain.way):
+                sure = component.renews(row, chain.way[number + 1].rpartition(".")[2])
+    return tuple(_irregular(system, chain, hops))
+
+
+def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
+    """The steps, the first not sure where it is a sporadic message that something samples.
+
+    What it releases runs as seldom as it comes; what samples it may find the same value
+    any number of times.
+    """
+    begins = chain.way[0].removeprefix("message ") if chain.way else ""
+    rare = any(message.sporadic and message.name == begins for message in system.messages)
+    if rare and any(hop.how != "released" for hop in hops[1:]):
+        return [replace(hops[0], sure=False), *hops[1:]]
+    return hops
+
+
+def _message(system: System, name: str, following: str) -> Iterator[Hop]:
+    """The driver's work and the frame, then its reception for the port that follows."""
+    message = named(system.messages, name)
+    if message.source is not None:
+        yield Hop(message.sending, "item", "released")
+    yield Hop(message.element, "item", "released")
+    received = system.reception(message, following)
+    if received is not None:
+        yield Hop(received.driver, "item", "released")
+        yield Hop(received.element, "handed", "released")
+
+
+def _row(system: System, element: str, row: Region | Activity, hops: list[Hop]) -> Hop:
+    """A region or activity."""
+    follows = bool(hops) and _follows(system, hops[-1], element)
+    waits = isinstance(row, Region) and row.takes_turns
+    return Hop(element, "row", "released" if follows else "sampled", open=waits)
+
+
+def _handler(system: System, owner: str, port: str, hops: list[Hop]) -> Hop:
+    """The port region of an instance, as far as it handles this port."""
+    element = f"{owner}.ports"
+    queued = system.instance(owner).component.port(port).kind is PortKind.QUEUED
+    many = [
+        row.steps_per_execution if isinstance(row, Region) else 1
+        for connection in system.connections
+        if (connection.target.instance, connection.target.port) == (owner, port)
+        for row in system.instance(connection.source.instance).component.runnables()
+        if connection.source.port in row.sends
+    ]
+    if queued and hops and sum(many) > 1:
+        return Hop(element, "row", "queued", max(many), open=len(many) > 1)
+    if hops and _follows(system, hops[-1], element):
+        return Hop(element, "row", "released")
+    return Hop(element, "row", "queued" if queued and hops else "sampled")
+
+
+def _follows(system: System, before: Hop, element: str) -> bool:
+    """Whether a row runs in the same jobs as the one before, after it."""
+    if before.kind != "row":
+        return False
+    processor = system.processor_of(element)
+    if system.processor_of(before.element).name != processor.name:
+        return False
+    order = [slot.element for slot in processor.slots]
+    one, other = (_slot(processor, name) for name in (before.element, element))
+    alike = (one.divisor, one.phase) == (other.divisor, other.phase)
+    return alike and order.index(before.element) < order.index(element)
+
+
+def _slot(processor: Processor, name: str) -> Slot:
+    return next(slot for slot in processor.slots if slot.element == name)

@@ -1,0 +1,130 @@
+"""Deadlines that a processor keeps by its offset: every instant at which releases meet.
+
+Its claimed response is that for any offsets, and above the deadline. A busy period in which
+it suffers begins at an instant at which a processor of its level is released, late by its
+jitter; jobs that arrive earlier than that jitter before it are done (Tindell 1994). So of
+processors the releases due in [instant - J, instant + W) count, and no others. That no instant
+is left out is shown as well: between a listed one and the next there is none within the reach,
+and after the last of a cycle comes the first once more.
+"""
+
+from __future__ import annotations
+
+from ravenchart.gen.derive.instants import Instant, cycle_of, instants, lateness, phased
+from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.claims import Claim
+from ravenchart.gen.model.system import System, Task
+
+from .demand import Count, anyhow, costs, demand
+from .terms import LATE, ONE, assured, bounded, ceiling, name_of, named, plus, refuse, stated, times
+
+UNLISTED = "can be late from an instant that is not listed"
+
+
+def offset_claims(system: System, task: Task, claim: Claim) -> list[Decl]:
+    """That a job is done by its deadline, whichever instant its busy period begins at."""
+    own, label = name_of(task.element), task.element
+    reach = claim.response - lateness(system, task) - task.deadline
+    bound, jitter, period, deadline = (Ref(f"{own}_{letter}") for letter in "RJTD")
+    items: list[Decl] = [
+        Comment(
+            f"[{label}] is late with other offsets, by R, and not with its own. At are the "
+            "instants of a Cycle at which a processor of its priority or a higher one is "
+            "released, as late as can be, less than Reach before its own job is due. Begun "
+            "at any other, that job takes Reach less than R, or even less. Of these processors "
+            "the releases that are due from At - J on, before At + W, delay it. Missed are "
+            "instants between Since, that of the one before or its Reach, and At."
+        ),
+        stated(f"{own}_Reach", reach),
+        refuse(Chain("-", (bound, jitter, Ref(f"{own}_Reach"))), deadline, label, LATE),
+        refuse(deadline, period, label, "can be released again before it completes"),
+    ]
+    found = instants(system, task, reach) or ()
+    if not found:
+        return [*items, refuse(bound, deadline, label, LATE)]
+    between = _begun(system, task)
+    windows = (*claim.since, *[0] * len(found))
+    for place, (instant, length) in enumerate(zip(found, windows, strict=False), 1):
+        names = [f"{own}_{part}_{place}" for part in ("At", "W_At", "Needs_At")]
+        at, window, needs = map(Ref, names)
+        due = plus(Ref(f"{own}_O"), times(number(instant.release), period))
+        work = [
+            Ref(f"{own}_{letter}")
+            for letter in costs(task)
+            if instant.release % int(letter.partition("_")[2] or 1) == 0
+        ]
+        count = _counted(system, task, at, window)
+        items += [
+            stated(names[0], instant.time),
+            stated(names[1], length),
+            named(names[2], demand(system, task, window, plus(*work), count)),
+            *bounded(needs, window, label),
+            refuse(plus(at, window), plus(due, deadline), label, LATE),
+            refuse(plus(due, jitter, ONE), plus(at, period), label, UNLISTED),
+            assured(needs, window),
+        ]
+        reached = Chain("-", (due, Ref(f"{own}_Reach")))
+        between += _all_between(system, task, found, place, reached, reach)
+    return items + between
+
+
+def _begun(system: System, task: Task) -> list[Decl]:
+    """That the releases of its level repeat with the cycle, which all have begun before."""
+    own, label = name_of(task.element), task.element
+    cycle = Ref(f"{own}_Cycle")
+    tasks = phased(system, task)
+    items: list[Decl] = [stated(f"{own}_Cycle", cycle_of(tasks))]
+    for other in tasks:
+        name = name_of(other.element)
+        for divisor in sorted({slot.divisor for slot in other.slots}):
+            period = times(number(divisor), Ref(f"{name}_T"))
+            whole = times(Chain("/", (cycle, period)), period)
+            items.append(refuse(cycle, whole, label, UNLISTED))
+        first = plus(Ref(f"{name}_O"), Ref(f"{name}_J"), cycle)
+        items.append(refuse(first, Ref(f"{own}_At_1"), label, UNLISTED))
+    return items
+
+
+def _all_between(
+    system: System, task: Task, found: tuple[Instant, ...], place: int, reached: Expr, reach: int
+) -> list[Decl]:
+    """That no instant is left out between one that is listed and that before it."""
+    own, label = name_of(task.element), task.element
+    at, since = Ref(f"{own}_At_{place}"), Ref(f"{own}_Since_{place}")
+    before: Expr = Ref(f"{own}_At_{place - 1}")
+    last = found[place - 2].time
+    if place == 1:
+        before = Chain("-", (Ref(f"{own}_At_{len(found)}"), Ref(f"{own}_Cycle")))
+        last = Ns(last - cycle_of(phased(system, task)))
+    due = task.offset + found[place - 1].release * task.period
+    missed = []
+    for other in phased(system, task):
+        name = name_of(other.element)
+        begin = before if other is task else since
+        late, period = (Ref(f"{name}_O"), Ref(f"{name}_J")), Ref(f"{name}_T")
+        end = Chain("-", (plus(begin, ONE), *late))
+        missed.append(Chain("-", (ceiling(Chain("-", (at, *late)), period), ceiling(end, period))))
+    return [
+        named(f"{own}_Since_{place}", before if last >= due - reach else reached),
+        refuse(before, since, label, UNLISTED),
+        refuse(plus(since, ONE), at, label, UNLISTED),
+        refuse(plus(*missed), number(0), label, UNLISTED),
+    ]
+
+
+def _counted(system: System, task: Task, at: Expr, window: Expr) -> Count:
+    """Releases of processors that are due in the window, and the most of all others."""
+    known = {other.element for other in phased(system, task)}
+    others = anyhow(window)
+
+    def count(other: Task, divisor: int) -> Expr:
+        if other.element not in known:
+            return others(other, divisor)
+        own = name_of(other.element)
+        offset, period = Ref(f"{own}_O"), times(number(divisor), Ref(f"{own}_T"))
+        end = Chain("-", (plus(at, window), offset))
+        begin = Chain("-", (at, Ref(f"{own}_J"), offset))
+        return Chain("-", (ceiling(end, period), ceiling(begin, period)))
+
+    return count

@@ -1,0 +1,275 @@
+"""The timing certificate: every term a named number, every claim checked by the compiler.
+
+Named numbers are universal integers: exact, without a largest value, and known
+before anything runs. Each claim is a time within which something must be done, and
+beside it stands the demand that can arise within that time; the least time that
+holds its demand bounds the response, so a claim that holds its demand is no less.
+The recurrences are those of Joseph and Pandya 1986, Audsley et al. 1993 (tasks),
+Lehoczky 1990 (several jobs) and Davis, Burns, Bril, Lukkien 2007 (frames).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Set
+
+from ravenchart.gen.derive.completion import SUPERVISOR
+from ravenchart.gen.derive.instants import has_offset
+from ravenchart.gen.emit.ada.naming import ada_case, priority
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Aspect,
+    Chain,
+    Comment,
+    Decl,
+    Expr,
+    Object,
+    Package,
+    Ref,
+    Unit,
+    number,
+)
+from ravenchart.gen.model.claims import ChainClaim, Claims
+from ravenchart.gen.model.system import Node, SharedObject, System, Task
+
+from .buses import bus_claims, bus_terms
+from .chains import chain_claims
+from .demand import costs, demand, most, switches, work
+from .hops import hops_of
+from .offsets import offset_claims
+from .tables import order, table_terms
+from .terms import (
+    LATE,
+    SLOW,
+    arrivals,
+    assured,
+    before,
+    bounded,
+    least,
+    name_of,
+    named,
+    plus,
+    refuse,
+    stated,
+    times,
+)
+
+LETTERS = (
+    "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
+    "event to the release, C longest execution (with context switches) or transmission, "
+    "B blocking, R the claimed response from the event, W the time claimed from the start of a "
+    "busy period. A is J + T - 1, so that (W + A) / T is the number of releases within W. Needs "
+    "is the demand that arises within W, and equals it: where it is more, W is too short; where it "
+    "is less, a term is missing."
+)
+
+
+def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
+    """The certificate of a system; its claims are those of the analysis."""
+    items: list[Decl] = [
+        Comment("SHA-256 of the model: the program and its trace carry it."),
+        Object("Model_Digest", "String", Ref(f'"{system.digest}"'), constant=True),
+        Comment(LETTERS),
+    ]
+    elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
+    items.append(Comment("The claimed responses: each is some other's lateness, or its own bound."))
+    items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
+    for node in system.nodes:
+        own = ada_case(node.name)
+        items += [
+            Comment(f"[{node.name}] what the platform takes, each at its longest"),
+            stated(f"{own}_Context_Switch", node.context_switch),
+            stated(f"{own}_Critical_Section", node.critical_section),
+        ]
+        items += [
+            stated(_section(system, item).text, item.section) for item in _longer(system, node)
+        ]
+        if node.release:
+            items.append(stated(f"{own}_Release", node.release))
+        if node.tick is not None:
+            items.append(stated(f"{own}_Tick_T", node.tick.period))
+            items.append(stated(f"{own}_Tick_C", node.tick.wcet))
+    for task in system.tasks:
+        items += _terms(system, task)
+    for node in system.nodes:
+        items += order(system, node)
+    for bus in system.buses:
+        items += bus_terms(system, bus)
+    hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
+    rows = {hop.element for hop in hops if hop.kind == "row"}
+    handed = {hop.element for hop in hops if hop.kind == "handed"}
+    for task in system.tasks:
+        items += _claims(system, task, claims, rows)
+    for node in system.nodes:
+        items += _silences(system, node)
+    for bus in system.buses:
+        items += bus_claims(system, bus, claims, handed)
+    for chain in system.chains:
+        items += chain_claims(system, chain, claims.chains.get(chain.name, ChainClaim()))
+    package = Package(
+        f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
+    )
+    return Unit(header, ("System",), package)
+
+
+def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
+    """The object through which a task of lower priority can delay ``task`` longest, and that."""
+    level = {t.element: t.priority for t in system.tasks} | {"main": 0}
+    found: tuple[SharedObject, str] | None = None
+    for item in system.objects:
+        lower = next((user for user in item.users if level[user] < task.priority), None)
+        longer = found is None or item.section > found[0].section
+        reaches = item.node == task.node and item.ceiling >= task.priority
+        if reaches and lower is not None and longer:
+            found = item, lower
+    return found
+
+
+def _longer(system: System, node: Node) -> list[SharedObject]:
+    """The objects of a node with a section of their own: the longest call of a device."""
+    return [
+        item
+        for item in system.objects
+        if item.node == node.name and item.section != node.critical_section
+    ]
+
+
+def _section(system: System, item: SharedObject) -> Ref:
+    """The longest time inside an object."""
+    node = system.node(item.node)
+    own = item.element if item in _longer(system, node) else f"{item.node}.critical"
+    return Ref(f"{name_of(own)}_Section")
+
+
+def _silences(system: System, node: Node) -> list[Decl]:
+    """When a processor is silent, and when its supervisor has found it at the latest."""
+    if node.supervision is None:
+        return []
+    own, task = ada_case(node.name), name_of(f"{node.name}.{SUPERVISOR}")
+    text = (
+        f"[{node.name}] a release that has not completed L after it was due makes its processor "
+        "silent; the supervisor has reported that S after the release was due"
+    )
+    items: list[Decl] = [Comment(text), stated(f"{own}_Margin", node.supervision.margin)]
+    for processor in system.processors:
+        if processor.node == node.name:
+            name = name_of(processor.name)
+            items.append(named(f"{name}_L", plus(Ref(f"{name}_D"), Ref(f"{own}_Margin"))))
+            found = plus(Ref(f"{name}_L"), Ref(f"{task}_T"), Ref(f"{task}_R"))
+            items.append(named(f"{name}_S", found))
+    return items
+
+
+# --- Terms ---------------------------------------------------------------------------
+
+
+def _terms(system: System, task: Task) -> list[Decl]:
+    """What is known of a task."""
+    own = name_of(task.element)
+    held = blocker(system, task)
+    blocking = _section(system, held[0]) if held else number(0)
+    items: list[Decl] = [Comment(_words(system, task, held))]
+    items.append(named(f"{own}_Priority", priority(task.priority)))
+    for slot in task.slots:
+        items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
+    if not task.slots:
+        items.append(stated(f"{own}_Budget", task.budget))
+    items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
+    if has_offset(system, task):
+        items.append(stated(f"{own}_O", task.offset))
+    items += table_terms(task)
+    items.append(named(f"{own}_J", _jitter(system, task)))
+    items.append(arrivals(own))
+    items += [named(f"{own}_{letter}", value) for letter, value in costs(task).items()]
+    items.append(named(f"{own}_B", blocking))
+    return items
+
+
+def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) -> str:
+    """What the numbers of a task are."""
+    if task.released_by is not None:
+        what = f"the driver's work, released by {task.released_by}, which is J late"
+    elif task.sporadic:
+        what = "released by arrivals, no closer than T; it may wait for T to be over as well"
+    else:
+        what = "released every T"
+        if has_offset(system, task):
+            what += ", first O after the epoch of its node"
+    text = f"[{task.element}] {what}."
+    text += f" B: {held[1]} may be inside {held[0].element}." if held else " Nothing blocks it."
+    rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
+    if rare:
+        every = ", ".join(f"C_{n}: rows of every {n}th release" for n in rare)
+        text += f" C: what every release executes; {every}."
+    return text
+
+
+def _jitter(system: System, task: Task) -> Expr:
+    """The latest release after the event: the tick, and the response of what releases it."""
+    terms: list[Expr] = []
+    if task.jitter or task.released_by is None:
+        terms.append(number(task.jitter))
+    if task.released_by is not None:
+        terms.append(Ref(f"{name_of(task.released_by)}_R"))
+    if task.timed and system.node(task.node).tick is not None:
+        terms = [term for term in terms if term != number(0)]
+        terms.append(Ref(f"{ada_case(task.node)}_Tick_T"))
+    return plus(*terms)
+
+
+# --- Claims --------------------------------------------------------------------------
+
+
+def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[Decl]:
+    """The jobs of a task, one after the other, and what they show of it and of these rows."""
+    own, label = name_of(task.element), task.element
+    windows = claims.of(label).windows
+    jitter, period, bound = (Ref(f"{own}_{letter}") for letter in "JTR")
+    items: list[Decl] = [
+        Comment(f"[{label}] what can delay it: jobs of the same or higher priority")
+    ]
+    last: Expr = Ref(f"{own}_W")
+    ends: list[Expr] = []
+    for job, window in enumerate(windows):
+        tail = "" if len(windows) == 1 else f"_{job + 1}"
+        last, needs = Ref(f"{own}_W{tail}"), f"{own}_Needs{tail}"
+        if len(windows) == 1:
+            items.append(named(f"{own}_W", Chain("-", (bound, jitter))))
+        else:
+            items.append(stated(f"{own}_W{tail}", window))
+        done = work(task, most(number(job + 1)))
+        if len(windows) == 1:
+            done = plus(*(Ref(f"{own}_{letter}") for letter in costs(task)))
+        items.append(named(needs, demand(system, task, last, done)))
+        items += bounded(Ref(needs), last, label)
+        ends.append(plus(jitter, last, *before(own, job)))
+    if len(windows) > 1:
+        items += least(bound, ends, label, SLOW)
+    limit = times(number(len(windows)), period)
+    problem = "can be released again before it completes"
+    items.append(refuse(plus(jitter, last), limit, label, problem))
+    if claims.of(label).since:
+        items.append(assured(Ref(f"{own}_Needs{tail}"), last))
+        items += offset_claims(system, task, claims.of(label))
+    else:
+        items.append(refuse(bound, Ref(f"{own}_D"), label, LATE))
+        items += [assured(Ref(f"{own}_Needs{tail}"), last), assured(bound, Ref(f"{own}_D"))]
+    for place, slot in enumerate(task.slots, 1):
+        if slot.element in rows:
+            items += _row(system, task, place, claims.rows.get(slot.element, 0))
+    return items
+
+
+def _row(system: System, task: Task, place: int, bound: int) -> list[Decl]:
+    """When the first ``place`` rows of a job are done, in a release that executes them all."""
+    row, own = task.slots[place - 1].element, name_of(task.element)
+    done = name_of(row)
+    budgets = [Ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
+    needed = plus(switches(task), *budgets)
+    window = Ref(f"{done}_W")
+    return [
+        Comment(f"[{row}] done, from the event that releases its processor"),
+        stated(f"{done}_Done", bound),
+        named(f"{done}_W", Ref(f"{done}_Done - {own}_J")),
+        named(f"{done}_Needs", demand(system, task, window, needed)),
+        *bounded(Ref(f"{done}_Needs"), window, row),
+    ]

@@ -1,0 +1,1 @@
+"""Commands in Ada: devices, calls, and both between nodes."""

@@ -1,0 +1,384 @@
+"""How an instance calls what its required commands are bound to, and how calls are served."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.derive.calls import (
+    callers_of,
+    calls_from_afar,
+    delivered,
+    published_by,
+    repliers,
+    replies_read,
+)
+from ravenchart.gen.emit.ada.naming import ada_case, default_value, priority, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Comment,
+    Decl,
+    Do,
+    EnumType,
+    Expr,
+    If,
+    Object,
+    Package,
+    Param,
+    Pragma,
+    RecordType,
+    Ref,
+    Say,
+    Stmt,
+    Subprogram,
+    UseType,
+    arguments,
+    number,
+)
+from ravenchart.gen.emit.ada.syntax import Chain as Operation
+from ravenchart.gen.emit.ada.syntax import Component as Field
+from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.language.events import event_value
+from ravenchart.gen.language.terms import Type, named
+from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
+from ravenchart.gen.model.component import Component, Port
+from ravenchart.gen.model.system import Instance, System
+
+from .remote_calls import (
+    answers,
+    asked_from_afar,
+    caller_number,
+    heard,
+    replies,
+    reply_to,
+    sent_call,
+    value_of,
+)
+from .remote_reads import kept
+
+STATUS = "Ravenchart.Queueing.Put_Status"
+
+
+# --- Who is called -----------------------------------------------------------------
+
+
+def providers(system: System, instance: Instance) -> tuple[str, ...]:
+    """The packages, below the root, of what an instance calls and of whom it replies to."""
+    found: dict[str, None] = {}
+    for binding in system.bindings:
+        provider = binding.provider
+        if isinstance(provider, Server):
+            owner = system.instance(provider.instance)
+            if binding.instance == instance.name:
+                found[ada_case(owner.name)] = found[ada_case(owner.component.name)] = None
+            elif owner.name == instance.name and delivers(system, binding):
+                found[ada_case(binding.instance)] = None
+        elif isinstance(provider, Device) and binding.instance == instance.name:
+            found[ada_case(provider.name)] = None
+    found.pop(ada_case(instance.name), None)
+    return tuple(found)
+
+
+def delivers(system: System, binding: Binding) -> bool:
+    """Whether anybody takes the replies to a call."""
+    return delivered(system.instance(binding.instance).component, binding.need)
+
+
+def call_body(system: System, instance: Instance, port: Port, lost: tuple[Stmt, ...]) -> Subprogram:
+    """A required command as the instance calls it, whatever provides it.
+
+    ``lost`` counts a call to another node that is refused, since one is under way.
+    """
+    binding = system.bound[instance.name, port.name]
+    params = () if port.is_void else (Param("Item", "in", type_name(system, port.type)),)
+    if isinstance(binding.provider, Server):
+        declarations, body = _queued(system, instance, binding, binding.provider)
+    elif isinstance(binding.provider, Remote):
+        full: tuple[Stmt, ...] = lost
+        if binding.need.on_full is not None:
+            event = event_value(instance.component, binding.need.on_full)
+            full = (*lost, Do("Offer", arguments(event)))
+        declarations, body = sent_call(system, binding.provider, full)
+    else:
+        assert isinstance(binding.provider, Device)
+        declarations, body = _direct(system, instance, binding, binding.provider)
+    name = f"Call_{ada_case(port.name)}"
+    return Subprogram(name, params, declarations=tuple(declarations), body=tuple(body))
+
+
+def _direct(
+    system: System, instance: Instance, binding: Binding, device: Device
+) -> tuple[list[Decl], list[Stmt]]:
+    need = binding.need
+    given = list(arguments(Ref("Item")) if need.argument is not None else ())
+    if need.reply is None:
+        return [], [Do(f"{ada_case(device.name)}.{ada_case(need.name)}", tuple(given))]
+    taken = delivers(system, binding)
+    reply = "Reply" if taken else "Unused_Reply"
+    given.append(Arg(None, Ref(reply)))
+    call = Do(f"{ada_case(device.name)}.{ada_case(need.name)}", tuple(given))
+    after = (Do(f"Take_{ada_case(need.name)}", arguments(Ref(reply))),) if taken else ()
+    return [Object(reply, type_name(system, need.reply))], [call, *after]
+
+
+def _queued(
+    system: System, instance: Instance, binding: Binding, server: Server
+) -> tuple[list[Decl], list[Stmt]]:
+    need = binding.need
+    asking = callers_of(system, server.instance, server.interface)
+    caller = number(asking.index(binding))
+    request = _request(system, server, need, caller, Ref("Item"))
+    status = "Status" if need.on_full is not None else "Unused_Status"
+    put = f"Put_{ada_case(server.interface.name)}"
+    if server.instance != instance.name:
+        put = f"{ada_case(server.instance)}.{put}"
+    body: list[Stmt] = [Do(put, arguments(request, Ref(status)))]
+    declarations: list[Decl] = [Object(status, STATUS)]
+    if need.on_full is not None:
+        declarations.append(UseType(STATUS))
+        full = Operation("/=", (Ref(status), Ref("Ravenchart.Queueing.Queued")))
+        event = event_value(instance.component, need.on_full)
+        body.append(If(((full, (Do("Offer", arguments(event)),)),)))
+    return declarations, body
+
+
+def _request(system: System, server: Server, need: Need, caller: Expr, item: Expr) -> Aggregate:
+    """What waits in the queue of an interface: the command, who asks, and the argument."""
+    owner = ada_case(system.instance(server.instance).component.name)
+    package = f"{owner}.{requests_package(server.interface)}"
+    rows = [Arg("Name", Ref(f"{package}.{ada_case(need.name)}_Asked"))]
+    if numbered(server.interface):
+        rows.append(Arg("Caller", caller))
+    if need.argument is not None:
+        rows.append(Arg(ada_case(need.name), item))
+    if len(rows) < len(_fields(system, server.interface)):
+        rows.append(Arg("others", Ref("<>")))
+    return Aggregate(tuple(rows), f"{package}.Request")
+
+
+def from_afar(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
+    """For each call, reply and value from another node, spec and body of what takes it."""
+    for provided, message in heard(system, instance):
+        assert message.call is not None
+        need = message.call.need
+        local = len(callers_of(system, instance.name, provided))
+        place = calls_from_afar(system, instance.name, provided).index(message)
+        caller = caller_number(local, place, message)
+        item = Ref("") if need.argument is None else value_of(system, message, need.argument)
+        request = _request(system, message.call.server, need, caller, item)
+        put = f"Put_{ada_case(provided.name)}"
+        yield asked_from_afar(system, message, request, put)
+    yield from answers(system, instance)
+    yield from kept(system, instance)
+
+
+# --- Replies -----------------------------------------------------------------------
+
+
+def taken_replies(system: System, instance: Instance) -> Iterator[Binding]:
+    """The calls of an instance whose replies it takes."""
+    for binding in system.bindings:
+        called = binding.need.reply is not None and not binding.need.is_read
+        own = binding.instance == instance.name and called
+        if own and repliers(system, binding) and delivers(system, binding):
+            yield binding
+
+
+def take_spec(system: System, need: Need) -> Subprogram:
+    """Takes a reply: for whoever executed the command."""
+    assert need.reply is not None
+    params = (Param("Reply", "in", type_name(system, need.reply)),)
+    return Subprogram(f"Take_{ada_case(need.name)}", params)
+
+
+def take_body(system: System, instance: Instance, need: Need) -> Subprogram:
+    """Keeps a reply for those who look at it, and raises its event."""
+    body: list[Stmt] = []
+    spec = take_spec(system, need)
+    is_looked_at = False
+    if need.reply_item in replies_read(instance.component):
+        is_looked_at = True
+        body.append(Do(f"{ada_case(str(need.reply_item))}_Board.Write", arguments(Ref("Reply"))))
+    if need.on_reply is not None:
+        is_looked_at |= named(instance.component.events, need.on_reply).type is not None
+        event = event_value(instance.component, need.on_reply, Ref("Reply"))
+        body.append(Do("Offer", arguments(event)))
+    unused = () if is_looked_at else (Pragma("Unreferenced", (Ref("Reply"),)),)
+    return Subprogram(spec.name, spec.params, declarations=unused, body=tuple(body))
+
+
+def reply_boards(system: System, instance: Instance) -> Iterator[Decl]:
+    """The last replies that somebody looks at."""
+    read = replies_read(instance.component)
+    for need in instance.component.needs:
+        if need.reply_item in read and need.reply is not None:
+            ceiling = priority(system.object(f"{instance.name}.{need.reply_item}").ceiling)
+            args = arguments(
+                Element_Type=Ref(type_name(system, need.reply)),
+                Initial=default_value(system, need.reply),
+                Ceiling=ceiling,
+            )
+            board = f"{ada_case(need.reply_item)}_Board"
+            yield Instantiation(board, "Ravenchart.Blackboards", args)
+
+
+# --- Requests ----------------------------------------------------------------------
+
+
+def requests_package(provided: Provided) -> str:
+    """Nested in the component's package: what can be asked of an interface."""
+    return f"{ada_case(provided.name)}_Requests"
+
+
+def request_param(provided: Provided) -> str:
+    """The parameter by which the activity that serves an interface gets a request."""
+    return f"{ada_case(provided.name)}_Request"
+
+
+def reply_param(command: str) -> str:
+    """The parameter by which the activity that serves an interface gives a reply."""
+    return f"{ada_case(command)}_Reply"
+
+
+def numbered(provided: Provided) -> bool:
+    """Whether a request says who asks: somebody may get a reply."""
+    return any(one.reply is not None for one in provided.requests)
+
+
+def _fields(system: System, provided: Provided) -> tuple[Field, ...]:
+    first = Ref(f"{ada_case(provided.requests[0].name)}_Asked")
+    fields = [Field("Name", "Command", first)]
+    if numbered(provided):
+        fields.append(Field("Caller", "Natural", number(0)))
+    given: list[tuple[str, Type]] = [
+        (one.name, one.argument) for one in provided.requests if one.argument is not None
+    ]
+    fields += [Field(ada_case(n), type_name(system, t), default_value(system, t)) for n, t in given]
+    return tuple(fields)
+
+
+def request_types(system: System, component: Component) -> Iterator[Decl]:
+    """For each interface that is served, what can be asked of it."""
+    for provided in component.provides:
+        if provided.requests:
+            yield Comment(f"[{component.name}.{provided.name}] what can be asked, with arguments")
+            items: tuple[Decl, ...] = (
+                EnumType("Command", tuple(f"{ada_case(r.name)}_Asked" for r in provided.requests)),
+                RecordType("Request", _fields(system, provided)),
+                Object(
+                    "No_Request", "Request", Aggregate((Arg("others", Ref("<>")),)), constant=True
+                ),
+            )
+            yield Package(requests_package(provided), items)
+
+
+def serving_params(system: System, component: Component, activity: str) -> Iterator[Param]:
+    """What the activity that serves an interface gets besides: a request, and room for replies."""
+    provided = component.served_by(activity)
+    if provided is not None:
+        package = f"{ada_case(component.name)}.{requests_package(provided)}"
+        yield Param(request_param(provided), "in", f"{package}.Request")
+        for one in provided.requests:
+            if one.reply is not None:
+                yield Param(reply_param(one.name), "out", type_name(system, one.reply))
+
+
+def put_spec(instance: Instance, provided: Provided) -> Subprogram:
+    """Queues a request."""
+    package = f"{ada_case(instance.component.name)}.{requests_package(provided)}"
+    params = (Param("Item", "in", f"{package}.Request"), Param("Status", "out", STATUS))
+    return Subprogram(f"Put_{ada_case(provided.name)}", params)
+
+
+def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> Subprogram:
+    """Queues a request; a full queue rejects it, which ``lost`` counts."""
+    spec = put_spec(instance, provided)
+    queue = f"{ada_case(provided.name)}_Queue"
+    full = Operation("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+    body = (Do(f"{queue}.Put", arguments(Ref("Item"), Ref("Status"))), If(((full, lost),)))
+    return Subprogram(spec.name, spec.params, declarations=(UseType(STATUS),), body=body)
+
+
+def asked(system: System, instance: Instance, provided: Provided) -> list[Decl]:
+    """What the row that serves an interface declares: a request, and room for replies."""
+    package = f"{ada_case(instance.component.name)}.{requests_package(provided)}"
+    found: list[Decl] = [
+        Object("Asked", f"{package}.Request"),
+        Object("Taken", "Ravenchart.Queueing.Take_Status"),
+        UseType("Ravenchart.Queueing.Take_Status"),
+    ]
+    rooms = _rooms(system, instance, provided)
+    found += [Object(room, type_name(system, of_type)) for _, room, of_type in rooms]
+    return found
+
+
+def asked_args(system: System, instance: Instance, provided: Provided) -> list[Arg]:
+    """What the activity that serves an interface is given besides; see `serving_params`."""
+    rooms = _rooms(system, instance, provided)
+    given = (Arg(parameter, Ref(room)) for parameter, room, _ in rooms)
+    return [Arg(request_param(provided), Ref("Asked")), *given]
+
+
+def _rooms(
+    system: System, instance: Instance, provided: Provided
+) -> Iterator[tuple[str, str, Type]]:
+    """For each reply its parameter, the room for it, and its type; some are sent to nobody."""
+    local = callers_of(system, instance.name, provided)
+    afar = calls_from_afar(system, instance.name, provided)
+    wanted = {binding.need.name for binding in local if delivers(system, binding)}
+    backs = (reply_to(system, message) for message in afar)
+    wanted |= {back.call.need.name for back in backs if back is not None and back.call is not None}
+    for one in provided.requests:
+        if one.reply is not None:
+            name = reply_param(one.name)
+            yield name, name if one.name in wanted else f"Unused_{name}", one.reply
+
+
+def served(
+    system: System, instance: Instance, provided: Provided, work: tuple[Stmt, ...]
+) -> tuple[Stmt, ...]:
+    """One request: taken, executed by ``work``, and its reply delivered."""
+    replied: list[Stmt] = []
+    asking = callers_of(system, instance.name, provided)
+    for index, binding in enumerate(asking):
+        if delivers(system, binding):
+            is_own = binding.instance == instance.name
+            take = f"Take_{ada_case(binding.need.name)}"
+            take = take if is_own else f"{ada_case(binding.instance)}.{take}"
+            asks = Operation("=", (Ref("Asked.Caller"), number(index)))
+            reply = Ref(reply_param(binding.need.name))
+            replied.append(If(((asks, (Do(take, arguments(reply)),)),)))
+    replied += replies(system, instance, provided, len(asking), reply_param)
+    return (
+        Do(f"{ada_case(provided.name)}_Queue.Take", arguments(Ref("Asked"), Ref("Taken"))),
+        Say("exit when Taken = Ravenchart.Queueing.Empty"),
+        *work,
+        *replied,
+    )
+
+
+def request_queue(system: System, instance: Instance, provided: Provided) -> Instantiation:
+    """The queue of an interface that is served."""
+    package = f"{ada_case(instance.component.name)}.{requests_package(provided)}"
+    element = f"{instance.name}.{provided.name}.queue"
+    args = arguments(
+        Element_Type=Ref(f"{package}.Request"),
+        Null_Element=Ref(f"{package}.No_Request"),
+        Capacity=number(provided.depth),
+        Ceiling=priority(system.object(element).ceiling),
+        Policy=Ref("Ravenchart.Queueing.Reject_Newest"),
+    )
+    return Instantiation(f"{ada_case(provided.name)}_Queue", "Ravenchart.Queues", args)
+
+
+def published(system: System, instance: Instance) -> Iterator[tuple[Subprogram, str]]:
+    """The read commands of an instance that somebody reads, each with its data item."""
+    seen: set[str] = set()
+    for binding in system.bindings:
+        provider, item = binding.provider, published_by(binding)
+        if isinstance(provider, Server) and provider.instance == instance.name:
+            need = binding.need
+            if item is not None and need.reply is not None and need.name not in seen:
+                seen.add(need.name)
+                params = (Param("Reply", "out", type_name(system, need.reply)),)
+                yield Subprogram(ada_case(need.name), params), item

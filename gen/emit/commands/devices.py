@@ -1,0 +1,230 @@
+"""Devices: the specs of drivers, a package for each device, and simulated drivers."""
+
+from __future__ import annotations
+
+from ravenchart.gen.derive.calls import called, callers, device_types
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    default_value,
+    priority,
+    root_package,
+    type_name,
+)
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Aggregate,
+    Arg,
+    Aspect,
+    Assign,
+    Comment,
+    Component,
+    Decl,
+    Do,
+    Expr,
+    Object,
+    Package,
+    Param,
+    PlainType,
+    Protected,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+)
+from ravenchart.gen.emit.ada.syntax import RecordType as AdaRecord
+from ravenchart.gen.language.terms import RecordType, Type
+from ravenchart.gen.model.commands import Device, DeviceType, DriverCommand
+from ravenchart.gen.model.system import System
+
+INLINE = Aspect("Inline_Always")
+"""A direct call costs what a call of the driver costs."""
+
+
+def emit_devices(system: System, header: str) -> tuple[Unit, ...]:
+    """The specs of the drivers, then the devices, pieces before what is made of them."""
+    units = [_driver(system, kind, header) for kind in device_types(system)]
+    for device in system.devices:
+        units += (
+            _array(system, device, header)
+            if device.type is None
+            else _piece(system, device, device.type, header)
+        )
+    return tuple(units)
+
+
+def states_package(system: System, kind: DeviceType) -> str:
+    """The package of what a device of a type remembers, which the driver's author writes."""
+    return f"{root_package(system)}.{ada_case(kind.name)}_States"
+
+
+def _state(kind: DeviceType) -> str:
+    return f"{ada_case(kind.name)}_States.State"
+
+
+def _params(system: System, command: DriverCommand) -> tuple[Param, ...]:
+    params = []
+    if command.argument is not None:
+        params.append(Param("Argument", "in", type_name(system, command.argument)))
+    if command.reply is not None:
+        params.append(Param("Reply", "out", type_name(system, command.reply)))
+    return tuple(params)
+
+
+def _passed(command: DriverCommand) -> tuple[Arg, ...]:
+    argument = arguments(Ref("Argument")) if command.argument is not None else ()
+    return (*argument, *(arguments(Ref("Reply")) if command.reply is not None else ()))
+
+
+# --- Drivers -----------------------------------------------------------------------
+
+
+def _driver(system: System, kind: DeviceType, header: str) -> Unit:
+    """The spec of a driver; its body is the user's, or a simulated one."""
+    items: list[Decl] = []
+    for command in kind.provides:
+        own = Param("Device", "in out", _state(kind))
+        params = (own, *_params(system, command))
+        null = (Aspect("Global", Ref("null")),)
+        items.append(Subprogram(ada_case(command.name), params, aspects=null))
+        items.append(Comment(f"[{kind.name}.{command.name}] budget {command.wcet:_} ns"))
+    name = f"{root_package(system)}.{ada_case(kind.name)}"
+    return Unit(header, (states_package(system, kind),), Package(name, tuple(items), (SPARK,)))
+
+
+def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Unit, Unit]:
+    """What a simulated device remembers, and a body that gives it back: a starting point."""
+    kept = [Component("Calls", "Call_Count", Ref("0"))]
+    bodies: list[Decl] = []
+    for command in kind.provides:
+        name = ada_case(command.name)
+        steps: list[Stmt] = [Assign("Device.Calls", Ref("Device.Calls + 1"))]
+        for of_type, slot in ((command.argument, name), (command.reply, f"{name}_Reply")):
+            if of_type is not None:
+                start = default_value(system, of_type)
+                kept.append(Component(slot, type_name(system, of_type), start))
+        if command.argument is not None:
+            steps.append(Assign(f"Device.{name}", Ref("Argument")))
+        if command.reply is not None:
+            steps.append(Assign("Reply", Ref(f"Device.{name}_Reply")))
+        params = (Param("Device", "in out", _state(kind)), *_params(system, command))
+        bodies.append(Subprogram(name, params, body=tuple(steps)))
+    items: tuple[Decl, ...] = (
+        PlainType("Call_Count", "mod 2 ** 32"),
+        Comment("Arguments as they were given last, and replies as they will be given."),
+        AdaRecord("State", tuple(kept)),
+    )
+    spec = Package(states_package(system, kind), items, (SPARK,))
+    name = f"{root_package(system)}.{ada_case(kind.name)}"
+    uses = UseType(f"{ada_case(kind.name)}_States.Call_Count")
+    body = Package(name, (uses, *bodies), (SPARK,), is_body=True)
+    return Unit(header, (), spec), Unit(header, (), body)
+
+
+# --- Pieces of equipment -----------------------------------------------------------
+
+
+def _piece(system: System, device: Device, kind: DeviceType, header: str) -> list[Unit]:
+    """A device with what it remembers; in a protected object where several tasks call it."""
+    name = f"{root_package(system)}.{ada_case(device.name)}"
+    commands = called(system, device)
+    driver = ada_case(kind.name)
+    own = Comment(f"[{device.name}] called by {', '.join(callers(system, device))}")
+    works = [
+        Subprogram(
+            ada_case(one.name),
+            _params(system, one),
+            body=(Do(f"{driver}.{ada_case(one.name)}", (Arg(None, Ref("Own")), *_passed(one))),),
+        )
+        for one in commands
+    ]
+    items: list[Decl] = [own]
+    withs = [f"{root_package(system)}.{driver}", states_package(system, kind)]
+    if system.has_object(device.name):
+        withs.append("System")
+        ceiling = Aspect("Priority", priority(system.object(device.name).ceiling))
+        specs = tuple(Subprogram(w.name, w.params) for w in works)
+        kept = (Object("Own", _state(kind)),)
+        items.append(Protected("Guard", specs, kept, (ceiling,)))
+        items.append(Protected("Guard", tuple(works)))
+        items += [
+            Subprogram(
+                ada_case(one.name),
+                _params(system, one),
+                body=(Do(f"Guard.{ada_case(one.name)}", _passed(one)),),
+            )
+            for one in commands
+        ]
+    else:
+        items.append(Object("Own", _state(kind)))
+        items += works
+    body = Package(name, tuple(items), (SPARK,), is_body=True)
+    return [_spec(system, device, name, header), Unit(header, tuple(sorted(withs)), body)]
+
+
+def _spec(system: System, device: Device, name: str, header: str) -> Unit:
+    items: list[Decl] = []
+    for one in called(system, device):
+        items.append(Subprogram(ada_case(one.name), _params(system, one), aspects=(INLINE,)))
+        items.append(Comment(f"[{device.name}.{one.name}] budget {one.wcet:_} ns"))
+    return Unit(header, (), Package(name, tuple(items), (SPARK,)))
+
+
+# --- Arrays ------------------------------------------------------------------------
+
+
+def _array(system: System, device: Device, header: str) -> list[Unit]:
+    """Each command to all members in order; arguments cut up, replies put together."""
+    root = root_package(system)
+    name = f"{root}.{ada_case(device.name)}"
+    works = tuple(_to_all(system, device, one) for one in called(system, device))
+    withs = tuple(sorted(f"{root}.{ada_case(member.name)}" for member in device.members))
+    body = Package(name, works, (SPARK,), is_body=True)
+    return [_spec(system, device, name, header), Unit(header, withs, body)]
+
+
+def _to_all(system: System, device: Device, command: DriverCommand) -> Subprogram:
+    declarations: list[Decl] = []
+    calls: list[Stmt] = []
+    gathered: list[Arg] = []
+    first = 1
+    for number, member in enumerate(device.members, 1):
+        one = member.command(command.name)
+        args: list[Arg] = []
+        if one.argument is not None:
+            args.append(Arg(None, _cut(one, first, member.axes)))
+        if one.reply is not None:
+            part = f"Part_{number}"
+            declarations.append(Object(part, type_name(system, one.reply)))
+            args.append(Arg(None, Ref(part)))
+            gathered += _fields(part, one.reply, first, member.axes)
+        calls.append(Do(f"{ada_case(member.name)}.{ada_case(command.name)}", tuple(args)))
+        first += member.axes
+    if gathered:
+        calls.append(Assign("Reply", Aggregate(tuple(gathered))))
+    return Subprogram(
+        ada_case(command.name),
+        _params(system, command),
+        declarations=tuple(declarations),
+        body=tuple(calls),
+    )
+
+
+def _cut(command: DriverCommand, first: int, axes: int) -> Expr:
+    """The part of an argument that is for a member, whose first axis has that number."""
+    assert command.argument is not None
+    if not command.command.per_axis:
+        return Ref("Argument")
+    if axes == 1:
+        return Ref(f"Argument.Axis_{first}")
+    own = range(1, axes + 1)
+    rows = tuple(Arg(f"Axis_{n}", Ref(f"Argument.Axis_{first + n - 1}")) for n in own)
+    return Aggregate(rows)
+
+
+def _fields(part: str, of_type: Type, first: int, axes: int) -> list[Arg]:
+    """What a member's reply is in the whole."""
+    if not isinstance(of_type, RecordType):
+        return [Arg(f"Axis_{first}", Ref(part))]
+    return [Arg(f"Axis_{first + n - 1}", Ref(f"{part}.Axis_{n}")) for n in range(1, axes + 1)]

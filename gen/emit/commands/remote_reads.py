@@ -1,0 +1,111 @@
+"""Read commands between nodes: how an instance publishes, and what its readers keep of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.derive.calls import publications
+from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name, value
+from ravenchart.gen.emit.ada.syntax import (
+    Comment,
+    Decl,
+    Do,
+    If,
+    Object,
+    Param,
+    Ref,
+    Stmt,
+    Subprogram,
+    arguments,
+    number,
+)
+from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.model.commands import Need, RemoteRead
+from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Instance, Message, System
+
+from .remote_calls import CALLS
+
+
+def copies(system: System, instance: Instance) -> tuple[RemoteRead, ...]:
+    """What an instance reads of other nodes."""
+    own = (b.provider for b in system.bindings if b.instance == instance.name)
+    return tuple(provider for provider in own if isinstance(provider, RemoteRead))
+
+
+def published_afar(system: System, instance: Instance) -> tuple[Message, ...]:
+    """The messages by which an instance publishes to other nodes."""
+    rows = instance.component.runnables()
+    return tuple(m for row in rows for m in publications(system, instance.name, row))
+
+
+def read_units(system: System, instance: Instance) -> Iterator[str]:
+    """The units that the body of an instance needs for all of this."""
+    root = ada_case(system.name)
+    if copies(system, instance):
+        yield from (CALLS, "Ravenchart.Remote_Reads", "Ravenchart.Health")
+        yield f"{root}.Health_Counts"
+    for message in published_afar(system, instance):
+        yield f"{root}.{ada_case(message.bus)}"
+        if message.every > 1:
+            yield from ("Ravenchart", CALLS)
+
+
+def copy_name(need: Need) -> str:
+    """What keeps the value that came last."""
+    return f"{ada_case(need.name)}_Copy"
+
+
+def copy_objects(system: System, instance: Instance) -> Iterator[Decl]:
+    """The values that came last, and the turns of what is published."""
+    for read in copies(system, instance):
+        assert read.need.reply is not None
+        element = f"{instance.name}.{read.need.name}"
+        yield Comment(f"[{element}] of another node")
+        args = arguments(
+            Element_Type=Ref(type_name(system, read.need.reply)),
+            Initial=value(system, read.need.reply, read.initial),
+            Limit=number(read.executions),
+            Ceiling=priority(system.object(f"{element}.read").ceiling),
+        )
+        yield Instantiation(copy_name(read.need), "Ravenchart.Remote_Reads", args)
+    for message in published_afar(system, instance):
+        if message.every > 1:
+            yield Comment(f"[{message.name}] executions before it is sent")
+            yield Object(_left(message), "Ravenchart.Execution_Count", number(0))
+
+
+def _left(message: Message) -> str:
+    return f"{ada_case(message.name)}_Left"
+
+
+def kept(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
+    """For each value that comes from another node, spec and body of what keeps it."""
+    for read in copies(system, instance):
+        assert read.need.reply is not None
+        params = (Param("Item", "in", type_name(system, read.need.reply)),)
+        name = f"Put_{ada_case(read.need.name)}"
+        put = Do(f"{copy_name(read.need)}.Put", arguments(Ref("Item")))
+        yield Subprogram(name, params), Subprogram(name, params, body=(put,))
+
+
+def publishes(
+    system: System, instance: Instance, row: Region | Activity, declarations: list[Decl]
+) -> Iterator[Stmt]:
+    """What a row that writes published data does last: it sends them, whenever it is their turn."""
+    for message in publications(system, instance.name, row):
+        assert message.source is not None
+        item = ada_case(message.source.port)
+        held = f"{item}_Own"
+        if isinstance(row, Region):
+            held = f"{ada_case(row.name)}_Region.Data.{item}"
+        sent = Do(f"{ada_case(message.bus)}.Send_{ada_case(message.name)}", arguments(Ref(held)))
+        if message.every == 1:
+            yield sent
+            continue
+        due = f"{ada_case(message.name)}_Due"
+        declarations.append(Object(due, "Boolean"))
+        turn = arguments(Ref(_left(message)), Every=number(message.every), Is_Due=Ref(due))
+        yield Do(f"{CALLS}.Take_Turn", turn)
+        yield If(((Ref(due), (sent,)),))

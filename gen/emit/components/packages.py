@@ -1,0 +1,272 @@
+"""What all instances of a component share: events, states, port views, activities."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case, component_package, default_value, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    FALSE,
+    SPARK,
+    TRUE,
+    Aspect,
+    Assign,
+    Comment,
+    Decl,
+    Expr,
+    Instance,
+    Package,
+    Param,
+    PlainType,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    number,
+)
+from ravenchart.gen.emit.commands.device_calls import request_types, serving_params
+from ravenchart.gen.emit.language.events import event_types, null_event
+from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.emit.language.terms import (
+    Scope,
+    compared_states,
+    effective,
+    emit_flow,
+    expressions_in,
+    flow_names,
+    flow_operators,
+)
+from ravenchart.gen.language.terms import RecordType, Type, always, named
+from ravenchart.gen.model.component import Activity, Component, Data, Direction, Port
+from ravenchart.gen.model.statechart import RAISED_PER_STEP, Region
+from ravenchart.gen.model.system import System
+
+
+def leaf_type(component: Component, region: Region) -> str:
+    """The type of a region's published state, seen from a sibling package."""
+    return f"{ada_case(component.name)}.{Places(region).place_type}"
+
+
+def view_type(component: Component, port: str) -> str:
+    """The type of an input port's view."""
+    return f"{ada_case(component.name)}.{ada_case(port)}_View"
+
+
+def reading_type(system: System, component: Component, name: str) -> str:
+    """The type in which a region or activity sees what it reads."""
+    return _readings(system, component)[name.lower()]
+
+
+def _readings(system: System, component: Component) -> dict[str, str]:
+    types: dict[str, str] = {}
+    for port in component.inputs():
+        types[port.name.lower()] = view_type(component, port.name)
+    for region in component.regions:
+        types[region.name.lower()] = leaf_type(component, region)
+    items: list[tuple[str, Type]] = [(d.name, d.type) for d in component.data]
+    items += [(p.name, p.type) for p in component.parameters]
+    for name, of_type in items:
+        types[name.lower()] = type_name(system, of_type)
+    return types
+
+
+def emit_component(system: System, component: Component, header: str) -> Unit:
+    """The package of a component type: pure, no state."""
+    items: list[Decl] = []
+    if component.events:
+        items += event_types(system, component)
+        items.append(
+            Instance(
+                "Event_Lists",
+                "Ravenchart.Event_Lists",
+                arguments(
+                    Event=Ref(f"{ada_case(component.name)}.Event"),
+                    Null_Event=null_event(component),
+                    Capacity=number(RAISED_PER_STEP),
+                ),
+            )
+        )
+    items += request_types(system, component)
+    for region in component.regions:
+        items.append(Comment(f"[{component.name}.{region.name}.states]"))
+        items.append(Places(region).package_of_states())
+    for port in component.inputs():
+        name = ada_case(port.name)
+        items.append(Comment(f"[{component.name}.{port.name}] what its readers see"))
+        items.append(
+            Instance(
+                f"{name}_Port",
+                "Ravenchart.Port_Regions",
+                arguments(
+                    Value_Type=Ref(type_name(system, port.type)),
+                    Default=default_value(system, port.type),
+                ),
+            )
+        )
+        items.append(PlainType(f"{name}_View", f"{name}_Port.Port", subtype=True))
+    withs = ["Ravenchart.Event_Lists"] if component.events else []
+    withs += ["Ravenchart.Port_Regions"] if component.inputs() else []
+    package = component_package(system, component)
+    return Unit(header, tuple(withs), Package(package, tuple(items), (SPARK,)))
+
+
+# --- Activities --------------------------------------------------------------
+
+
+def raise_flag(event: str) -> str:
+    """The parameter by which an activity raises an event."""
+    return f"Raise_{ada_case(event)}"
+
+
+def raise_value(event: str) -> str:
+    """The parameter by which an activity gives the value of an event."""
+    return f"{ada_case(event)}_Value"
+
+
+def raised_type(component: Component, event: str) -> Type | None:
+    """The type of the value that an event carries; None for `DONE` and events without."""
+    return next((e.type for e in component.events if e.name == event), None)
+
+
+def _raised(event: str, given: Expr | None) -> tuple[Stmt, ...]:
+    value = () if given is None else (Assign(raise_value(event), given),)
+    return (Assign(raise_flag(event), TRUE), *value)
+
+
+def send_flag(port: Port) -> str:
+    """The parameter by which a flow says that it sends, or a body that it calls."""
+    return f"{'Call' if port.is_command else 'Send'}_{ada_case(port.name)}"
+
+
+def has_flag(activity: Activity, port: Port) -> bool:
+    """Whether an execution may go without sending: a user's body always sends on its ports."""
+    return activity.flow is not None or port.is_command
+
+
+def activity_params(system: System, component: Component, activity: Activity) -> tuple[Param, ...]:
+    """The profile of an activity: what it reads, what it writes, what it raises."""
+    params = list(serving_params(system, component, activity.name))
+    params += [
+        Param(ada_case(name), "in", reading_type(system, component, name))
+        for name in activity.reads
+        if name not in activity.writes
+    ]
+    params += [
+        Param(
+            ada_case(name),
+            _write_mode(activity, named(component.data, name)),
+            reading_type(system, component, name),
+        )
+        for name in activity.writes
+    ]
+    for port in component.ports:
+        if port.direction is Direction.OUT and port.name in activity.sends:
+            if not port.is_void:
+                params.append(Param(ada_case(port.name), "out", type_name(system, port.type)))
+            if has_flag(activity, port):
+                params.append(Param(send_flag(port), "out", "Boolean"))
+    for event in activity.raises:
+        params.append(Param(raise_flag(event), "out", "Boolean"))
+        if (carried := raised_type(component, event)) is not None:
+            params.append(Param(raise_value(event), "out", type_name(system, carried)))
+    return tuple(params)
+
+
+def stand_ins(component: Component) -> set[str]:
+    """The activities that stand in for a command, where nothing provides it."""
+    return {need.stand_in.activity for need in component.needs if need.stand_in is not None}
+
+
+def activity_package(component: Component, activity: Activity) -> str:
+    """The child of the component's package that holds an activity.
+
+    A stand-in by the user has one of its own, for its body is left out where nobody needs it.
+    """
+    if activity.flow is not None:
+        return "Flows"
+    if activity.name in stand_ins(component):
+        return f"{ada_case(activity.name)}_Stand_In"
+    return "Activities"
+
+
+def emit_activities(system: System, component: Component, header: str) -> tuple[Unit, ...]:
+    """The spec of the user's activities; spec and body of those given as flows."""
+    package = component_package(system, component)
+    users = tuple(a for a in component.activities if a.flow is None)
+    flows = tuple(a for a in component.activities if a.flow is not None)
+    units: list[Unit] = []
+    for home in dict.fromkeys(activity_package(component, a) for a in users):
+        inside = tuple(a for a in users if activity_package(component, a) == home)
+        items = _specs(system, component, inside, Aspect("Global", Ref("null")))
+        units.append(Unit(header, (), Package(f"{package}.{home}", items, (SPARK,))))
+    if flows:
+        items = _specs(system, component, flows, Aspect("Global", Ref("null")))
+        units.append(Unit(header, (), Package(f"{package}.Flows", items, (SPARK,))))
+        operators = {name for a in flows for name in flow_operators(a.flow or ())}
+        operators |= compared_states(
+            component, [e for a in flows for e in expressions_in(a.flow or ())]
+        )
+        bodies: tuple[Decl, ...] = (
+            *(UseType(name) for name in sorted(operators)),
+            *(_flow_body(system, component, a) for a in flows),
+        )
+        units.append(Unit(header, (), Package(f"{package}.Flows", bodies, (SPARK,), is_body=True)))
+    return tuple(units)
+
+
+def _write_mode(activity: Activity, data: Data) -> str:
+    """``in out`` for what is read as well, or not always set; ``out`` otherwise."""
+    if activity.flow is None:
+        return "in out" if data.name in activity.reads else "out"
+    parts = {data.name}
+    if isinstance(data.type, RecordType):
+        parts = {f"{data.name}.{field.name}" for field in data.type.fields}
+    sure = parts <= always(activity.flow) and data.name not in flow_names(activity.flow)
+    return "out" if sure else "in out"
+
+
+def _specs(
+    system: System, component: Component, activities: tuple[Activity, ...], aspect: Aspect
+) -> tuple[Decl, ...]:
+    items: list[Decl] = []
+    for activity in activities:
+        params = activity_params(system, component, activity)
+        items.append(Subprogram(ada_case(activity.name), params, aspects=(aspect,)))
+        timing = activity.timing
+        items.append(
+            Comment(
+                f"[{component.name}.{activity.name}] budget {timing.wcet:_} ns, "
+                f"every {timing.period:_} ns"
+                + (f", while in {activity.while_in.state}" if activity.while_in else "")
+            )
+        )
+    return tuple(items)
+
+
+def _flow_body(system: System, component: Component, activity: Activity) -> Subprogram:
+    assert activity.flow is not None
+    scope = Scope(
+        system,
+        component,
+        variable=ada_case,
+        target=ada_case,
+        sent=lambda port: (ada_case(port), send_flag(component.port(port))),
+        raised=_raised,
+    )
+    sure = always(activity.flow)  # needs no value before
+    start: list[Stmt] = []
+    for port in component.outputs():
+        if port.name in activity.sends and port.name not in sure:
+            if not port.is_void:
+                start.append(Assign(ada_case(port.name), default_value(system, port.type)))
+            start.append(Assign(send_flag(port), FALSE))
+    for event in activity.raises:
+        if event not in sure:
+            start.append(Assign(raise_flag(event), FALSE))
+            if (carried := raised_type(component, event)) is not None:
+                start.append(Assign(raise_value(event), default_value(system, carried)))
+    return Subprogram(
+        ada_case(activity.name),
+        activity_params(system, component, activity),
+        body=(*start, *emit_flow(scope, effective(activity.flow))),
+    )

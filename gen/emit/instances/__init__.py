@@ -1,0 +1,1 @@
+"""Instances in Ada: protected objects, and the rows over them."""

@@ -1,0 +1,455 @@
+"""One package per component instance: its protected objects, and the glue.
+
+The glue copies in what a region or activity reads, calls the component's
+logic, and publishes what came out. Logic stays in the component's packages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    default_value,
+    instance_package,
+    type_name,
+    value,
+)
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Assign,
+    Case,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    Expr,
+    If,
+    Object,
+    Package,
+    Param,
+    Pragma,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    number,
+)
+from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.commands.device_calls import (
+    call_body,
+    from_afar,
+    providers,
+    published,
+    put_body,
+    put_spec,
+    reply_boards,
+    request_queue,
+    take_body,
+    take_spec,
+    taken_replies,
+)
+from ravenchart.gen.emit.commands.remote_calls import (
+    call_objects,
+    heard_objects,
+    remotes,
+    units_of,
+    watch_body,
+)
+from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
+from ravenchart.gen.emit.components.packages import activity_package, leaf_type
+from ravenchart.gen.emit.language.events import event_value, name_of, null_event
+from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
+from ravenchart.gen.language.terms import named
+from ravenchart.gen.model.commands import Need, Provided
+from ravenchart.gen.model.component import Activity, Event, Port, PortKind
+from ravenchart.gen.model.statechart import Overflow, Region
+from ravenchart.gen.model.system import System, Work
+
+from .rows import Rows
+from .site import Site
+
+
+class Glue(Site):
+    """Builds the package of one instance."""
+
+    def units(self, header: str) -> tuple[Unit, ...]:
+        """Spec and body."""
+        spec = Package(instance_package(self.system, self.instance), self._spec(), (SPARK,))
+        body = Package(
+            instance_package(self.system, self.instance), self._body(), (SPARK,), is_body=True
+        )
+        return Unit(header, self._spec_withs(), spec), Unit(header, self._body_withs(), body)
+
+    # --- contexts
+
+    def _spec_withs(self) -> tuple[str, ...]:
+        component = self.instance.component
+        own = (f"{ada_case(self.system.name)}.{self.component}",)
+        asked = ("Ravenchart.Queueing",) if self._served() else ()
+        rows = (f"{ada_case(self.system.name)}.Elements",) if self._slots() else ()
+        return (*asked, *(own if component.events or asked else ()), *rows)
+
+    def _body_withs(self) -> tuple[str, ...]:
+        root = ada_case(self.system.name)
+        component = self.instance.component
+        names = {"Ravenchart.Queueing", "Ravenchart.Health", "System", f"{root}.Health_Counts"}
+        queued = bool(component.inputs()) or any(r.events() for r in component.regions)
+        if not queued and not self._served():
+            names -= {"Ravenchart.Queueing", "Ravenchart.Health", f"{root}.Health_Counts"}
+        if not component.events and not self._served():
+            names.add(f"{root}.{self.component}")
+        if any(n.trace_depth for n in self.system.nodes):
+            names |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+        if queued or self._served():
+            names.add("Ravenchart.Queues")
+        if any(b.instance == self.instance.name for b in self.system.bindings):
+            names.add("Ravenchart.Queueing")
+        names |= set(units_of(self.system, self.instance))
+        names |= set(read_units(self.system, self.instance))
+        names.add("Ravenchart.Blackboards")
+        if self.noted:
+            names.add("Ravenchart.Steps")
+        names |= {f"{root}.{self.component}.{ada_case(r.name)}" for r in component.regions}
+        for activity in component.activities:
+            names.add(f"{root}.{self.component}.{activity_package(component, activity)}")
+        names |= {f"{root}.{unit}" for unit in providers(self.system, self.instance)}
+        for event in component.events:
+            names |= {f"{root}.{ada_case(bus)}" for bus in self._asked(event.name)}
+        for port in component.outputs():
+            ends, messages = self._targets(port.name)
+            names |= {
+                f"{root}.{ada_case(e.instance)}" for e in ends if e.instance != self.instance.name
+            }
+            for message in self.system.messages:
+                if message.name in messages:
+                    names.add(f"{root}.{ada_case(message.bus)}")
+        names -= {instance_package(self.system, self.instance), *self._spec_withs()}
+        return tuple(sorted(names))
+
+    # --- spec
+
+    def _spec(self) -> tuple[Decl, ...]:
+        items: list[Decl] = []
+        for port in self._connected_inputs():
+            items.append(self._put_spec(port))
+            items.append(
+                Comment(f"[{self._element(port.name)}.mailbox] by its senders; never blocks.")
+            )
+        if self.instance.component.events:
+            items.append(self._offer_spec())
+            items.append(
+                Comment(
+                    f"[{self.instance.name}.events] offer Item to every region that names it; "
+                    "never blocks."
+                )
+            )
+        items += self._command_specs()
+        if self._slots():
+            items.insert(0, UseType(ELEMENT_ID))
+        for slot in self._slots():
+            items.append(run_spec(ada_case(slot.name), slot))
+            items.append(Comment(f"[{slot.element}] one execution, by its processor alone."))
+        return tuple(items)
+
+    def _put_spec(self, port: Port) -> Subprogram:
+        param = Param("Item", "in", type_name(self.system, port.type))
+        return Subprogram(f"Put_{ada_case(port.name)}", (param,))
+
+    def _offer_spec(self) -> Subprogram:
+        return Subprogram("Offer", (Param("Item", "in", f"{self.component}.Event"),))
+
+    def _command_specs(self) -> Iterator[Decl]:
+        for provided in self._served():
+            yield put_spec(self.instance, provided)
+            yield Comment(f"[{self._element(provided.name)}] by its callers; never blocks.")
+        for spec, item in published(self.system, self.instance):
+            yield spec
+            yield Comment(f"[{self._element(item)}] what was published last.")
+        for binding in taken_replies(self.system, self.instance):
+            yield take_spec(self.system, binding.need)
+            yield Comment(f"[{self._element(binding.need.name)}] its reply.")
+        for spec, _ in from_afar(self.system, self.instance):
+            yield spec
+            yield Comment(f"[{self.instance.name}] from another node; never blocks.")
+
+    def _served(self) -> tuple[Provided, ...]:
+        return tuple(one for one in self.instance.component.provides if one.server is not None)
+
+    def _command_bodies(self) -> Iterator[Decl]:
+        system, instance = self.system, self.instance
+        for provided in self._served():
+            yield put_body(instance, provided, self._lost(provided.name))
+        for spec, item in published(system, instance):
+            read: Stmt = Do(f"{ada_case(item)}_Board.Read", arguments(Ref("Reply")))
+            if not self._has_object(item):
+                read = Assign("Reply", Ref(f"{ada_case(item)}_Own"))
+            yield Subprogram(spec.name, spec.params, body=(read,))
+        for binding in taken_replies(system, instance):
+            yield take_body(system, instance, binding.need)
+        yield from (body for _, body in from_afar(system, instance))
+        for remote in remotes(system, instance):
+            if remote.reply is not None:
+                kept = f"{ada_case(remote.need.name)}_Call"
+                yield watch_body(remote.need, kept, self._passed(remote.need))
+        for copy in copies(system, instance):
+            yield watch_body(copy.need, copy_name(copy.need), self._passed(copy.need))
+
+    def _lost(self, name: str) -> tuple[Stmt, ...]:
+        """Count a call that found no place."""
+        number_ = self._fault_number("Queue_Overflow")
+        return (self._fault("Queue_Overflow"), *self._note("Fault", name, "port", number_))
+
+    def _passed(self, need: Need) -> tuple[Stmt, ...]:
+        """Count a reply that did not come in time, and tell of it."""
+        noted = self._note("Fault", need.name, "port", self._fault_number("Stale_Input"))
+        told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
+        return (self._fault("Stale_Input"), *noted, *told)
+
+    # --- body: objects
+
+    def _body(self) -> tuple[Decl, ...]:
+        items: list[Decl] = [*self._port_objects(), *self._data_objects(), *self._region_objects()]
+        items += [request_queue(self.system, self.instance, one) for one in self._served()]
+        items += reply_boards(self.system, self.instance)
+        items += call_objects(self.system, self.instance)
+        items += copy_objects(self.system, self.instance)
+        items += heard_objects(self.system, self.instance)
+        component = self.instance.component
+        items += [self._put_body(p) for p in self._connected_inputs()]
+        if component.events:
+            items.append(self._offer_body())
+        items += self._command_bodies()
+        used = {n for r in component.regions for n in r.sends}
+        used |= {n for a in component.activities for n in a.sends}
+        items += [
+            self._send_body(p)
+            for p in component.outputs()
+            if p.name in used and not self._is_idle(p)
+        ]
+        rows = Rows(self.system, self.instance, self.noted)
+        for slot in self._slots():
+            match slot.work:
+                case Work.PORT_REGION:
+                    run = [rows.run_ports()]
+                case Work.REGION:
+                    run = rows.run_region(component.region(slot.name))
+                case _:
+                    activity = next(a for a in component.activities if a.name == slot.name)
+                    run = [rows.run_activity(activity)]
+            items += [*run[:-1], executing(run[-1], slot)]
+        return tuple(items)
+
+    def _board(self, name: str, of_type: str, initial: Expr, element: str) -> Instantiation:
+        return Instantiation(
+            f"{name}_Board",
+            "Ravenchart.Blackboards",
+            arguments(Element_Type=Ref(of_type), Initial=initial, Ceiling=self._ceiling(element)),
+        )
+
+    def _queue(
+        self, name: str, of_type: str, null: Expr, depth: int, policy: Overflow, element: str
+    ) -> Instantiation:
+        return Instantiation(
+            name,
+            "Ravenchart.Queues",
+            arguments(
+                Element_Type=Ref(of_type),
+                Null_Element=null,
+                Capacity=number(depth),
+                Ceiling=self._ceiling(element),
+                Policy=Ref(f"Ravenchart.Queueing.{ada_case(policy.value)}"),
+            ),
+        )
+
+    def _port_objects(self) -> list[Decl]:
+        items: list[Decl] = []
+        for port in self.instance.component.inputs():
+            name = ada_case(port.name)
+            sampled = port.kind is PortKind.SAMPLED
+            policy = Overflow.DROP_OLDEST if sampled else port.overflow
+            depth = 1 if sampled else port.depth
+            null = default_value(self.system, port.type)
+            of_type = type_name(self.system, port.type)
+            items.append(Comment(f"[{self._element(port.name)}]"))
+            items.append(
+                self._queue(f"{name}_Mailbox", of_type, null, depth, policy, f"{port.name}.mailbox")
+            )
+            view = f"{self.component}.{name}_View"
+            items.append(Object(f"{name}_Port", view))
+            if port.on_overflow:
+                items.append(Object(f"{name}_Lost_Before", "Ravenchart.Event_Count", number(0)))
+            if self._has_object(port.name):
+                items.append(self._board(name, view, Ref("(others => <>)"), port.name))
+        return items
+
+    def _data_objects(self) -> list[Decl]:
+        items: list[Decl] = []
+        for data in self.instance.component.data:
+            name = ada_case(data.name)
+            initial = value(self.system, data.type, data.initial)
+            of_type = type_name(self.system, data.type)
+            writer = self._writer(data)
+            if data.is_command or (writer is None and not self.instance.component.users(data.name)):
+                continue
+            if writer is None:
+                items.append(Object(f"{name}_Own", of_type, initial, constant=True))
+                continue
+            if isinstance(writer, Activity):
+                items.append(Comment(f"[{self._element(data.name)}] written by {writer.name}"))
+                items.append(Object(f"{name}_Own", of_type, initial))
+            if self._has_object(data.name):
+                items.append(self._board(name, of_type, initial, data.name))
+        return items
+
+    def _region_objects(self) -> list[Decl]:
+        items: list[Decl] = []
+        component = self.instance.component
+        for region in component.regions:
+            name = ada_case(region.name)
+            places = Places(region)
+            items.append(Comment(f"[{self._element(region.name)}]"))
+            items.append(Object(f"{name}_Region", f"{self.component}.{name}.Region"))
+            items.append(
+                self._board(
+                    name, leaf_type(component, region), places.initial(self.component), region.name
+                )
+            )
+            if region.events():
+                event = f"{self.component}.Event"
+                first = null_event(component)
+                items.append(
+                    self._queue(
+                        f"{name}_Queue",
+                        event,
+                        first,
+                        region.queue_depth,
+                        region.overflow,
+                        f"{region.name}.queue",
+                    )
+                )
+            for activity, state in component.completing(region.name):
+                items.append(Comment(f"[{self._element(activity.name)}] completes {state}"))
+                for kind in ("visit", "done"):
+                    board = f"{ada_case(activity.name)}_{ada_case(kind)}"
+                    element = f"{activity.name}.{kind}"
+                    items.append(self._board(board, "Ravenchart.Event_Count", number(0), element))
+        return items
+
+    # --- body: arrivals, events, sending
+
+    def _put_body(self, port: Port) -> Subprogram:
+        name = ada_case(port.name)
+        body: list[Stmt] = [
+            Do(f"{name}_Mailbox.Put", arguments(Ref("Item"), Ref("Status"))),
+            *self._note("Arrived", port.name, "port"),
+        ]
+        if port.kind is PortKind.SAMPLED:
+            #  a new sample replaces the old one: nothing is lost
+            return Subprogram(
+                f"Put_{name}",
+                self._put_spec(port).params,
+                declarations=(Object("Status", "Ravenchart.Queueing.Put_Status"),),
+                body=tuple(body),
+            )
+        lost: list[Stmt] = [self._fault("Queue_Overflow")]
+        lost += self._note("Fault", port.name, "port", self._fault_number("Queue_Overflow"))
+        condition = Chain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+        body.append(If(((condition, tuple(lost)),)))
+        return Subprogram(
+            f"Put_{name}",
+            self._put_spec(port).params,
+            declarations=(
+                Object("Status", "Ravenchart.Queueing.Put_Status"),
+                UseType("Ravenchart.Queueing.Put_Status"),
+            ),
+            body=tuple(body),
+        )
+
+    def _offer_body(self) -> Subprogram:
+        component = self.instance.component
+        regions = [r for r in component.regions if r.events()]
+        rows: list[tuple[str, tuple[Stmt, ...]]] = []
+        for event in component.events:
+            steps: list[Stmt] = []
+            for region in regions:
+                if event.name in region.events():
+                    steps += self._enqueue(region, event, Ref("Item"), tells=True)
+            for bus in self._asked(event.name):
+                steps.append(Do(f"{ada_case(bus)}.Controller.Request_Recovery"))
+            steps += self._note("Raised", event.name, "event") if steps else ()
+            rows.append((f"{self.component}.{ada_case(event.name)}", tuple(steps)))
+        declarations: tuple[Decl, ...] = ()
+        if regions:
+            declarations = (
+                Object("Status", "Ravenchart.Queueing.Put_Status"),
+                UseType("Ravenchart.Queueing.Put_Status"),
+            )
+        return Subprogram(
+            "Offer",
+            self._offer_spec().params,
+            declarations=declarations,
+            body=(Case(Ref(name_of(component, "Item")), tuple(rows)),),
+        )
+
+    def _asked(self, event: str) -> tuple[str, ...]:
+        """The buses that an event asks to recover."""
+        pair = self.instance.name, event
+        return tuple(bus.name for bus in self.system.buses if pair in bus.recovers_on)
+
+    def _enqueue(self, region: Region, event: Event, item: Expr, *, tells: bool) -> list[Stmt]:
+        """Put an event into a region's queue; with ``tells``, report what is lost by an event."""
+        queue = f"{ada_case(region.name)}_Queue"
+        full: list[Stmt] = [self._fault("Queue_Overflow")]
+        full += self._note("Fault", region.name, "region", self._fault_number("Queue_Overflow"))
+        if tells and region.on_overflow is not None:
+            full += self.overflowed(region.on_overflow)
+        condition = Chain("/=", (Ref("Status"), Ref("Ravenchart.Queueing.Queued")))
+        args = [item, Ref("Status")]
+        if event.overflow is not None and event.overflow is not region.overflow:
+            args.append(Ref(f"Ravenchart.Queueing.{ada_case(event.overflow.value)}"))
+        return [Do(f"{queue}.Put", arguments(*args)), If(((condition, tuple(full)),))]
+
+    def overflowed(self, name: str) -> list[Stmt]:
+        """Raise the event that tells of a loss; what is lost by that is only counted."""
+        component = self.instance.component
+        event: Event = named(component.events, name)
+        return [
+            s
+            for r in component.regions
+            if event.name in r.events()
+            for s in self._enqueue(r, event, event_value(component, name), tells=False)
+        ]
+
+    def _send_body(self, port: Port) -> Subprogram:
+        if port.is_command:
+            return call_body(self.system, self.instance, port, self._lost(port.name))
+        ends, messages = self._targets(port.name)
+        body: list[Stmt] = [*self._note("Sent", port.name, "port")]
+        for end in ends:
+            name = f"Put_{ada_case(end.port)}"
+            target = (
+                name if end.instance == self.instance.name else f"{ada_case(end.instance)}.{name}"
+            )
+            body.append(Do(target, arguments(Ref("Item"))))
+        for message in self.system.messages:
+            if message.name in messages:
+                body.append(
+                    Do(
+                        f"{ada_case(message.bus)}.Send_{ada_case(message.name)}",
+                        arguments(Ref("Item")),
+                    )
+                )
+        unused = (Pragma("Unreferenced", (Ref("Item"),)),) if not ends and not messages else ()
+        param = Param("Item", "in", type_name(self.system, port.type))
+        return Subprogram(
+            f"Send_{ada_case(port.name)}", (param,), declarations=unused, body=tuple(body)
+        )
+
+
+def emit_instances(system: System, header: str, *, noted: bool = False) -> tuple[Unit, ...]:
+    """The packages of all instances."""
+    return tuple(u for i in system.instances for u in Glue(system, i, noted).units(header))

@@ -1,0 +1,81 @@
+"""What the emitters of an instance ask about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.gen.emit.ada.naming import ada_case, priority
+from ravenchart.gen.emit.ada.syntax import Call, Do, Expr, Ref, Stmt, arguments
+from ravenchart.gen.emit.language.events import event_value
+from ravenchart.gen.emit.tables.trace_calls import note
+from ravenchart.gen.model.component import Activity, Data, Port
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import End, Instance, Slot, System
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """One instance in its system, and what is known of it there."""
+
+    system: System
+    instance: Instance
+    noted: bool = False
+    """For simulation: every behaviour and step says that it was executed."""
+
+    @property
+    def component(self) -> str:
+        """The component's package, as seen from the instance's."""
+        return ada_case(self.instance.component.name)
+
+    def _slots(self) -> tuple[Slot, ...]:
+        own = self.system.slots_of(self.instance.name)
+        return tuple(s for s in own if not s.of_bus)
+
+    def _element(self, name: str) -> str:
+        return f"{self.instance.name}.{name}"
+
+    def _ceiling(self, name: str) -> Expr:
+        return priority(self.system.object(self._element(name)).ceiling)
+
+    def _has_object(self, name: str) -> bool:
+        return self.system.has_object(self._element(name))
+
+    def _writer(self, data: Data) -> Region | Activity | None:
+        component = self.instance.component
+        runnables: tuple[Region | Activity, ...] = (*component.regions, *component.activities)
+        return next((r for r in runnables if data.name in r.writes), None)
+
+    def _targets(self, port: str) -> tuple[list[End], list[str]]:
+        """Input ports of the same node, and messages, that an output port feeds."""
+        end = End(self.instance.name, port)
+        ports = [c.target for c in self.system.connections if c.source == end]
+        messages = [m for m in self.system.messages if m.source == end]
+        return ports, [m.name for m in messages]
+
+    def _is_idle(self, port: Port) -> bool:
+        """Whether nothing takes what is sent there: a command that nothing stands in for."""
+        return port.is_command and self.system.bound[self.instance.name, port.name].provider is None
+
+    def _connected_inputs(self) -> tuple[Port, ...]:
+        targets = [c.target for c in self.system.connections]
+        targets += [t for m in self.system.messages for t in m.targets]
+        names = {t.port for t in targets if t.instance == self.instance.name}
+        if self.noted:
+            return self.instance.component.inputs()
+        return tuple(p for p in self.instance.component.inputs() if p.name in names)
+
+    def _note(
+        self, kind: str, name: str, element_kind: str, item: Expr | None = None
+    ) -> tuple[Stmt, ...]:
+        return note(self.system, kind, self._element(name), element_kind, item)
+
+    def _fault(self, kind: str) -> Stmt:
+        return Do(
+            "Health_Counts.Counters.Record_Fault", arguments(Ref(f"Ravenchart.Health.{kind}"))
+        )
+
+    def _fault_number(self, kind: str) -> Expr:
+        return Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref(f"Ravenchart.Health.{kind}")))
+
+    def _raise(self, event: str, value: Expr | None = None) -> Stmt:
+        return Do("Offer", arguments(event_value(self.instance.component, event, value)))

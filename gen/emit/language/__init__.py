@@ -1,0 +1,1 @@
+"""The terms of a model in Ada: types, events, expressions, configurations."""

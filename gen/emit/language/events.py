@@ -1,0 +1,82 @@
+"""Events in Ada: an enumeration, or a record with the value that some of them carry."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Comment,
+    Decl,
+    EnumType,
+    Expr,
+    Object,
+    RecordType,
+    Ref,
+)
+from ravenchart.gen.emit.ada.syntax import Component as Field
+from ravenchart.gen.language.terms import Type, named
+from ravenchart.gen.model.component import Component, Event
+from ravenchart.gen.model.system import System
+
+
+def carries(component: Component) -> bool:
+    """Does any event of the component carry a value?"""
+    return any(e.type is not None for e in component.events)
+
+
+def field_of(of_type: Type) -> str:
+    """The component of an event that holds values of a type."""
+    return f"Value_{ada_case(of_type.name)}"
+
+
+def event_types(system: System, component: Component) -> list[Decl]:
+    """The type `Event`; where events carry values, `Event_Name` too."""
+    names = tuple(ada_case(e.name) for e in component.events)
+    title = Comment(f"[{component.name}.events]")
+    if not carries(component):
+        return [title, EnumType("Event", names)]
+    types = {e.type.name: e.type for e in component.events if e.type is not None}
+    fields = [Field("Name", "Event_Name", Ref(names[0]))]
+    fields += [
+        Field(field_of(t), type_name(system, t), default_value(system, t)) for t in types.values()
+    ]
+    return [
+        title,
+        EnumType("Event_Name", names),
+        Comment("An event with its value; components that it does not use keep their default."),
+        RecordType("Event", tuple(fields)),
+        Object("No_Event", "Event", Aggregate((Arg("others", Ref("<>")),)), constant=True),
+    ]
+
+
+def null_event(component: Component) -> Expr:
+    """What stands where there is no event."""
+    name = "No_Event" if carries(component) else ada_case(component.events[0].name)
+    return Ref(f"{ada_case(component.name)}.{name}")
+
+
+def event_value(
+    component: Component, name: str, value: Expr | None = None, prefix: str = ""
+) -> Expr:
+    """An event, with the value that it carries."""
+    event: Event = named(component.events, name)
+    literal = Ref(f"{prefix}{ada_case(component.name)}.{ada_case(event.name)}")
+    if not carries(component):
+        return literal
+    rows = [Arg("Name", literal)]
+    if event.type is not None and value is not None:
+        rows.append(Arg(field_of(event.type), value))
+    return _record(component, *rows, prefix=prefix)
+
+
+def _record(component: Component, *rows: Arg, prefix: str = "") -> Aggregate:
+    """An event record; what is not given keeps its default."""
+    types = {e.type.name for e in component.events if e.type is not None}
+    rest = () if len(rows) > len(types) else (Arg("others", Ref("<>")),)
+    return Aggregate((*rows, *rest), f"{prefix}{ada_case(component.name)}.Event")
+
+
+def name_of(component: Component, event: str) -> str:
+    """The enumeration value of an event held in ``event``."""
+    return f"{event}.Name" if carries(component) else event

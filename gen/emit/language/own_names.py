@@ -1,0 +1,50 @@
+"""Transitions and states whose names generated code has for itself: their kind is added in Ada.
+
+So no name is reserved: a transition `t` is the literal ``T_Transition``. Traces, drawings
+and messages keep the model's name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Set
+
+from ravenchart.gen.emit.ada.naming import ada_case
+
+_EVERYWHERE = """
+ada boolean false interfaces natural positive ravenchart standard system true
+"""
+_REGION = """
+active active_top after before beginning box c chart choice chosen completed count d data
+deferrals domain done_states due event event_lists fired firing firing_array firing_list freed
+freed_events i initial_entry inputs ins item j kept leaf memory none now occurrence outbox past
+place region released segment selection self t timer top_transition transition variables visit
+"""
+_STATES = "leaf configuration"
+_NODES = "active_node disorder from_node leaf moved node nowhere place to_node"
+
+IN_REGION = frozenset((_EVERYWHERE + _REGION).split())
+"""Names in lower case that a region's package declares or needs to see."""
+IN_STATES = frozenset((_EVERYWHERE + _STATES).split())
+"""Those of a region's package of states."""
+IN_NODES = frozenset((_EVERYWHERE + _NODES).split())
+"""Those of the ghost package of nodes."""
+
+
+def transition_literal(name: str) -> str:
+    """A transition as its region's package names it."""
+    return _apart(name, IN_REGION, "Transition")
+
+
+def state_literal(name: str) -> str:
+    """A state or pseudostate as the package of states names it."""
+    return _apart(name, IN_STATES, "State")
+
+
+def node_literal(name: str) -> str:
+    """A state or pseudostate as the ghost package of nodes names it."""
+    return _apart(name, IN_NODES, "State")
+
+
+def _apart(name: str, taken: Set[str], kind: str) -> str:
+    own = ada_case(name)
+    return f"{own}_{kind}" if name.lower() in taken else own

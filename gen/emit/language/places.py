@@ -1,0 +1,212 @@
+"""Configurations in Ada: the types of the leaves, and the test for a state.
+
+The leaves of a lane are one enumeration in tree order, and a composite is the
+subtype of its leaves. A chart of one lane keeps its active leaf in one value; one
+of more keeps a record, its *configuration*, with a component for each lane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.emit.ada.naming import ada_case, states_package
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Chain,
+    Component,
+    Decl,
+    EnumType,
+    Expr,
+    Package,
+    PlainType,
+    RecordType,
+    Ref,
+    both,
+    equal,
+    member,
+)
+from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
+
+from .compound import Enter, Place, Step, compounds_of
+from .own_names import state_literal
+
+
+class Places:
+    """How the configurations of one region are held and asked."""
+
+    def __init__(self, region: Region) -> None:
+        self.compounds = compounds_of(region)
+        self.region = self.compounds.region  # triggers are told apart by identity
+        self.lanes = region.lanes()
+
+    @property
+    def states(self) -> str:
+        """Nested package of the leaf states."""
+        return states_package(self.region)
+
+    @property
+    def single(self) -> bool:
+        """Only one lane: a leaf is the whole configuration."""
+        return len(self.lanes) == 1
+
+    @property
+    def place_type(self) -> str:
+        """The type of a configuration, from inside the component's packages."""
+        return f"{self.states}.{'Leaf' if self.single else 'Configuration'}"
+
+    @property
+    def place(self) -> str:
+        """The parameter and component that hold a configuration."""
+        return "Leaf" if self.single else "Place"
+
+    def is_end(self, vertex: str) -> bool:
+        """Is it a terminate? Then it is where the whole region is, in whatever state it stands."""
+        pseudo = self.region.pseudostate(vertex)
+        return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
+
+    def lane(self, vertex: str) -> Lane:
+        """The lane among whose leaves a vertex is."""
+        return self.lanes[-1] if self.is_end(vertex) else self.region.lane(vertex)
+
+    def ancestors(self, leaf: str) -> tuple[str, ...]:
+        """A leaf and the states that are active around it, innermost first."""
+        return (leaf,) if self.is_end(leaf) else self.region.ancestors(leaf)
+
+    def lane_type(self, lane: Lane) -> str:
+        """The enumeration of a lane's leaves, as its package names it."""
+        return "Leaf" if lane.owner is None else f"{ada_case(lane.name)}_Leaf"
+
+    def lane_field(self, lane: Lane) -> str:
+        """Its component of a configuration."""
+        return "Top" if lane.owner is None else f"In_{ada_case(lane.name)}"
+
+    def at(self, holder: str, lane: Lane) -> str:
+        """The leaf of a lane in the configuration that ``holder`` names."""
+        return holder if self.single else f"{holder}.{self.lane_field(lane)}"
+
+    def literals(self, lane: Lane) -> tuple[str, ...]:
+        """The leaves of a lane in tree order, passed pseudostates behind their siblings."""
+        own = Place(None, "") if lane.owner is None else Place(lane.owner, lane.name)
+        return tuple(self.literals_in(own))
+
+    def literals_in(self, place: Place) -> Iterator[str]:
+        """The leaves of one lane inside a region."""
+        for state in self.region.children(place.owner, place.region):
+            if len(state.regions) == 1:
+                yield from self.literals_in(Place(state.name, state.regions[0].name))
+            else:
+                yield state.name
+        yield from self.compounds.passed(place)
+
+    def is_literal(self, vertex: str) -> bool:
+        """Is it a leaf of its lane, rather than a range of leaves?"""
+        return (
+            self.region.pseudostate(vertex) is not None
+            or len(self.region.state(vertex).regions) != 1
+        )
+
+    def literal(self, vertex: str) -> str:
+        """A leaf or composite by its expanded name."""
+        return f"{self.states}.{state_literal(vertex)}"
+
+    def in_state(self, holder: str, vertex: str, prefix: str = "") -> Expr:
+        """Is the configuration that ``holder`` names in a state, or inside it?"""
+        lane = self.lane(vertex)
+        leaf = Ref(self.at(holder, lane))
+        name = prefix + self.literal(vertex)
+        here = equal(leaf, Ref(name)) if self.is_literal(vertex) else member(leaf, name)
+        if lane.owner is None:
+            return here
+        return both(*flat([self.in_state(holder, lane.owner, prefix), here]))
+
+    def traced(self, lane: Lane) -> str:
+        """The name under which traces know a lane."""
+        return self.region.name if lane.owner is None else f"{self.region.name}.{lane.name}"
+
+    def compared_types(self, state: str) -> tuple[str, ...]:
+        """The types whose equality the test for a state uses, without their package."""
+        found: list[str] = []
+        at: str | None = state
+        while at is not None:
+            lane = self.region.lane(at)
+            if self.is_literal(at):
+                found.append(self.lane_type(lane))
+            at = lane.owner
+        return tuple(found)
+
+    def package_of_states(self) -> Package:
+        """The enumerations, the composites, and the configuration where there are lanes."""
+        items: list[Decl] = []
+        for lane in reversed(self.lanes):
+            names = tuple(state_literal(n) for n in self.literals(lane))
+            items.append(EnumType(self.lane_type(lane), names))
+        for state in self.region.states:
+            if len(state.regions) == 1:
+                leaves = list(self.literals_in(Place(state.name, state.regions[0].name)))
+                outer = self.parent_type(state.name)
+                bounds = f"{outer} range {state_literal(leaves[0])} .. {state_literal(leaves[-1])}"
+                items.append(PlainType(state_literal(state.name), bounds, subtype=True))
+        if not self.single:
+            rows = tuple(
+                Component(
+                    self.lane_field(n), self.lane_type(n), Ref(state_literal(self.default_leaf(n)))
+                )
+                for n in reversed(self.lanes)
+            )
+            items.append(RecordType("Configuration", rows))
+        return Package(self.states, tuple(items))
+
+    def parent_type(self, state: str) -> str:
+        """The type that a composite's leaves are a range of."""
+        lane = self.region.lane(state)
+        parent = self.region.state(state).parent
+        if parent is None or parent == lane.owner:
+            return self.lane_type(lane)
+        return state_literal(parent)
+
+    def default_leaf(self, lane: Lane) -> str:
+        """The leaf that a lane starts with by default."""
+        return self.region.default_of(lane.owner, lane.name if lane.owner else "")
+
+    def lanes_of(self, state: str) -> tuple[Lane, ...]:
+        """The lanes that begin in an orthogonal state."""
+        return tuple(n for n in self.lanes if n.owner == state)
+
+    def after(self, entries: tuple[Step, ...]) -> dict[Lane, str]:
+        """The leaves that entries lead to, lane by lane; other lanes keep theirs."""
+        found: dict[Lane, str] = {}
+        for step in entries:
+            if isinstance(step, Enter) and self.is_literal(step.vertex):
+                found[self.region.lane(step.vertex)] = step.vertex
+                found |= {n: self.default_leaf(n) for n in self.lanes_of(step.vertex)}
+        return found
+
+    def configuration(self, leaves: dict[Lane, str], kept: str, prefix: str = "") -> Expr:
+        """A configuration with these leaves; those of other lanes come from ``kept``."""
+        if self.single:
+            return Ref(prefix + self.literal(leaves[self.lanes[0]]) if leaves else kept)
+        rows = tuple(
+            Arg(self.lane_field(lane), Ref(prefix + self.literal(leaves[lane])))
+            for lane in reversed(self.lanes)
+            if lane in leaves
+        )
+        if not rows:
+            return Ref(kept)
+        return Aggregate(rows, base=kept if len(rows) < len(self.lanes) else None)
+
+    def initial(self, component: str = "") -> Expr:
+        """The configuration before the region has started, seen from inside ``component``."""
+        prefix = f"{component}." if component else ""
+        return self.configuration({n: self.default_leaf(n) for n in self.lanes}, "", prefix)
+
+
+def flat(parts: list[Expr]) -> list[Expr]:
+    """One conjunction instead of nested ones."""
+    found: list[Expr] = []
+    for part in parts:
+        if isinstance(part, Chain) and part.operator == "and then":
+            found += flat(list(part.operands))
+        else:
+            found.append(part)
+    return found

@@ -1,0 +1,352 @@
+"""Expressions and flows of the model as Ada expressions and statements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from ravenchart.gen.emit.ada.naming import ada_case, counted, type_name, unit_type
+from ravenchart.gen.emit.ada.syntax import (
+    FALSE,
+    TRUE,
+    Aggregate,
+    Arg,
+    Assign,
+    Call,
+    Chain,
+    Do,
+    Expr,
+    If,
+    IfExpr,
+    Prefix,
+    Ref,
+    Stmt,
+    arguments,
+)
+from ravenchart.gen.language import terms as m
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.system import System
+
+from .events import field_of
+from .places import Places
+
+_CHAINS = {"and": "and then", "or": "or else"}
+_FUNCTIONS = {"min": "Min", "max": "Max"}
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """How names read in one place of the generated program.
+
+    ``variable`` gives a data item, parameter or port view, ``target`` a data
+    item to be set, ``sent`` the slot of an output port, ``raised`` the
+    statement that raises an event.
+    """
+
+    system: System
+    component: Component
+    variable: Callable[[str], str]
+    target: Callable[[str], str]
+    sent: Callable[[str], tuple[str, str]]
+    raised: Callable[[str, Expr | None], tuple[Stmt, ...]]
+
+
+def unit_of(expression: m.Expression) -> str | None:
+    """What an integer expression counts; None for a bare number."""
+    match expression:
+        case m.Operation():
+            return expression.unit
+        case m.Name(_, _, field, of_type):
+            scalar = (
+                of_type.field(field).type
+                if isinstance(of_type, m.RecordType) and field
+                else of_type
+            )
+            return scalar.unit if isinstance(scalar, m.IntegerType) else None
+        case _:
+            return None
+
+
+def names_in(expression: m.Expression) -> set[str]:
+    """The data, parameters, ports and regions that an expression reads."""
+    match expression:
+        case m.Literal():
+            return set()
+        case m.Name(kind, name):
+            return set() if kind is m.Reading.EVENT else {name}
+        case m.PortTest(port):
+            return {port}
+        case m.InState(region):
+            return {region}
+        case m.Operation(_, operands):
+            return {name for operand in operands for name in names_in(operand)}
+
+
+def states_in(expression: m.Expression) -> set[tuple[str, str]]:
+    """The (region, state) pairs that an expression asks for."""
+    match expression:
+        case m.InState(region, state):
+            return {(region, state)}
+        case m.Operation(_, operands):
+            return {pair for operand in operands for pair in states_in(operand)}
+        case _:
+            return set()
+
+
+def compared_states(component: Component, expressions: Iterable[m.Expression]) -> set[str]:
+    """The types of states that expressions compare, seen from the component's package."""
+    asked = {pair for e in expressions for pair in states_in(e)}
+    return {
+        f"{places.states}.{kind}"
+        for name, state in asked
+        for places in (Places(component.region(name)),)
+        for kind in places.compared_types(state)
+    }
+
+
+def operators_in(expression: m.Expression) -> set[str]:
+    """The runtime's types whose operators an expression uses."""
+    match expression:
+        case m.PortTest():
+            return {"Ravenchart.Freshness"}
+        case m.Operation(operator, operands):
+            found = {name for operand in operands for name in operators_in(operand)}
+            plain = any(_is_plain(o) for o in operands)
+            if operator in ("*", "/") and expression.unit is not None:
+                plain = False  # plain factors are converted
+            if operator not in ("min", "max", "clamp", "if") and plain:
+                found.add("Ravenchart.Number")
+            return found
+        case _:
+            return set()
+
+
+def _is_plain(operand: m.Expression) -> bool:
+    """An integer that counts nothing, and is more than a literal."""
+    match operand:
+        case m.Operation(operator, operands, None, None):
+            #  a choice between literals is of no type of its own
+            return operator in ("min", "max", "clamp") or any(map(_is_plain, operands))
+        case m.Name(_, _, field, of_type):
+            scalar = (
+                of_type.field(field).type
+                if isinstance(of_type, m.RecordType) and field
+                else of_type
+            )
+            return isinstance(scalar, m.IntegerType) and scalar.unit is None
+        case _:
+            return False
+
+
+def expressions_in(flow: m.Flow) -> Iterator[m.Expression]:
+    """Every expression that stands in a flow."""
+    for action in flow:
+        match action:
+            case m.Set():
+                yield action.value
+            case m.Raise(_, _, values):
+                yield from (value for _, value in values)
+            case m.Send():
+                yield from (value for _, value in action.values)
+            case m.If():
+                yield action.condition
+                yield from expressions_in(action.then)
+                yield from expressions_in(action.otherwise)
+
+
+def effective(flow: m.Flow) -> m.Flow:
+    """A flow of an activity without what has no effect: values set anew before they are read."""
+    kept: list[m.Action] = []
+    raised: set[str] = set()
+    for index, action in enumerate(flow):
+        match action:
+            case m.Raise(_, event) if event in raised:
+                continue
+            case m.Raise(_, event):
+                raised.add(event)
+            case m.Set(_, data, None) if _set_anew(data, flow[index + 1 :]):
+                continue
+            case m.If(origin, condition, then, otherwise):
+                action = m.If(origin, condition, effective(then), effective(otherwise))
+        kept.append(action)
+    return tuple(kept)
+
+
+def _set_anew(data: str, rest: m.Flow) -> bool:
+    for action in rest:
+        if data in flow_names((action,)):
+            return False
+        match action:
+            case m.Set(_, again, field) if again == data:
+                return field is None
+    return False
+
+
+def flow_operators(flow: m.Flow) -> set[str]:
+    """The runtime's types whose operators a flow uses."""
+    return {name for expression in expressions_in(flow) for name in operators_in(expression)}
+
+
+def flow_names(flow: m.Flow) -> set[str]:
+    """The data, parameters, ports and regions that a flow reads."""
+    return {name for expression in expressions_in(flow) for name in names_in(expression)}
+
+
+def certain_sends(flow: m.Flow) -> set[str]:
+    """The ports that a flow sends on whatever way it takes."""
+    ports: set[str] = set()
+    for action in flow:
+        match action:
+            case m.Send(_, port, _):
+                ports.add(port)
+            case m.If(_, _, then, otherwise):
+                ports |= certain_sends(then) & certain_sends(otherwise)
+    return ports
+
+
+def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = None) -> Expr:
+    """One model expression as Ada; ``unit`` is what its place counts, for bare numbers."""
+    match expression:
+        case m.Literal(value, of_type):
+            return _literal(scope, value, of_type, unit)
+        case m.Name():
+            return Ref(_name(scope, expression))
+        case m.PortTest(port, state):
+            view = scope.variable(port)
+            return Chain("=", (Ref(f"{view}.State"), Ref(f"Ravenchart.{ada_case(state)}")))
+        case m.InState(region, state):
+            return _in_state(scope, region, state)
+        case m.Operation():
+            return _operation(scope, expression, unit)
+
+
+def _literal(scope: Scope, value: m.Scalar, of_type: m.ScalarType | None, unit: str | None) -> Expr:
+    if isinstance(value, int) and not isinstance(value, bool):
+        return counted(value, unit)
+    if of_type is None or of_type == m.BOOLEAN:
+        return TRUE if str(value).lower() == "true" else FALSE
+    return Ref(f"{ada_case(scope.system.name)}.{ada_case(str(value))}")
+
+
+def _name(scope: Scope, name: m.Name) -> str:
+    if name.kind is m.Reading.EVENT:
+        return _of_event(scope, name)
+    text = scope.variable(name.name)
+    if name.kind is m.Reading.PORT:
+        text += ".Value"
+    return text if name.field is None else f"{text}.{ada_case(name.field)}"
+
+
+def _of_event(scope: Scope, name: m.Name) -> str:
+    """The value of the event that a step is made for, or a field of it."""
+    of_type = m.named(scope.component.events, name.name).type
+    assert of_type is not None
+    text = f"Item.{field_of(of_type)}"
+    return text if name.field is None else f"{text}.{ada_case(name.field)}"
+
+
+def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
+    places = Places(scope.component.region(region_name))
+    return places.in_state(scope.variable(region_name), state)
+
+
+def _operation(scope: Scope, operation: m.Operation, place: str | None) -> Expr:
+    operator = operation.operator
+    #  bare numbers take the unit of their neighbours, or of the place
+    unit = next((u for o in operation.operands if (u := unit_of(o)) is not None), None)
+    if unit is None and operation.type is None:
+        unit = place
+    operands = tuple(emit_expression(scope, o, unit) for o in operation.operands)
+    if operator == "not":
+        return Prefix("not", operands[0])
+    if operator == "neg":
+        return Prefix("-", operands[0])
+    if operator == "abs":
+        return Prefix("abs", operands[0])
+    if operator == "if":
+        return IfExpr(((operands[0], operands[1]),), operands[2])
+    if operator in _FUNCTIONS or operator == "clamp":
+        return _bounded(scope, operation, operands, unit)
+    if operator in ("*", "/"):
+        return Chain(operator, tuple(_scaled(scope, unit, o) for o in operation.operands))
+    return Chain(_CHAINS.get(operator, operator), operands)
+
+
+def _bounded(
+    scope: Scope, operation: m.Operation, operands: tuple[Expr, ...], unit: str | None
+) -> Expr:
+    base = unit_type(scope.system, unit)
+    if operation.operator == "clamp":
+        item, low, high = operands
+        inner = Call(f"{base}'Max", arguments(item, low))
+        return Call(f"{base}'Min", arguments(inner, high))
+    return Call(f"{base}'{_FUNCTIONS[operation.operator]}", arguments(*operands))
+
+
+def _scaled(scope: Scope, unit: str | None, operand: m.Expression) -> Expr:
+    """A factor in the unit type of the product, for Ada multiplies only within a type."""
+    if isinstance(operand, m.Literal) or unit_of(operand) == unit:
+        return emit_expression(scope, operand, unit)
+    return Call(unit_type(scope.system, unit), arguments(emit_expression(scope, operand)))
+
+
+def emit_flow(scope: Scope, flow: m.Flow) -> tuple[Stmt, ...]:
+    """The actions of a flow, in order."""
+    return tuple(statement for action in flow for statement in _action(scope, action))
+
+
+def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
+    match action:
+        case m.Set(_, data, field, value):
+            target = scope.target(data) + (f".{ada_case(field)}" if field else "")
+            item = next(d.type for d in scope.component.data if d.name == data)
+            return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
+        case m.Send(_, port, values):
+            slot, flag = scope.sent(port)
+            if scope.component.port(port).is_void:
+                return (Assign(flag, TRUE),)
+            given = _given(scope, scope.component.port(port).type, values)
+            return (Assign(slot, given), Assign(flag, TRUE))
+        case m.Raise(_, event, values):
+            of_type = m.named(scope.component.events, event).type if values else None
+            return scope.raised(event, _given(scope, of_type, values) if of_type else None)
+        case m.If(_, condition, then, otherwise):
+            branch = (emit_expression(scope, condition), emit_flow(scope, then))
+            return (If((branch,), emit_flow(scope, otherwise)),)
+
+
+def _unit_in(of_type: m.Type, field: str | None) -> str | None:
+    """What a target counts."""
+    scalar = of_type.field(field).type if isinstance(of_type, m.RecordType) and field else of_type
+    return scalar.unit if isinstance(scalar, m.IntegerType) else None
+
+
+def _given(
+    scope: Scope, of_type: m.Type, values: tuple[tuple[str | None, m.Expression], ...]
+) -> Expr:
+    """The value that a send or raise gives."""
+    if not isinstance(of_type, m.RecordType):
+        return emit_expression(scope, values[0][1], _unit_in(of_type, None))
+    return Aggregate(
+        tuple(
+            Arg(ada_case(f or ""), emit_expression(scope, v, _unit_in(of_type, f)))
+            for f, v in values
+        ),
+        type_name(scope.system, of_type),
+    )
+
+
+def raise_in_list(list_package: str, target: str, event: Expr) -> Stmt:
+    """Append ``event`` to the list of events raised in this step."""
+    return Do(f"{list_package}.Append", arguments(Ref(target), event))
+
+
+def asks_event(expression: m.Expression) -> bool:
+    """Does it ask for the value of the event?"""
+    match expression:
+        case m.Name(kind):
+            return kind is m.Reading.EVENT
+        case m.Operation(_, operands):
+            return any(asks_event(o) for o in operands)
+        case _:
+            return False

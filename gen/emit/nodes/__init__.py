@@ -1,0 +1,1 @@
+"""The program of a node: its tasks, supervision, reports and project."""

@@ -1,0 +1,302 @@
+"""Health, trace, probe and processors of a node."""
+
+from __future__ import annotations
+
+from ravenchart.gen.derive.instants import has_offset
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    priority,
+    processor_package,
+    root_package,
+    row_name,
+)
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Aggregate,
+    Arg,
+    Aspect,
+    Call,
+    Case,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    EnumType,
+    Expr,
+    If,
+    Instance,
+    Object,
+    Package,
+    Param,
+    PlainType,
+    Pragma,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    do,
+    equal,
+    number,
+)
+from ravenchart.gen.emit.buses.packages import emit_bus
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE, agrees, fact, rows_agree
+from ravenchart.gen.emit.tables.executions import ELEMENT_ID
+from ravenchart.gen.emit.tables.trace_calls import element_constant, note, row_number, traced
+from ravenchart.gen.emit.tables.trace_map import elements
+from ravenchart.gen.model.system import Node, Processor, Slot, System, Work
+
+from .reports import emit_main, emit_reports
+from .supervision import emit_supervision, offer
+
+PROBE_STACK = 16_384
+"""Bytes of stack for the host probe."""
+
+
+def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
+    """Everything that is not about one component or instance."""
+    units = [_health(system, header), _elements(system, header)]
+    if traced(system):
+        units.append(_trace(system, header))
+    units += [_probe(system, n, header) for n in system.nodes if n.probe is not None]
+    for bus in system.buses:
+        units += emit_bus(system, bus, header)
+    for processor in system.processors:
+        units += _processor(system, processor, header)
+    units += emit_supervision(system, header)
+    units += emit_reports(system, header)
+    units.append(emit_main(system, header))
+    return tuple(units)
+
+
+def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
+    """What instances need of it in a simulation."""
+    return (_health(system, header), _elements(system, header))
+
+
+def _health(system: System, header: str) -> Unit:
+    args = arguments(Ceiling=priority(system.object("health").ceiling))
+    return _holding(system, "Health_Counts", "Counters", "Ravenchart.Health_Counters", args, header)
+
+
+def _holding(
+    system: System,
+    unit: str,
+    name: str,
+    generic: str,
+    args: tuple[Arg, ...],
+    header: str,
+    checks: tuple[Decl, ...] = (),
+) -> Unit:
+    """A unit around an instance: gnatprove checks no ceiling in an instance that is a unit."""
+    root = root_package(system)
+    package = Package(f"{root}.{unit}", (Instance(name, generic, args), *checks), (SPARK,))
+    return Unit(header, (generic, f"{root}.{CERTIFICATE}" if checks else "System"), package)
+
+
+def _trace(system: System, header: str) -> Unit:
+    depth = max(n.trace_depth for n in system.nodes)
+    args = arguments(Capacity=number(depth), Ceiling=priority(system.object("trace").ceiling))
+    return _holding(system, "Trace", "Buffer", "Ravenchart.Trace_Buffers", args, header)
+
+
+def _probe(system: System, node: Node, header: str) -> Unit:
+    assert node.probe is not None
+    element = f"{node.name}.probe"
+    args = arguments(
+        Name=Ref(f'"{element}"'),
+        Period=fact(element, "T"),
+        Probe_Priority=fact(element, "Priority"),
+        Stack_Bytes=number(PROBE_STACK),
+    )
+    checks = (
+        UseType("Ravenchart.Nanoseconds"),
+        agrees("Probe.Given_Period", fact(element, "T"), element, "period"),
+        agrees("Probe.Given_Priority", fact(element, "Priority"), element, "priority"),
+    )
+    return _holding(system, "Host_Probe", "Probe", "Ravenchart.Host_Probes", args, header, checks)
+
+
+def _elements(system: System, header: str) -> Unit:
+    items: list[Decl] = [
+        Comment("Numbers of the model's elements; trace.json has their names and places.")
+    ]
+    for item in elements(system):
+        name = element_constant(item.element, item.kind)
+        items.append(Object(name, "Ravenchart.Element_Id", number(item.number), constant=True))
+    package = Package(f"{root_package(system)}.Elements", tuple(items), (SPARK, Aspect("Pure")))
+    return Unit(header, (), package)
+
+
+# --- Processors --------------------------------------------------------------
+
+
+def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
+    root, name = root_package(system), processor_package(system, processor)
+    shifted = any(has_offset(system, t) for t in system.tasks if t.element == processor.name)
+    offset = fact(processor.name, "O") if shifted else number(0)
+    rows = tuple(row_name(s) for s in processor.slots)
+    items: list[Decl] = [
+        Comment(f"[{processor.name}.table] the activities, in the order in which they run"),
+        EnumType("Row", rows),
+        Subprogram("Execute", (Param("Item", "in", "Row"),)),
+        Subprogram("On_Deadline_Miss"),
+    ]
+    shared = arguments(
+        Deadline=fact(processor.name, "D"),
+        Task_Priority=fact(processor.name, "Priority"),
+        Ceiling=priority(system.object(f"{processor.name}.monitor").ceiling),
+        Stack_Bytes=number(processor.stack_bytes),
+        Execute=Ref("Execute"),
+        On_Deadline_Miss=Ref("On_Deadline_Miss"),
+    )
+    if processor.released_by is None:
+        generic = "Ravenchart.Periodic_Processors"
+        slots = tuple(Arg(row_name(s), _slot(s)) for s in processor.slots)
+        items.append(PlainType("Row_Table", "array (Row) of Ravenchart.Schedules.Slot"))
+        args = arguments(
+            Activity_Id=Ref("Row"),
+            Table_Type=Ref("Row_Table"),
+            Table=Aggregate(slots),
+            Cycle=number(processor.cycle),
+            Period=fact(processor.name, "T"),
+            Offset=offset,
+        )
+    else:
+        generic = "Ravenchart.Sporadic_Processors"
+        args = arguments(
+            Activity_Id=Ref("Row"),
+            Minimum_Separation=fact(processor.name, "T"),
+            Wait=Ref(f"{ada_case(processor.released_by)}.Receiver.Wait"),
+        )
+    if processor.on_overrun:
+        shared += arguments(On_Executed=Ref("On_Executed"))
+        items += _budgets(processor)
+    items.append(Comment(f"[{processor.name}]"))
+    named = arguments(Name=Ref(f'"{processor.name}"'))
+    items.append(Instance("Processor", generic, (*named, *args, *shared)))
+    items += _checks(processor, offset)
+    withs = {generic, "System", f"{root}.{CERTIFICATE}"}
+    if processor.released_by is None:
+        withs.add("Ravenchart.Schedules")
+    else:
+        withs.add(f"{root}.{ada_case(processor.released_by)}.Receiver")
+    context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+    context |= {_owner_unit(system, s) for s in processor.slots}
+    context |= {f"{root}.{ada_case(i)}" for i, _ in processor.raises}
+    context |= {
+        f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in processor.raises
+    }
+    context.add(f"{root}.Elements")
+    if traced(system):
+        context |= {f"{root}.Trace", "Ravenchart.Traces"}
+    spec = Package(name, tuple(items), (SPARK,))
+    body = Package(name, _processor_body(system, processor), (SPARK,), is_body=True)
+    return [
+        Unit(header, tuple(sorted(withs)), spec),
+        Unit(header, tuple(sorted(context - withs)), body),
+    ]
+
+
+def _checks(processor: Processor, offset: Expr) -> list[Decl]:
+    """The task runs as its certificate says."""
+    separation = "Period" if processor.released_by is None else "Separation"
+    compared: list[tuple[str, Expr, str]] = [
+        ("Given_Priority", fact(processor.name, "Priority"), "priority"),
+        (f"Given_{separation}", fact(processor.name, "T"), separation.lower()),
+        ("Given_Deadline", fact(processor.name, "D"), "deadline"),
+    ]
+    if processor.released_by is None:
+        compared.append(("Given_Offset", offset, "offset"))
+    found: list[Decl] = [
+        UseType("Ravenchart.Nanoseconds"),
+        *(agrees(f"Processor.{given}", to, processor.name, what) for given, to, what in compared),
+    ]
+    if processor.released_by is None:
+        found += rows_agree(processor, "Processor.Given_Table")
+    return found
+
+
+def _slot(slot: Slot) -> Expr:
+    facts = {what: fact(slot.element, what) for what in ("Divisor", "Phase")}
+    return Aggregate(tuple(Arg(what, value) for what, value in facts.items()))
+
+
+def _owner_unit(system: System, slot: Slot) -> str:
+    return f"{root_package(system)}.{_package(slot)}"
+
+
+def _package(slot: Slot) -> str:
+    """Where the procedure of a row is."""
+    unit = {Work.BUS_RECEIVE: ".Receiver", Work.BUS_WATCH: ".Watch"}.get(slot.work, "")
+    return f"{ada_case(slot.owner)}{unit}"
+
+
+def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
+    rows = []
+    for slot in processor.slots:
+        name = slot.work.value if slot.of_bus else slot.name
+        rows.append(
+            (row_name(slot), (do(f"{_package(slot)}.Run_{ada_case(name)}", Ref("Executed")),))
+        )
+    execute: list[Stmt] = []
+    if traced(system):
+        execute.append(
+            Do(
+                "Trace.Buffer.Note",
+                arguments(
+                    Ref("Ravenchart.Traces.Activity"),
+                    row_number(processor, "Row", "Item"),
+                    number(0),
+                ),
+            )
+        )
+    execute.append(Case(Ref("Item"), tuple(rows)))
+    #  each row once, and none for another
+    execute.append(
+        Pragma("Assert", (equal(Ref("Executed"), row_number(processor, "Row", "Item")),))
+    )
+    missed = _fault(system, processor, "Deadline_Miss", processor.on_deadline_miss)
+    uses = [UseType(ELEMENT_ID)]
+    found: list[Decl] = [
+        Subprogram(
+            "Execute",
+            (Param("Item", "in", "Row"),),
+            declarations=(Object("Executed", ELEMENT_ID, number(0)),),
+            body=tuple(execute),
+        ),
+        Subprogram("On_Deadline_Miss", body=missed),
+    ]
+    if processor.on_overrun:
+        over = Chain(">", (Ref("Used"), Ref("Budgets (Item)")))
+        raised = _fault(system, processor, "Overrun", processor.on_overrun)
+        found.append(Subprogram("On_Executed", _EXECUTED, body=(If(((over, raised),)),)))
+    return (*uses, *found)
+
+
+_EXECUTED = (Param("Item", "in", "Row"), Param("Used", "in", "Ravenchart.Nanoseconds"))
+
+
+def _budgets(processor: Processor) -> list[Decl]:
+    """What each row may use, and what compares it with what it used."""
+    rows = tuple(Arg(row_name(slot), fact(slot.element, "Budget")) for slot in processor.slots)
+    return [
+        Subprogram("On_Executed", _EXECUTED),
+        PlainType("Row_Budgets", "array (Row) of Ravenchart.Nanoseconds"),
+        Comment(f"[{processor.name}.table] the longest that each activity may take"),
+        Object("Budgets", "Row_Budgets", Aggregate(rows), constant=True),
+    ]
+
+
+def _fault(
+    system: System, processor: Processor, kind: str, events: tuple[tuple[str, str], ...]
+) -> tuple[Stmt, ...]:
+    """Count and note a fault of a processor, and raise its events."""
+    fault = Ref(f"Ravenchart.Health.{kind}")
+    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(fault))
+    return (
+        Do("Health_Counts.Counters.Record_Fault", arguments(fault)),
+        *note(system, "Fault", processor.name, "processor", position),
+        *(offer(system, instance, event) for instance, event in events),
+    )

@@ -1,0 +1,196 @@
+"""The program for simulation: the generated code without tasks and buses, in virtual time.
+
+Components, regions and instances are those of the controller, by the same
+emitters; each behaviour and each step only says that it was executed. A stimulus
+is a number and integers: events, then input ports, of each instance in model
+order; a literal by its position, a record field by field.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ravenchart.gen.derive.completion import on_one_node
+from ravenchart.gen.emit.ada.naming import ada_case, root_package, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Assign,
+    Case,
+    Chain,
+    Decl,
+    Do,
+    Expr,
+    If,
+    Object,
+    Param,
+    PlainType,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    arguments,
+    call,
+    do,
+    equal,
+    number,
+)
+from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.language.events import event_value
+from ravenchart.gen.emit.tables.executions import ELEMENT_ID
+from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
+from ravenchart.gen.model.component import Port
+from ravenchart.gen.model.system import Instance, System
+
+Stimulus = tuple[str, str, Type | None]
+"""Instance, event or input port, and the type of its value."""
+
+
+def simulated(system: System) -> System:
+    """The part of a system that can be simulated: no bus, no trace, all on one node."""
+    system = on_one_node(system)
+    processors = tuple(p for p in system.processors if p.released_by is None)
+    nodes = tuple(replace(n, trace_depth=0, probe=None, supervision=None) for n in system.nodes)
+    return replace(system, nodes=nodes, buses=(), messages=(), processors=processors)
+
+
+def stimuli(system: System) -> tuple[Stimulus, ...]:
+    """All stimuli, in order of their numbers from 1."""
+    found: list[Stimulus] = []
+    for instance in system.instances:
+        component = instance.component
+        found += [(instance.name, e.name, e.type) for e in component.events]
+        found += [(instance.name, p.name, p.type) for p in component.inputs()]
+    return tuple(found)
+
+
+def numbers(of_type: Type | None, value: Value | None) -> list[int]:
+    """A value as the integers of a stimulus."""
+    if of_type is None or value is None:
+        return []
+    if isinstance(of_type, RecordType):
+        assert isinstance(value, tuple)
+        given = {field.lower(): item for field, item in value}
+        return [_number(f.type, given[f.name.lower()]) for f in of_type.fields]
+    return [_number(of_type, value)]
+
+
+def _number(of_type: ScalarType, value: Value) -> int:
+    if isinstance(of_type, IntegerType):
+        assert isinstance(value, int)
+        return value
+    literals = [literal.lower() for literal in of_type.literals]
+    return literals.index(str(value).lower())
+
+
+def emit_simulation(system: System, header: str) -> Unit:
+    """The main program."""
+    root = root_package(system)
+    order = sorted(system.processors, key=lambda p: -p.priority)
+    last = len(order)
+    withs = {f"{root}.{ada_case(i.name)}" for i in system.instances}
+    withs |= {f"{root}.{ada_case(i.component.name)}" for i in system.instances}
+    withs |= {"Ravenchart.Simulated_Runs", "Ravenchart.Steps"}
+    releases: list[tuple[str, tuple[Stmt, ...]]] = []
+    for position, processor in enumerate(order, 1):
+        rows: list[Stmt] = []
+        for slot in processor.slots:
+            if slot.of_bus:
+                continue
+            run = (
+                Assign("Executed", number(0)),
+                do(f"{root}.{ada_case(slot.owner)}.Run_{ada_case(slot.name)}", Ref("Executed")),
+            )
+            turn = Chain("mod", (Ref("Count"), number(slot.divisor)))
+            due = equal(turn, number(slot.phase))
+            rows += run if slot.divisor == 1 else (If(((due, run),)),)
+        releases.append((str(position), tuple(rows)))
+    executes = any(rows for _, rows in releases)
+    takes = [
+        (str(k), _taken(system, root, name, what, of_type))
+        for k, (name, what, of_type) in enumerate(stimuli(system), 1)
+    ]
+    width = max((len(_scalars(t)) for _, _, t in stimuli(system) if t is not None), default=0)
+    taken: list[Decl] = []
+    if width:
+        taken.append(Object("V", f"array (1 .. {width}) of Long_Long_Integer"))
+    return Unit(
+        header,
+        tuple(sorted(withs)),
+        Subprogram(
+            f"{root}_Simulation",
+            declarations=(
+                PlainType("Processor", f"range 1 .. {last}"),
+                PlainType("Instants", "array (Processor) of Long_Long_Integer"),
+                Subprogram(
+                    "Release",
+                    (Param("P", "in", "Processor"), Param("Count", "in", "Natural")),
+                    declarations=(Object("Executed", ELEMENT_ID),) if executes else (),
+                    body=(Case(Ref("P"), tuple(releases)),),
+                ),
+                Subprogram(
+                    "Take",
+                    (Param("Number", "in", "Positive"),),
+                    declarations=tuple(taken),
+                    body=(Case(Ref("Number"), (*takes, ("others", ()))),),
+                ),
+                Instantiation(
+                    "Run",
+                    "Ravenchart.Simulated_Runs",
+                    arguments(
+                        Processor=Ref("Processor"),
+                        Instants=Ref("Instants"),
+                        Offsets=_instants([p.offset for p in order]),
+                        Periods=_instants([p.period for p in order]),
+                        Release=Ref("Release"),
+                        Take=Ref("Take"),
+                    ),
+                    kind="procedure",
+                ),
+            ),
+            body=(Do("Run"),),
+        ),
+    )
+
+
+def _instants(times: list[int]) -> Expr:
+    return Aggregate(tuple(Arg(str(i), number(t)) for i, t in enumerate(times, 1)))
+
+
+def _scalars(of_type: Type) -> list[ScalarType]:
+    if isinstance(of_type, RecordType):
+        return [f.type for f in of_type.fields]
+    return [of_type]
+
+
+def _taken(
+    system: System, root: str, name: str, what: str, of_type: Type | None
+) -> tuple[Stmt, ...]:
+    instance: Instance = system.instance(name)
+    steps: list[Stmt] = []
+    value: Expr | None = None
+    if of_type is not None:
+        scalars = _scalars(of_type)
+        steps += [do("Ravenchart.Steps.Get", Ref(f"V ({k + 1})")) for k in range(len(scalars))]
+        parts = [_read(system, t, f"V ({k + 1})") for k, t in enumerate(scalars)]
+        value = parts[0]
+        if isinstance(of_type, RecordType):
+            fields = zip(of_type.fields, parts, strict=True)
+            value = Aggregate(
+                tuple(Arg(ada_case(f.name), part) for f, part in fields),
+                type_name(system, of_type),
+            )
+    target = f"{root}.{ada_case(name)}"
+    ports: tuple[Port, ...] = instance.component.inputs()
+    if any(p.name == what for p in ports):
+        assert value is not None
+        steps.append(do(f"{target}.Put_{ada_case(what)}", value))
+    else:
+        event = event_value(instance.component, what, value, prefix=f"{root}.")
+        steps.append(do(f"{target}.Offer", event))
+    return tuple(steps)
+
+
+def _read(system: System, of_type: ScalarType, item: str) -> Expr:
+    name = type_name(system, of_type)
+    return call(name if isinstance(of_type, IntegerType) else f"{name}'Val", Ref(item))

@@ -1,0 +1,183 @@
+"""The liveness supervision of a node, and what makes the node safe before its program ends."""
+
+from __future__ import annotations
+
+from ravenchart.gen.derive.completion import SUPERVISOR
+from ravenchart.gen.derive.instants import has_offset
+from ravenchart.gen.emit.ada.naming import ada_case, priority, processor_package, root_package
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Aggregate,
+    Arg,
+    Assign,
+    Call,
+    Case,
+    Comment,
+    Decl,
+    Do,
+    EnumType,
+    Instance,
+    Object,
+    Package,
+    Param,
+    Ref,
+    Stmt,
+    Subprogram,
+    Unit,
+    UseType,
+    arguments,
+    call,
+    number,
+)
+from ravenchart.gen.emit.certificate.certified import agrees, fact
+from ravenchart.gen.emit.tables.trace_calls import note, traced
+from ravenchart.gen.model.system import Node, Processor, Supervision, System
+
+STACK = 32_768
+"""Bytes of stack for the supervisor."""
+
+END_MARGIN = 1_000_000_000
+"""Time in ns beyond the grace of the shutdown in which the main program ends a node."""
+
+
+def supervised(system: System) -> tuple[tuple[Node, Supervision], ...]:
+    """The nodes with a supervision, and that."""
+    return tuple((n, n.supervision) for n in system.nodes if n.supervision is not None)
+
+
+def safe_state(_system: System) -> tuple[Stmt, ...]:
+    """What makes a node safe when its program ends: behind the grace, before the report.
+
+    The main program executes it on every way to its end: a request to stop, a task that has
+    ended, a silent processor. It is the one place for what devices need then.
+    """
+    return ()
+
+
+def emit_supervision(system: System, header: str) -> list[Unit]:
+    """The supervisor of each node that has one: spec and body."""
+    return [unit for node, _ in supervised(system) for unit in _supervisor(system, node, header)]
+
+
+def _literal(processor: Processor) -> str:
+    """A processor among those watched."""
+    return f"{ada_case(processor.name)}_Watch"
+
+
+def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
+    root = root_package(system)
+    name = f"{root}.Liveness_Supervision"
+    element = f"{node.name}.{SUPERVISOR}"
+    watched = sorted(
+        (p for p in system.processors if p.node == node.name), key=lambda p: -p.priority
+    )
+    look = (
+        Param("Item", "in", "Watched"),
+        Param("Elapsed", "in", "Ravenchart.Nanoseconds"),
+        Param("Is_Silent", "out", "Boolean"),
+    )
+    args = arguments(
+        Processor_Id=Ref("Watched"),
+        Name=Ref(f'"{element}"'),
+        Period=fact(element, "T"),
+        Patience=number(system.shutdown.grace + END_MARGIN),
+        Task_Priority=fact(element, "Priority"),
+        Ceiling=priority(system.object(f"{element}.board").ceiling),
+        Stack_Bytes=number(STACK),
+        Look=Ref("Look"),
+        On_Silence=Ref("On_Silence"),
+        Feed_Watchdog=Ref("Ravenchart.Failures.Feed_Watchdog"),
+        Give_Up=Ref("Ravenchart.Failures.Give_Up"),
+    )
+    spec: tuple[Decl, ...] = (
+        Comment(f"[{node.name}] the processors, the most urgent first"),
+        EnumType("Watched", tuple(_literal(p) for p in watched)),
+        Subprogram("Look", look),
+        Comment("Has a release not completed by its deadline and the margin?"),
+        Subprogram("On_Silence", (Param("Item", "in", "Watched"),)),
+        Comment("It has not: count it, raise its events, and shut down."),
+        Comment(f"[{element}]"),
+        Instance("Supervisor", "Ravenchart.Supervisors", args),
+        UseType("Ravenchart.Nanoseconds"),
+        agrees("Supervisor.Given_Period", fact(element, "T"), element, "period"),
+        agrees("Supervisor.Given_Priority", fact(element, "Priority"), element, "priority"),
+    )
+    seen = Object("Seen", "Ravenchart.Liveness.Progress")
+    looks = tuple((_literal(p), _look(system, p)) for p in watched)
+    events = tuple((_literal(p), _silence(system, p)) for p in watched)
+    body: tuple[Decl, ...] = (
+        Subprogram("Look", look, declarations=(seen,), body=(Case(Ref("Item"), looks),)),
+        Subprogram(
+            "On_Silence",
+            (Param("Item", "in", "Watched"),),
+            body=(
+                Do(
+                    "Health_Counts.Counters.Record_Fault",
+                    arguments(Ref("Ravenchart.Health.Silence")),
+                ),
+                Case(Ref("Item"), events),
+            ),
+        ),
+    )
+    raised = [i for p in watched for i, _ in p.on_silence]
+    context = {f"{root}.Health_Counts", "Ravenchart.Health", "Ravenchart.Liveness"}
+    context |= {f"{root}.Timing_Certificate"}
+    context |= {processor_package(system, p) for p in watched}
+    context |= {f"{root}.{ada_case(i)}" for i in raised}
+    context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in raised}
+    if traced(system):
+        context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
+    withs = {
+        "Ravenchart.Failures",
+        "Ravenchart.Supervisors",
+        "System",
+        f"{root}.Timing_Certificate",
+    }
+    return [
+        Unit(header, tuple(sorted(withs)), Package(name, spec, (SPARK,))),
+        Unit(
+            header,
+            tuple(sorted(context - withs)),
+            Package(name, body, (SPARK,), is_body=True),
+        ),
+    ]
+
+
+def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:
+    """Ask one processor how far it has come, and judge."""
+    name = ada_case(processor.name)
+    limit = fact(processor.name, "L")
+    seen, elapsed = Ref("Seen"), Ref("Elapsed")
+    if processor.released_by is not None:
+        judged = call("Ravenchart.Liveness.Is_Stuck", limit, seen, elapsed)
+    else:
+        shifted = any(has_offset(system, t) for t in system.tasks if t.element == processor.name)
+        offset = fact(processor.name, "O") if shifted else number(0)
+        rhythm = Aggregate(
+            (
+                Arg("Offset", offset),
+                Arg("Period", fact(processor.name, "T")),
+                Arg("Limit", limit),
+            )
+        )
+        judged = call("Ravenchart.Liveness.Is_Silent", rhythm, seen, elapsed)
+    return (
+        Do(f"{name}.Processor.Observe_Progress", arguments(seen)),
+        Assign("Is_Silent", judged),
+    )
+
+
+def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
+    """Note the silence of a processor, raise its events, and let the program stop."""
+    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(Ref("Ravenchart.Health.Silence")))
+    return (
+        *note(system, "Fault", processor.name, "processor", position),
+        *(offer(system, instance, event) for instance, event in processor.on_silence),
+        Do("Ravenchart.Failures.Note_Silence", arguments(Ref(f'"{processor.name}"'))),
+    )
+
+
+def offer(system: System, instance: str, event: str) -> Stmt:
+    """Raise an event of an instance from outside it."""
+    component = ada_case(system.instance(instance).component.name)
+    return Do(f"{ada_case(instance)}.Offer", arguments(Ref(f"{component}.{ada_case(event)}")))

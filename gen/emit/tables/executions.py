@@ -1,0 +1,58 @@
+"""Each row of a table is executed once: what its procedure says, and who calls it checks.
+
+The procedure of a row leaves the row's number in a parameter that must be 0 before. So a
+row that is called twice, not at all or in place of another one is not proved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ravenchart.gen.emit.ada.syntax import (
+    Aspect,
+    Assign,
+    Chain,
+    Expr,
+    Param,
+    Ref,
+    Stmt,
+    Subprogram,
+    equal,
+    number,
+)
+from ravenchart.gen.model.system import Bus, Slot, System, Work
+
+from .trace_calls import element_constant
+
+ELEMENT_ID = "Ravenchart.Element_Id"
+EXECUTED = Param("Executed", "in out", ELEMENT_ID)
+
+
+def bus_row(system: System, bus: Bus, work: Work) -> Slot:
+    """The row that does a bus's own work."""
+    slots = (slot for processor in system.processors for slot in processor.slots)
+    return next(s for s in slots if s.work is work and s.owner == bus.name)
+
+
+def row_of(slot: Slot) -> Expr:
+    """The number of a row."""
+    return Ref(f"Elements.{element_constant(slot.element, 'row')}")
+
+
+def run_spec(name: str, slot: Slot) -> Subprogram:
+    """The procedure that executes a row once."""
+    before = equal(Ref("Executed"), number(0))
+    after = equal(Ref("Executed"), row_of(slot))
+    return Subprogram(
+        f"Run_{name}", (EXECUTED,), aspects=(Aspect("Pre", before), Aspect("Post", after))
+    )
+
+
+def executed(slot: Slot) -> Stmt:
+    """Note in its body that the row is executed."""
+    return Assign("Executed", Chain("+", (Ref("Executed"), row_of(slot))))
+
+
+def executing(run: Subprogram, slot: Slot) -> Subprogram:
+    """The body of a row's procedure, which notes that."""
+    return replace(run, params=(EXECUTED,), body=(*(run.body or ()), executed(slot)))

@@ -1,0 +1,118 @@
+"""Element ids: numbers in the generated program, names and places in trace.json.
+
+The numbers follow model order; the rows of a processor follow its own number
+directly, so that row k of the table is the processor's number + 1 + k.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from itertools import product
+
+from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.model.commands import RemoteRead
+from ravenchart.gen.model.system import System
+from ravenchart.gen.origins import Origin
+
+CONTROLLER_STATES = ("Stopped", "Error_Active", "Error_Passive", "Bus_Off")
+"""The states of a controller, in order of number (Ravenchart.Can.Controller_State)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One traced element.
+
+    ``leaves`` are the states of a region or of a bus, and ``transitions`` those of a region, in
+    order of number.
+    """
+
+    number: int
+    element: str
+    kind: str
+    origin: Origin
+    leaves: tuple[str, ...] = ()
+    transitions: tuple[str, ...] = ()
+
+
+def elements(system: System) -> tuple[Element, ...]:
+    """Every traced element of the system, numbered from 1."""
+    found: list[Element] = []
+
+    def add(element: str, kind: str, origin: Origin, **more: tuple[str, ...]) -> None:
+        found.append(Element(len(found) + 1, element, kind, origin, **more))
+
+    for processor in system.processors:
+        add(processor.name, "processor", processor.origin)
+        for slot in processor.slots:
+            add(slot.element, "row", slot.origin)
+    for instance in system.instances:
+        component = instance.component
+        for port in component.ports:
+            add(f"{instance.name}.{port.name}", "port", port.origin)
+        for binding in system.bindings:
+            if binding.instance == instance.name and isinstance(binding.provider, RemoteRead):
+                need = binding.need
+                add(f"{instance.name}.{need.name}", "port", need.origin)
+        for provided in component.provides:
+            if provided.server is not None:
+                add(f"{instance.name}.{provided.name}", "port", provided.origin)
+        for event in component.events:
+            add(f"{instance.name}.{event.name}", "event", event.origin)
+        for region in component.regions:
+            places = Places(region)
+            for lane in reversed(places.lanes):
+                fired = () if lane.owner else tuple(f.name for f in places.compounds.firings)
+                add(
+                    f"{instance.name}.{places.traced(lane)}",
+                    "region",
+                    region.origin,
+                    leaves=places.literals(lane),
+                    transitions=fired,
+                )
+    for message in system.messages:
+        add(message.name, "message", message.origin)
+    return (*found, *_controllers(system, len(found)))
+
+
+def _controllers(system: System, last: int) -> tuple[Element, ...]:
+    """The controllers of each bus with `watch`, ``node.bus``, numbered behind ``last``."""
+    watched = [bus for bus in system.buses if bus.watch is not None]
+    return tuple(
+        Element(number, f"{node.name}.{bus.name}", "bus", bus.origin, leaves=CONTROLLER_STATES)
+        for number, (bus, node) in enumerate(product(watched, system.nodes), last + 1)
+    )
+
+
+def number_of(system: System, element: str, kind: str) -> int:
+    """The number of one element; KeyError where it is not traced."""
+    for item in elements(system):
+        if item.element == element and item.kind == kind:
+            return item.number
+    raise KeyError(f"{kind} {element}")
+
+
+def trace_json(system: System) -> str:
+    """The map from numbers to names and model lines, and the digest of the model."""
+    rows = []
+    for item in elements(system):
+        row: dict[str, object] = {
+            "id": item.number,
+            "element": item.element,
+            "kind": item.kind,
+            "origin": _place(item.origin, system.origin),
+        }
+        if item.kind == "region":
+            row |= {"leaves": item.leaves, "transitions": item.transitions}
+        if item.kind == "bus":
+            row["leaves"] = item.leaves
+        rows.append(row)
+    document = {"system": system.name, "digest": system.digest, "elements": rows}
+    return json.dumps(document, indent=1, ensure_ascii=True) + "\n"
+
+
+def _place(origin: Origin, model: Origin) -> str:
+    """Where an element stands, from the model's folder: the same wherever that is."""
+    file = os.path.relpath(origin.file, os.path.dirname(model.file) or ".")
+    return f"{file}:{origin.line}:{origin.column}"

@@ -1,0 +1,255 @@
+"""What the file format is made of: values with their limits, and located mappings.
+
+The forms themselves are in `schema`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    ModelWrapValidatorHandler,
+    PlainValidator,
+    PrivateAttr,
+    WithJsonSchema,
+    model_validator,
+)
+from pydantic import Field as PydanticField
+from pydantic_core import PydanticCustomError
+
+from ravenchart.gen.language.names import IDENTIFIER, LONGEST_NAME, problem_of
+from ravenchart.gen.language.quantities import (
+    BITS_PER_SECOND,
+    BYTES,
+    LONGEST,
+    NANOSECONDS,
+    duration,
+    pattern,
+    quantity,
+)
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.origins import Origin
+
+from .located import Map, Place, Seq
+
+
+def key(description: str, **limits: Any) -> Any:
+    """A key with its description and limits."""
+    return PydanticField(description=description, **limits)
+
+
+def optional(description: str, **limits: Any) -> Any:
+    """A key that may be left out."""
+    return PydanticField(default=None, description=description, **limits)
+
+
+# --- Values --------------------------------------------------------------------
+
+
+def _name(text: str) -> str:
+    problem = problem_of(text)
+    if problem is not None:
+        raise PydanticCustomError("coded", "{message}", {"code": problem[0], "message": problem[1]})
+    return text
+
+
+def _coded(code: str, message: str) -> PydanticCustomError:
+    return PydanticCustomError("coded", "{message}", {"code": code, "message": message})
+
+
+def _positive(value: object) -> object:
+    parsed = _duration(value)
+    if parsed == 0:
+        raise _coded("RV-0205", "must be longer than 0")
+    return parsed
+
+
+def _duration(value: object) -> Ns:
+    parsed = duration(value) if isinstance(value, str) else None
+    if parsed is None:
+        shape = "a duration such as `20 ms` (ns, us, ms or s; whole nanoseconds)"
+        raise _coded("RV-0205", f"must be {shape}")
+    if parsed > LONGEST:
+        raise _coded("RV-0205", "must be at most one hour")
+    return parsed
+
+
+def _flag(value: object) -> object:
+    return {"yes": True, "no": False}.get(value, value) if isinstance(value, str) else value
+
+
+def _stack(value: object) -> object:
+    parsed = quantity(value, BYTES) if isinstance(value, str) else None
+    if parsed is None or not 2**10 <= parsed <= 2**26:
+        raise _coded("RV-0206", "must be a size such as `32 KiB`, from 1 KiB to 64 MiB")
+    return parsed
+
+
+def _bit_rate(value: object) -> object:
+    parsed = quantity(value, BITS_PER_SECOND) if isinstance(value, str) else None
+    if parsed is None or not 10_000 <= parsed <= 1_000_000:
+        raise _coded("RV-0207", "must be a bit rate such as `500 kbit/s`, 10 kbit/s to 1 Mbit/s")
+    return parsed
+
+
+def _data_rate(value: object) -> object:
+    parsed = quantity(value, BITS_PER_SECOND) if isinstance(value, str) else None
+    if parsed is None or not 10_000 <= parsed <= 10_000_000:
+        raise _coded("RV-0207", "must be a bit rate such as `2 Mbit/s`, 10 kbit/s to 10 Mbit/s")
+    return parsed
+
+
+Name = Annotated[
+    str,
+    AfterValidator(_name),
+    WithJsonSchema({"type": "string", "pattern": IDENTIFIER, "maxLength": LONGEST_NAME}),
+]
+"""An Ada identifier."""
+
+Reference = Annotated[str, WithJsonSchema({"type": "string", "pattern": IDENTIFIER})]
+"""The name of something declared elsewhere."""
+
+OwnedReference = Annotated[
+    str, WithJsonSchema({"type": "string", "pattern": f"{IDENTIFIER[:-1]}\\.{IDENTIFIER[1:]}"})
+]
+"""``owner.name``: something that belongs to an instance or region."""
+
+_duration_schema = {"type": "string", "pattern": pattern(NANOSECONDS)}
+Span = Annotated[int, BeforeValidator(_duration), WithJsonSchema(_duration_schema)]
+"""A duration, in ns; may be 0."""
+PositiveSpan = Annotated[int, BeforeValidator(_positive), WithJsonSchema(_duration_schema)]
+"""A duration longer than 0, in ns."""
+Flag = Annotated[
+    bool,
+    BeforeValidator(_flag),
+    WithJsonSchema({"anyOf": [{"type": "boolean"}, {"enum": ["yes", "no"]}]}),
+]
+"""`yes` or `no`; `true` and `false` are the same."""
+StackSize = Annotated[
+    int, BeforeValidator(_stack), WithJsonSchema({"type": "string", "pattern": pattern(BYTES)})
+]
+_bit_rate_schema = {"type": "string", "pattern": pattern(BITS_PER_SECOND)}
+BitRate = Annotated[int, BeforeValidator(_bit_rate), WithJsonSchema(_bit_rate_schema)]
+DataRate = Annotated[int, BeforeValidator(_data_rate), WithJsonSchema(_bit_rate_schema)]
+
+
+def _scalar(value: object) -> int | bool | str:
+    if not isinstance(value, int | str):
+        raise _coded("RV-0203", "must be a single value")
+    if value == "":
+        raise _coded("RV-0203", "must be a value")
+    return value
+
+
+Scalar = Annotated[
+    int | bool | str,
+    PlainValidator(_scalar),
+    WithJsonSchema({"type": ["integer", "boolean", "string"]}),
+]
+Constant = Scalar
+"""A number, ``true`` or ``false``, or an enumeration literal."""
+ExpressionText = Scalar
+"""An expression as text; a number or Boolean may stand alone."""
+
+
+def _shape(value: object) -> str:
+    """The tag of a value's shape, to choose between the forms that a key allows."""
+    return "<list>" if isinstance(value, list) else "<map>" if isinstance(value, dict) else "<one>"
+
+
+def shaped(what: str) -> Discriminator:
+    """The choice of a form by the value's shape; ``what`` says which are allowed."""
+    return Discriminator(
+        _shape,
+        custom_error_type="shape",
+        custom_error_message=f"must be {what}",
+    )
+
+
+# --- Elements ------------------------------------------------------------------
+
+E = TypeVar("E", bound="Element")
+
+
+class Element(BaseModel):
+    """A mapping of the file format, which remembers where it and its parts were read."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    _raw: Map = PrivateAttr(default_factory=lambda: Map(Origin("", 1, 1)))
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _remember(cls: type[E], data: Any, handler: ModelWrapValidatorHandler[E]) -> E:
+        element = handler(data)
+        if isinstance(data, Map):
+            element._raw = data
+        return element
+
+    @property
+    def tree(self) -> Map:
+        """What was read."""
+        private = self.__pydantic_private__  # `self._raw` would search for it
+        assert private is not None
+        found: Map = private["_raw"]
+        return found
+
+    @property
+    def origin(self) -> Origin:
+        """Where the element begins: its key, or its first character in a list."""
+        return self.tree.origin
+
+    @property
+    def damaged(self) -> bool:
+        """Whether something inside was wrong and taken out."""
+        return self.tree.damaged
+
+    def has(self, name: str) -> bool:
+        """Whether the key is given."""
+        return name in self.tree
+
+    def at(self, name: str) -> Origin:
+        """Where the value of the key stands; where the element begins, without it."""
+        place = self.tree.values_at.get(name)
+        return self.origin if place is None else place.origin
+
+    def at_key(self, name: str) -> Origin:
+        """Where the key itself stands; where the element begins, without it."""
+        return self.tree.keys_at.get(name, self.origin)
+
+    def place(self, name: str, inside: str | None = None) -> Place:
+        """The place of the key's value, or of an entry of the mapping that it holds."""
+        value = self.tree.get(name)
+        if inside is not None and isinstance(value, Map):
+            return value.values_at.get(inside, Place(value.origin))
+        return self.tree.values_at.get(name, Place(self.origin))
+
+    def item_at(self, name: str, index: int) -> Origin:
+        """Where an item of the list under the key stands."""
+        value = self.tree.get(name)
+        if isinstance(value, Seq) and index < len(value.items_at):
+            return value.items_at[index].origin
+        return self.at(name)
+
+    def entry_at(self, name: str, entry: str) -> Origin:
+        """Where the key ``entry`` of the mapping under the key ``name`` stands."""
+        value = self.tree.get(name)
+        return value.keys_at.get(entry, value.origin) if isinstance(value, Map) else self.at(name)
+
+    def dropped(self, name: str) -> tuple[str, ...]:
+        """The entries of the mapping under the key that were wrong and taken out."""
+        value = self.tree.get(name)
+        return tuple(value.dropped) if isinstance(value, Map) else ()
+
+    def list_damaged(self, name: str) -> bool:
+        """Whether an item of the list under the key was wrong and taken out."""
+        value = self.tree.get(name)
+        return isinstance(value, Seq) and value.damaged
+
+    def lost(self, name: str) -> bool:
+        """Whether the key was given with a wrong value, and taken out."""
+        return name in self.tree.dropped

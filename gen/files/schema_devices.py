@@ -1,0 +1,116 @@
+"""The forms of commands and devices: dictionary, interfaces, device types, bindings."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field as PydanticField
+from pydantic import Tag
+
+from .schema_base import Element, OwnedReference, PositiveSpan, Reference, key, optional, shaped
+
+
+class CommandForm(Element):
+    """An entry of the command dictionary: what the name means in the whole project."""
+
+    kind: Literal["void", "write", "read", "qualified_read", "event"] = key(
+        "`void` takes nothing, `write` an argument, `read` gives a reply, `qualified_read` gives "
+        "one to an argument; an `event` comes from whoever provides it, with an argument."
+    )
+    argument: Reference | None = optional("The type of its argument.")
+    reply: Reference | None = optional("The type of its reply; `void` and `write` may have one.")
+    per_axis: bool = PydanticField(
+        default=False,
+        description="One value for each axis of the interface: with `axes: 4`, the scalar type "
+        "`T` is the record `T_X4` with the fields `axis_1` to `axis_4`.",
+    )
+
+
+class NeedForm(Element):
+    """A command of a required interface; with `else` it is optional."""
+
+    else_: str | None = optional(
+        "What stands in where nothing provides it: `activity.item`, the data item that this "
+        "activity keeps up for it, or `nothing`.",
+        alias="else",
+    )
+    on_reply: Reference | None = optional("Event raised with the reply of a call.")
+    on_full: Reference | None = optional("Event raised when a call met a full queue.")
+    on_timeout: Reference | None = optional(
+        "Event raised when nothing came from another node within the binding's `time_limit`."
+    )
+
+
+class RequiredForm(Element):
+    """A required interface: commands that one provider gives, whatever it is."""
+
+    axes: int = PydanticField(default=1, ge=1, le=16, description="Axes it works on, 1 to 16.")
+    commands: Annotated[
+        Annotated[list[Reference], Tag("<list>")]
+        | Annotated[dict[Reference, NeedForm], Tag("<map>")],
+        shaped("a list of commands, or a mapping from commands to what is said of them"),
+    ] = key("The commands; in the component they are called by their names.")
+    events: dict[Reference, Reference] | None = optional(
+        "Events of the provider, each with the input port that it comes to."
+    )
+
+
+class ProvidedForm(Element):
+    """A provided interface of a component: queued commands, and data that it publishes."""
+
+    axes: int = PydanticField(default=1, ge=1, le=16, description="Axes it works on, 1 to 16.")
+    queue: int | None = optional(
+        "Commands that wait at most, 1 to 1024; needed with `commands`.", ge=1, le=1024
+    )
+    served_by: Reference | None = optional(
+        "The activity that executes what waits, oldest first; needed with `commands`."
+    )
+    commands: list[Reference] | None = optional("Commands that are queued.")
+    published: dict[Reference, Reference] | None = optional(
+        "Read commands, each with the data item that is its reply."
+    )
+    events: dict[Reference, Reference] | None = optional(
+        "Events, each with the output port that it is sent on."
+    )
+
+
+class DeviceTypeForm(Element):
+    """A type of device: a driver without a task of its own, called directly."""
+
+    axes: int = PydanticField(default=1, ge=1, le=16, description="Axes it has, 1 to 16.")
+    body: Literal["user", "simulated"] = PydanticField(
+        default="user",
+        description="`user`: the driver in `user/`; `simulated`: the one in `simulated/`, of which "
+        "a first version is written.",
+    )
+    provides: dict[Reference, PositiveSpan] = key(
+        "Its commands, each with its worst-case execution time.", min_length=1
+    )
+
+
+class DeviceForm(Element):
+    """A device, or several that are used as one."""
+
+    type: Reference | None = optional("Its type: one piece of equipment.")
+    array: list[Reference] | None = optional(
+        "Devices of one kind as one: a command goes to all, and axes are counted on.", min_length=2
+    )
+    facade: list[Reference] | None = optional(
+        "Devices, or `instance.interface`s, of several kinds as one: a command goes to the one "
+        "that provides it.",
+        min_length=1,
+    )
+    choose: dict[Reference, Reference] | None = optional(
+        "For a command that several of `facade` provide: which one is meant."
+    )
+
+
+class BindingForm(Element):
+    """A required interface of an instance, and what provides it."""
+
+    from_: OwnedReference = key("`instance.interface`, a required one.", alias="from")
+    to: str = key("A device, or `instance.interface`, a provided one.")
+    time_limit: PositiveSpan | None = optional(
+        "Longest time from the caller's release until a reply from another node has arrived, "
+        "and age of what is read there; needed for these, without effect inside a node."
+    )

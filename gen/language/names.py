@@ -1,0 +1,173 @@
+"""Names: what may be one, what it would clash with, and what was meant."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.origins import Origin
+
+IDENTIFIER = r"^[A-Za-z](_?[A-Za-z0-9])*$"
+LONGEST_NAME = 60
+LONG_NAME = 24
+"""Names up to this length always fit the lines of the generated program."""
+
+_RESERVED = """
+abort abs abstract accept access aliased all and array at begin body case constant declare delay
+delta digits do else elsif end entry exception exit for function generic goto if in interface is
+limited loop mod new not null of or others out overriding package parallel pragma private
+procedure protected raise range record rem renames requeue return reverse select separate some
+subtype synchronized tagged task terminate then type until use when while with xor
+"""
+RESERVED = frozenset(_RESERVED.split())
+"""The reserved words of Ada 2012 and 2022."""
+
+_PREDEFINED_TYPES = """
+boolean character wide_character wide_wide_character duration float long_float long_long_float
+short_float integer long_integer long_long_integer long_long_long_integer short_integer
+short_short_integer natural positive string wide_string wide_wide_string universal_integer
+universal_real system ada standard interfaces gnat ascii ravenchart constraint_error
+program_error storage_error tasking_error
+"""
+PREDEFINED_TYPES = frozenset(_PREDEFINED_TYPES.split())
+"""Names that a type would hide from the generated program."""
+
+GNAT_PREFIXES = frozenset("agis")
+"""Parents of GNAT's own units in names of files: `a-*` is a child of Ada, `g-*` one of GNAT."""
+
+CHILDREN = {
+    "timing_certificate": "the timing certificate",
+    "messages": "the package of the CAN messages",
+    "trace": "the trace",
+    "hosts": "the package of the host's services",
+    "main": "the main program",
+    "types": "the package of the model's types",
+}
+"""Child packages that every system has, by lower-case name."""
+
+_HIDING = "ada system standard interfaces ravenchart boolean natural true false"
+HIDING = frozenset(_HIDING.split())
+"""What the generated program names by itself everywhere: nothing in it can hide that."""
+
+T = TypeVar("T")
+
+
+def problem_of(name: str) -> tuple[str, str] | None:
+    """(code, message) when ``name`` cannot name anything; None when it can."""
+    if len(name) > LONGEST_NAME:
+        return "RV-0301", f"a name has at most {LONGEST_NAME} characters, this one has {len(name)}"
+    if not re.fullmatch(IDENTIFIER, name):
+        return "RV-0301", (
+            f"`{name}` is not a name: letters, digits and single underscores, "
+            "first a letter, last no underscore"
+        )
+    if name.lower() in RESERVED:
+        return "RV-0302", f"`{name}` is a reserved word of Ada"
+    return None
+
+
+def meant(name: str, known: Iterable[str]) -> str | None:
+    """A hint for an unknown name: the nearest one, or else the few that there are."""
+    names = list(dict.fromkeys(known))
+    lowered = {item.lower(): item for item in names}
+    near = difflib.get_close_matches(name.lower(), lowered, n=1, cutoff=0.6)
+    if near:
+        return f"did you mean `{lowered[near[0]]}`?"
+    return f"one of: {', '.join(names)}" if 0 < len(names) <= 12 else None
+
+
+@dataclass(slots=True)
+class Findings:
+    """The diagnostics of one model, as they are found.
+
+    ``losses`` counts what was left out without a word, since it refers to what
+    was reported already.
+    """
+
+    items: list[Diagnostic] = field(default_factory=list)
+    losses: int = 0
+
+    def error(
+        self,
+        code: str,
+        origin: Origin,
+        message: str,
+        *,
+        notes: Iterable[tuple[Origin, str]] = (),
+        hint: str | None = None,
+    ) -> None:
+        """Add an error."""
+        self.items.append(error(code, origin, message, notes=notes, hint=hint))
+
+    def lose(self) -> None:
+        """Something is left out."""
+        self.losses += 1
+
+    def count(self) -> int:
+        """How much is wrong by now; while it stays the same, what was read is complete."""
+        return len(self.items) + self.losses
+
+
+@dataclass(slots=True)
+class Scope(Generic[T]):
+    """The names of one kind that can be used in one place, without regard to case.
+
+    A name may be declared without an item: its declaration was wrong and
+    reported, and its uses are silent.
+    """
+
+    kind: str
+    items: dict[str, tuple[str, Origin | None, T | None]] = field(default_factory=dict)
+    open: bool = False
+    """Some declarations were lost without their names: unknown names are silent."""
+
+    def declare(
+        self, name: str, origin: Origin | None, item: T | None, findings: Findings | None = None
+    ) -> bool:
+        """Add a name; a second one of that name is reported and not added."""
+        known = self.items.get(name.lower())
+        if known is not None:
+            if findings is not None and origin is not None:
+                notes = [] if known[1] is None else [(known[1], "the first is here")]
+                message = f"a second {self.kind} is named `{name}`"
+                if known[0] != name:
+                    message += f", like `{known[0]}`: case does not count"
+                findings.error("RV-0303", origin, message, notes=notes, hint="rename one of them")
+            return False
+        self.items[name.lower()] = (name, origin, item)
+        return True
+
+    def names(self) -> list[str]:
+        """The names as declared."""
+        return [name for name, _, _ in self.items.values()]
+
+    def sound(self) -> tuple[T, ...]:
+        """The sound items, in order of declaration."""
+        return tuple(item for _, _, item in self.items.values() if item is not None)
+
+    def has_lost(self) -> bool:
+        """Whether some declaration was wrong."""
+        return self.open or any(item is None for _, _, item in self.items.values())
+
+    def find(self, name: str) -> T | None:
+        """The item of that name, if there is one that is sound."""
+        known = self.items.get(name.lower())
+        return None if known is None else known[2]
+
+    def knows(self, name: str) -> bool:
+        """Whether the name is declared, soundly or not."""
+        return self.open or name.lower() in self.items
+
+    def look_up(self, name: str, origin: Origin, findings: Findings) -> T | None:
+        """The item of that name; reported when the name is not declared."""
+        if not self.knows(name):
+            message = f"there is no {self.kind} named `{name}`"
+            findings.error("RV-0305", origin, message, hint=meant(name, self.names()))
+        found = self.find(name)
+        if found is None:
+            findings.lose()
+        return found

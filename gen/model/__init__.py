@@ -1,0 +1,1 @@
+"""The one intermediate representation, and nothing that computes: `System` and its records."""

@@ -1,0 +1,151 @@
+"""Which states of a chart can be entered at all, and from where which can follow.
+
+Guards are not looked into, and what regions side by side do is not related: what is
+found unreachable is, and what is found reachable may not be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import networkx
+
+from ravenchart.gen.model.statechart import Completion, PseudoKind, Transition, TransitionKind
+
+from .tree import Place, Tree, Way
+
+CanComplete = Callable[[str], bool]
+"""Whether the do activities of a state, when it has any, can end."""
+
+
+@dataclass
+class Reach:
+    """The states and pseudostates of a sound region that are reached."""
+
+    tree: Tree
+    ends: CanComplete
+    found: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        """Follow everything until nothing is new."""
+        self.found |= self._entered(Place(None, ""), ())
+        left = list(self.tree.region.transitions)
+        while True:
+            size = len(self.found)
+            for transition in tuple(left):
+                if self.fires(transition):
+                    self.found |= self.after(transition)
+                    if not self._depends(transition):
+                        left.remove(transition)
+            if len(self.found) == size:
+                return
+
+    def _depends(self, transition: Transition) -> bool:
+        """Whether where it leads depends on what is reached."""
+        known = (PseudoKind.JOIN, PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY)
+        return any(self.tree.kind(way.target) in known for way in self.tree.ways(transition))
+
+    def fires(self, transition: Transition) -> bool:
+        """Whether a transition can fire as far as its source is concerned."""
+        if transition.source not in self.found:
+            return False
+        if not isinstance(transition.trigger, Completion):
+            return True
+        return self.completes(transition.source)
+
+    def completes(self, state: str) -> bool:
+        """Whether a state can complete: all its regions can end, and its do activities."""
+        regions = self.tree.regions(state)
+        return self.ends(state) and all(self.has_final(place) for place in regions)
+
+    def has_final(self, place: Place) -> bool:
+        """Whether a final state directly in a region is reached."""
+        inside = self.tree.content.get(place, ())
+        return any(state.final and state.name in self.found for state in inside)
+
+    def after(self, transition: Transition) -> set[str]:
+        """The vertices that are reached by a transition, up to the next pseudostate."""
+        if transition.kind is TransitionKind.INTERNAL:
+            return set()
+        if self.tree.kind(transition.source) in (PseudoKind.JUNCTION, PseudoKind.FORK):
+            return set()  # part of the transitions that lead there
+        found: set[str] = set()
+        for way in self.tree.ways(transition):
+            found |= {t.target for t in way.path[:-1]} | self._by(way)
+        return found
+
+    def _by(self, way: Way) -> set[str]:
+        """What one way enters."""
+        kind = self.tree.kind(way.target)
+        if kind is PseudoKind.JOIN:
+            sources = {t.source for t in self.tree.incoming[way.target]}
+            together = sources <= self.found and all(map(self.completes, sources))
+            return {way.target} if together else set()
+        if kind is PseudoKind.TERMINATE:
+            return {way.target}
+        entered = self._entered(way.domain, way.targets) | {way.target}
+        if kind in (PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY):
+            entered |= self._restored(way.target)
+        return entered
+
+    def _entered(self, place: Place, targets: tuple[str, ...]) -> set[str]:
+        entries = self.tree.entries(place, targets)
+        states = {entry.state for entry in entries if entry.state is not None}
+        return states | {target for target in targets if target in self.tree.states}
+
+    def _restored(self, history: str) -> set[str]:
+        """What a history may enter, beside its default transition."""
+        place = self.tree.place(history)
+        found: set[str] = set()
+        if not self.tree.outgoing.get(history):
+            found |= self._entered(place, ())
+        below = [s for s in self.tree.states if s in self.found and self.tree.child(place, s)]
+        if self.tree.kind(history) is PseudoKind.HISTORY:
+            for state in below:
+                if self.tree.place(state) == place:
+                    found |= self._entered(place, (state,))
+            return found
+        for state in below:
+            found.add(state)
+            for inner in self.tree.regions(state):
+                if self.has_final(inner):
+                    found |= self._entered(inner, ())
+        return found
+
+    # --- from where to where
+
+    @cached_property
+    def graph(self) -> networkx.DiGraph[Any]:
+        """An edge where one vertex can be active, or passed, and another follow.
+
+        A state that stays active beside one that moves can be followed by what that enters.
+        """
+        graph: networkx.DiGraph[Any] = networkx.DiGraph()
+        graph.add_nodes_from(self.found)
+        for transition in self.tree.region.transitions:
+            if not self.fires(transition):
+                continue
+            after = self.after(transition)
+            graph.add_edges_from((transition.source, target) for target in after)
+        for state in self.tree.states:
+            if state not in self.found:
+                continue
+            for outer in self.tree.above(state):
+                graph.add_edge(state, outer)
+                graph.add_edges_from((state, other) for other in self._beside(outer, state))
+        return graph
+
+    def _beside(self, outer: str, state: str) -> Iterator[str]:
+        """What may be active in the other regions of an orthogonal state."""
+        for place in self.tree.regions(outer):
+            if self.tree.child(place, state) is None:
+                yield from (s.name for s in self.tree.content[place] if s.name in self.found)
+
+    def leading_to(self, state: str) -> set[str]:
+        """The vertices from which some way leads to a state, or that are in it."""
+        inside = {s for s in self.found if s == state or state in self.tree.above(s)}
+        ahead = self.graph.reverse(copy=False)
+        return inside.union(*(networkx.descendants(ahead, one) for one in inside))

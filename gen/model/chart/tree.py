@@ -1,0 +1,237 @@
+"""The tree of a chart: what stands where, and what lies between two vertices.
+
+A *place* is a region of the chart: the top-level region is ``(None, "")``, a
+nested one ``(state, name)``. Everything is looked up, nothing is searched for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from ravenchart.gen.language.terms import Flow
+from ravenchart.gen.model.statechart import (
+    Initial,
+    PseudoKind,
+    Pseudostate,
+    Region,
+    Segment,
+    State,
+    Transition,
+    TransitionKind,
+)
+from ravenchart.gen.origins import Origin
+
+
+class Place(NamedTuple):
+    """A region of the chart, by the state around it and its own name."""
+
+    owner: str | None
+    region: str
+
+
+class Entry(NamedTuple):
+    """One behaviour on the way in: of a state, or (None) of an initial transition."""
+
+    state: str | None
+    flow: Flow
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A region with its vertices by name."""
+
+    region: Region
+
+    # --- vertices
+
+    @cached_property
+    def states(self) -> Mapping[str, State]:
+        """All states."""
+        return {state.name: state for state in self.region.states}
+
+    @cached_property
+    def pseudostates(self) -> Mapping[str, Pseudostate]:
+        """All pseudostates."""
+        return {pseudo.name: pseudo for pseudo in self.region.pseudostates}
+
+    def kind(self, vertex: str) -> PseudoKind | None:
+        """What kind of pseudostate it is; None for a state."""
+        return self.pseudostates[vertex].kind if vertex in self.pseudostates else None
+
+    def origin(self, vertex: str) -> Origin:
+        """Where it is declared."""
+        return (self.pseudostates.get(vertex) or self.states[vertex]).origin
+
+    def place(self, vertex: str) -> Place:
+        """The region that a vertex stands in."""
+        found = self.pseudostates.get(vertex) or self.states[vertex]
+        return Place(found.parent, found.region)
+
+    @cached_property
+    def content(self) -> Mapping[Place, tuple[State, ...]]:
+        """The states that stand directly in each region, in model order."""
+        found: dict[Place, list[State]] = {}
+        for state in self.region.states:
+            found.setdefault(self.place(state.name), []).append(state)
+        return {place: tuple(states) for place, states in found.items()}
+
+    def initial(self, place: Place) -> Initial:
+        """Where a region begins."""
+        if place.owner is None:
+            return self.region.initial
+        return self.states[place.owner].nested(place.region).initial
+
+    def regions(self, state: str) -> tuple[Place, ...]:
+        """The regions of a state."""
+        return tuple(Place(state, nested.name) for nested in self.states[state].regions)
+
+    # --- what is around
+
+    def places(self, vertex: str) -> tuple[Place, ...]:
+        """The regions around a vertex, innermost first; the last is the top-level region."""
+        found = [self.place(vertex)]
+        while found[-1].owner is not None:
+            found.append(self.place(found[-1].owner))
+        return tuple(found)
+
+    def above(self, vertex: str) -> tuple[str, ...]:
+        """The states around a vertex, innermost first."""
+        return tuple(place.owner for place in self.places(vertex) if place.owner is not None)
+
+    def child(self, place: Place, vertex: str) -> str | None:
+        """What stands directly in a region and is the vertex, or holds it; None for neither."""
+        at: str | None = vertex
+        while at is not None:
+            here = self.place(at)
+            if here == place:
+                return at
+            at = here.owner
+        return None
+
+    def is_orthogonal(self, state: str) -> bool:
+        """More regions than one."""
+        return len(self.states[state].regions) > 1
+
+    def divide(self, vertices: tuple[str, ...]) -> str | None:
+        """The orthogonal state that has each of several vertices in another of its regions."""
+        first, *others = vertices
+        for state in self.above(first):
+            if all(state in self.above(other) for other in others):
+                held = {p for v in vertices for p in self.regions(state) if self.child(p, v)}
+                return state if len(held) == len(vertices) else None
+        return None
+
+    # --- transitions
+
+    @cached_property
+    def outgoing(self) -> Mapping[str, tuple[Transition, ...]]:
+        """The transitions that leave each vertex, in model order, ``else`` last."""
+        found: dict[str, list[Transition]] = {}
+        for transition in sorted(self.region.transitions, key=lambda t: t.otherwise):
+            found.setdefault(transition.source, []).append(transition)
+        return {vertex: tuple(leaving) for vertex, leaving in found.items()}
+
+    @cached_property
+    def incoming(self) -> Mapping[str, tuple[Transition, ...]]:
+        """The transitions that lead to each vertex, in model order."""
+        found: dict[str, list[Transition]] = {}
+        for transition in self.region.transitions:
+            found.setdefault(transition.target, []).append(transition)
+        return {vertex: tuple(leading) for vertex, leading in found.items()}
+
+    def domain(self, source: str, target: str) -> Place:
+        """The innermost region that holds both ends: what is left and entered is inside it."""
+        around = self.places(target)
+        return next(place for place in self.places(source) if place in around)
+
+    def ways(self, transition: Transition) -> Iterator[Way]:
+        """The compound transitions that begin with a transition: one for each path of junctions."""
+        for path in self._paths((transition,)):
+            yield Way(self, path)
+
+    def _paths(self, path: tuple[Transition, ...]) -> Iterator[tuple[Transition, ...]]:
+        target = path[-1].target
+        if self.kind(target) is not PseudoKind.JUNCTION:
+            yield path
+            return
+        for segment in self.outgoing.get(target, ()):
+            yield from self._paths((*path, segment))
+
+    # --- entries
+
+    def entries(self, place: Place, targets: tuple[str, ...]) -> Iterator[Entry]:
+        """What entering a region on the way to ``targets`` runs; with none, by default.
+
+        A target that is a pseudostate ends the way in its region.
+        """
+        if not targets:
+            initial = self.initial(place)
+            yield Entry(None, initial.effect)
+            targets = (initial.target,)
+        child = self.child(place, targets[0])
+        if child is None or child not in self.states:
+            return
+        yield Entry(child, self.states[child].entry)
+        for nested in self.regions(child):
+            yield from self.entries(nested, tuple(t for t in targets if self.child(nested, t)))
+
+
+@dataclass(frozen=True)
+class Way:
+    """A compound transition up to a state, choice, history, fork, join or terminate."""
+
+    tree: Tree
+    path: tuple[Transition, ...]
+
+    @property
+    def target(self) -> str:
+        """Where it leads."""
+        return self.path[-1].target
+
+    @property
+    def source(self) -> str:
+        """What it leaves: the orthogonal state around the sources, where a join comes first."""
+        source = self.path[0].source
+        if self.tree.kind(source) is not PseudoKind.JOIN:
+            return source
+        sources = tuple(t.source for t in self.tree.incoming.get(source, ()))
+        return self.tree.divide(sources) or source
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """Where it leads, beyond a fork: several states."""
+        if self.tree.kind(self.target) is not PseudoKind.FORK:
+            return (self.target,)
+        return tuple(t.target for t in self.tree.outgoing.get(self.target, ()))
+
+    @property
+    def is_internal(self) -> bool:
+        """Nothing is left or entered."""
+        return self.path[0].kind is TransitionKind.INTERNAL
+
+    @cached_property
+    def domain(self) -> Place:
+        """The region inside which it leaves and enters."""
+        first = self.path[0]
+        end = self.targets[0]
+        if self.tree.kind(self.target) is PseudoKind.FORK:
+            end = self.tree.divide(self.targets) or end
+        if first.kind is TransitionKind.LOCAL:
+            return next(p for p in self.tree.places(end) if p.owner == first.source)
+        return self.tree.domain(self.source, end)
+
+    @cached_property
+    def left(self) -> str | None:
+        """The outermost state that it leaves; None where it leaves none for sure."""
+        if self.is_internal or self.path[0].kind is TransitionKind.LOCAL:
+            return None
+        child = self.tree.child(self.domain, self.source)
+        return child if child in self.tree.states else None
+
+
+def is_segment(transition: Transition) -> bool:
+    """Whether it leaves a pseudostate."""
+    return isinstance(transition.trigger, Segment)

@@ -1,0 +1,61 @@
+"""What an analysis claims of a system, as the timing certificate takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ravenchart.gen.language.terms import Ns
+
+NOTHING = Ns(0)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A response from the event that leads to it, and the windows that show it.
+
+    ``windows`` holds, for each job or instance of the busy period, the time from its
+    start in which that one is done (a frame: can begin); ``busy`` is how long a bus is
+    busy at a message's level. A processor whose response is longer than its deadline keeps
+    that by its offset: ``since`` each of its `instants.instants` its job is done that much later.
+    """
+
+    response: Ns = NOTHING
+    windows: tuple[Ns, ...] = (NOTHING,)
+    busy: Ns = NOTHING
+    since: tuple[Ns, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ChainClaim:
+    """The latencies of one of the model's chains; ``waits`` in its queues, one after the other."""
+
+    reaction: Ns = NOTHING
+    age: Ns = NOTHING
+    waits: tuple[Ns, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Claims:
+    """All of them, by element; what is not there claims no time at all.
+
+    What they are about is not theirs to say: numbers only.
+    """
+
+    items: Mapping[str, Claim] = field(default_factory=dict)
+    """Tasks and messages."""
+    rows: Mapping[str, Ns] = field(default_factory=dict)
+    """Responses of rows inside their jobs: those that chains need."""
+    waits: Mapping[str, Ns] = field(default_factory=dict)
+    """Messages of a queue that wait no longer than their bus is ever busy, where their
+    own responses would let them wait longer."""
+    busiest: Mapping[str, Ns] = field(default_factory=dict)
+    """How long a bus is busy at most, by its name: where messages wait by that."""
+    turns: Mapping[str, Claim] = field(default_factory=dict)
+    """Received messages: when the reception turns to them."""
+    chains: Mapping[str, ChainClaim] = field(default_factory=dict)
+    """The model's chains by name."""
+
+    def of(self, element: str) -> Claim:
+        """The claim about a task or message."""
+        return self.items.get(element, Claim())

@@ -1,0 +1,228 @@
+"""Component types: ports, events, data, regions and activities, resolved and typed.
+
+Parts of a `System`; see `model`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from ravenchart.gen.language.terms import (
+    Expression,
+    Flow,
+    Ns,
+    RecordType,
+    Scalar,
+    ScalarType,
+    Type,
+    Value,
+    always,
+    named,
+)
+from ravenchart.gen.origins import Origin
+
+from .commands import InterfaceEvent, Need, Provided
+from .statechart import DONE, Overflow, Region, Timing
+
+
+class Direction(Enum):
+    """Which way a port carries values, seen from its component."""
+
+    IN = "in"
+    OUT = "out"
+
+
+class PortKind(Enum):
+    """How an input port keeps what arrives between two runs of its handler."""
+
+    SAMPLED = "sampled"
+    QUEUED = "queued"
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """A typed port. All but name, direction and type matter to inputs only."""
+
+    name: str
+    origin: Origin
+    direction: Direction
+    type: Type
+    kind: PortKind = PortKind.SAMPLED
+    depth: int = 1
+    overflow: Overflow = Overflow.REJECT_NEWEST
+    max_age: Ns | None = None
+    """Older than this is Stale; None: never stale."""
+    on_arrival: str | None = None
+    on_stale: str | None = None
+    on_overflow: str | None = None
+    """Events of the component, raised by the port's handler."""
+    is_command: bool = False
+    """An output port that is a required command: what is sent is the argument of a call."""
+    is_void: bool = False
+    """A command without argument: nothing but that it is called is sent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An event of a component; ``type`` is that of the value it carries, if any."""
+
+    name: str
+    origin: Origin
+    type: Type | None = None
+    overflow: Overflow | None = None
+    """What a full queue does with this event; None: what the region says."""
+    external: bool = False
+    """It may come from outside at any time, though the component raises it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Invariant:
+    """``never``: a condition over states and data that shall hold in no reachable situation."""
+
+    name: str
+    origin: Origin
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """A data item of a component: one writer, any number of readers."""
+
+    name: str
+    origin: Origin
+    type: Type
+    initial: Value
+    is_command: bool = False
+    """A read command or the last reply to a call: somebody else writes it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A constant that each instance of the component may set."""
+
+    name: str
+    origin: Origin
+    type: ScalarType
+    default: Scalar | None
+
+
+@dataclass(frozen=True, slots=True)
+class StateRef:
+    """A state of a region of the same component."""
+
+    region: str
+    state: str
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """A named, bounded piece of work: the user's SPARK procedure, or a flow.
+
+    ``reads`` names data, parameters, input ports and regions (their published
+    state), ``writes`` data, ``sends`` output ports (a user body sends each at
+    every execution, a flow where it says so), ``raises`` events. All in model
+    order. With ``while_in`` it is the do activity of that state, and may raise
+    `DONE`, which completes it.
+    """
+
+    name: str
+    origin: Origin
+    timing: Timing
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    sends: tuple[str, ...]
+    raises: tuple[str, ...]
+    while_in: StateRef | None
+    flow: Flow | None
+    """None: the body is the user's."""
+
+    @property
+    def completes(self) -> StateRef | None:
+        """The state that it completes by `DONE`."""
+        return self.while_in if DONE in self.raises else None
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A component type. ``port_region`` is None exactly when it has no input port."""
+
+    name: str
+    origin: Origin
+    parameters: tuple[Parameter, ...]
+    ports: tuple[Port, ...]
+    events: tuple[Event, ...]
+    data: tuple[Data, ...]
+    port_region: Timing | None
+    regions: tuple[Region, ...]
+    activities: tuple[Activity, ...]
+    invariants: tuple[Invariant, ...] = ()
+    needs: tuple[Need, ...] = ()
+    provides: tuple[Provided, ...] = ()
+    hears: tuple[InterfaceEvent, ...] = ()
+    """The events of its required interfaces."""
+
+    def inputs(self) -> tuple[Port, ...]:
+        """The input ports, in model order."""
+        return tuple(p for p in self.ports if p.direction is Direction.IN)
+
+    def outputs(self) -> tuple[Port, ...]:
+        """The output ports, in model order."""
+        return tuple(p for p in self.ports if p.direction is Direction.OUT)
+
+    def port(self, name: str) -> Port:
+        """The port called ``name``; KeyError where there is none."""
+        return named(self.ports, name)
+
+    def region(self, name: str) -> Region:
+        """The region called ``name``; KeyError where there is none."""
+        return named(self.regions, name)
+
+    def runnables(self) -> tuple[Region | Activity, ...]:
+        """The regions, then the activities, each in model order."""
+        return (*self.regions, *self.activities)
+
+    def renews(self, row: Region | Activity, name: str) -> bool:
+        """Whether every execution of a row gives a data item or output port a new value.
+
+        A region does in some only, and a do activity while its state is active; a user's
+        body is taken to do so.
+        """
+        if isinstance(row, Region) or row.while_in is not None:
+            return False
+        if row.flow is None:
+            called = any(port.name == name and port.is_command for port in self.ports)
+            return not called and self.served_by(row.name) is None
+        sure = always(row.flow)
+        if name in sure:
+            return True
+        item = next((data.type for data in self.data if data.name == name), None)
+        return isinstance(item, RecordType) and all(
+            f"{name}.{field.name}" in sure for field in item.fields
+        )
+
+    def senders(self, port: str) -> tuple[Region | Activity, ...]:
+        """The regions and activities that send on a port."""
+        return tuple(item for item in self.runnables() if port in item.sends)
+
+    def send_period(self, port: str) -> Ns | None:
+        """The shortest time between two sendings on a port; None where nothing sends on it."""
+        return min((one.timing.period for one in self.senders(port)), default=None)
+
+    def completing(self, region: str) -> tuple[tuple[Activity, str], ...]:
+        """The do activities that complete a state of a region, each with that state."""
+        all_of_them = ((a, a.completes) for a in self.activities)
+        return tuple((a, at.state) for a, at in all_of_them if at and at.region == region)
+
+    def served_by(self, activity: str) -> Provided | None:
+        """The provided interface whose requests an activity executes."""
+        return next((one for one in self.provides if one.server == activity), None)
+
+    def from_outside(self) -> frozenset[str]:
+        """The data that may come to be anything in their types: by a user's body, or a command."""
+        written = {name for a in self.activities if a.flow is None for name in a.writes}
+        return frozenset(written | {data.name for data in self.data if data.is_command})
+
+    def users(self, data: str) -> tuple[str, ...]:
+        """The regions and activities that read or write ``data``, in model order."""
+        return tuple(r.name for r in self.runnables() if data in r.reads or data in r.writes)

@@ -1,0 +1,18 @@
+"""Where an element stands in a model's files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Origin:
+    """Where an element stands in the model: file as given, 1-based line and column."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        """``file:line:column``, as editors read it."""
+        return f"{self.file}:{self.line}:{self.column}"

@@ -1,0 +1,57 @@
+"""A model from its files to a valid `System`: load, resolve, rules, derive.
+
+Each stage is a folder of `gen`. What only the emitted program shows, names that clash in
+it, is looked for where a program is wanted (`emit.clashes`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravenchart.gen.derive.completion import completed
+from ravenchart.gen.diagnostics import Diagnostic, Sources, in_order
+from ravenchart.gen.files.load import Reader, read_file, read_model
+from ravenchart.gen.files.schema import ModelFile
+from ravenchart.gen.language.names import Findings
+from ravenchart.gen.model.system import System
+from ravenchart.gen.resolve.system import resolve
+from ravenchart.gen.rules.cores import shared_across_cores
+from ravenchart.gen.rules.system import violations
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A model: the system when there is no error, what was found, and the lines read."""
+
+    system: System | None
+    diagnostics: tuple[Diagnostic, ...]
+    sources: Sources
+
+
+def load(path: Path, read: Reader = read_file) -> Loaded:
+    """The model whose main file is at ``path``, with every error and warning in it."""
+    content = read_model(path, read)
+    findings = Findings(list(content.found))
+    system = _valid(content.forms, content.whole, content.digest, findings)
+    diagnostics = in_order(findings.items, content.sources)
+    return Loaded(system, diagnostics, content.sources)
+
+
+def _valid(
+    forms: tuple[ModelFile, ...], whole: bool, digest: str, findings: Findings
+) -> System | None:
+    """The complete system; None where there are errors, which are with the ``findings``."""
+    if not forms:
+        return None
+    resolved = resolve(forms, whole, digest, findings)
+    findings.items.extend(violations(resolved))
+    if _has_error(findings):
+        return None
+    system = completed(resolved.system)
+    findings.items.extend(shared_across_cores(system))
+    return None if _has_error(findings) else system
+
+
+def _has_error(findings: Findings) -> bool:
+    return any(item.is_error for item in findings.items)

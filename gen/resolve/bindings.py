@@ -1,0 +1,295 @@
+"""What provides each required command, and what of the system follows from that.
+
+Everything is decided here: the program has no test for what is there. A stand-in that
+nobody needs is left out, with its row and its data.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from ravenchart.gen.derive.completion import table_period
+from ravenchart.gen.files.schema_devices import BindingForm
+from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.quantities import LONGEST
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.commands import Binding, Device, Need
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Connection, End, Instance, Processor, Slot, System
+
+from .devices import (
+    Devices,
+    Provider,
+    found_in,
+    has_tasks,
+    name_of,
+    offered,
+    provided_axes,
+    tells,
+    told_by,
+    ungathered,
+    wcet_of,
+)
+
+Given = dict[tuple[str, str], tuple[BindingForm, Provider | None]]
+"""The binding of (instance, interface), in lower case; no provider: it was wrong."""
+
+
+def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
+    """The bindings of a model, by what they bind."""
+    findings, found = devices.findings, Given()
+    for form in forms:
+        owner, dot, interface = form.from_.partition(".")
+        at = form.at("from")
+        if not (dot and owner and interface) or "." in interface:
+            message = f"`{form.from_}` must have the form instance.interface"
+            findings.error("RV-0306", at, message)
+            continue
+        instance = devices.instances.look_up(owner, at, findings)
+        provider = devices.provider(form.to, form.at("to"))
+        if instance is None:
+            continue
+        required: Scope[str] = Scope(f"required interface of {instance.component.name}")
+        required.open = instance.component.name in devices.damaged
+        for need in instance.component.needs:
+            required.declare(need.interface, None, need.interface)
+        for heard in instance.component.hears:
+            required.declare(heard.interface, None, heard.interface)
+        name = required.look_up(interface, at, findings)
+        if name is None:
+            continue
+        key = (instance.name.lower(), name.lower())
+        if key in found:
+            message = f"{instance.name}.{name} is bound twice"
+            notes = [(found[key][0].origin, "the first is here")]
+            hint = "several devices are joined to one by `facade` or `array`"
+            findings.error("RV-1203", form.origin, message, notes=notes, hint=hint)
+        found.setdefault(key, (form, provider))
+    return found
+
+
+def bindings_of(
+    instances: Iterable[Instance], given: Given, known: Sequence[str], findings: Findings
+) -> tuple[Binding, ...]:
+    """What provides each command that an instance requires."""
+    made: list[Binding] = []
+    for form, provider in given.values():
+        if provider is not None and form.has("time_limit") and not has_tasks(provider):
+            message = f"`time_limit` has no meaning for {name_of(provider)}, which has no task"
+            hint = "remove it: a device is called directly"
+            findings.error("RV-1214", form.at_key("time_limit"), message, hint=hint)
+    for instance in instances:
+        unbound: set[str] = set()
+        uneven: set[tuple[str, str]] = set()
+        for need in instance.component.needs:
+            key = (instance.name.lower(), need.interface.lower())
+            if key in given:
+                form, provider = given[key]
+                if provider is not None:
+                    made.append(_bound(instance, need, form, provider, uneven, findings))
+            elif need.optional:
+                made.append(Binding(instance.name, need.origin, need, None))
+            elif need.interface not in unbound:
+                unbound.add(need.interface)
+                wanted = f"{instance.name}.{need.interface}"
+                message = f"nothing provides {wanted}, which needs {need.name}"
+                notes = [(need.origin, f"{need.name} is required here")]
+                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                if near := meant(need.interface, known):
+                    hint += f"; {near}"
+                findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
+    return tuple(made)
+
+
+def event_wires(
+    instances: Iterable[Instance], given: Given, findings: Findings
+) -> tuple[Connection, ...]:
+    """What brings the events of required interfaces: connections of the ports on both sides."""
+    made: list[Connection] = []
+    for instance in instances:
+        for heard in instance.component.hears:
+            wanted = f"{instance.name}.{heard.interface}"
+            form, provider = given.get((instance.name.lower(), heard.interface.lower()), _NOTHING)
+            needed = any(
+                need.interface == heard.interface and not need.optional
+                for need in instance.component.needs
+            )
+            if form is None and not needed:
+                message = f"nothing provides {wanted}, which hears {heard.name}"
+                notes = [(heard.origin, f"{heard.name} is required here")]
+                hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
+                findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
+            elif form is not None and provider is not None:
+                told = tells(provider, heard.name)
+                notes = [(heard.origin, f"{heard.name} is required here")]
+                if not told:
+                    message = (
+                        f"{name_of(provider)} does not provide the event {heard.name}, which "
+                        f"{instance.name} requires"
+                    )
+                    near = meant(heard.name, told_by(provider))
+                    near = near or "provide it by `events`; a device has none"
+                    findings.error("RV-1204", form.at("to"), message, notes=notes, hint=near)
+                elif len(told) > 1:
+                    first, second = (name_of(server) for server, _ in told[:2])
+                    message = f"{first} and {second} of {name_of(provider)} both tell {heard.name}"
+                    hint = f"say which is meant: `choose: {{{heard.name}: {first}}}`"
+                    findings.error("RV-1212", form.at("to"), message, notes=notes, hint=hint)
+                else:
+                    ((server, event),) = told
+                    source = End(server.instance, event.port)
+                    made.append(Connection(form.origin, source, End(instance.name, heard.port)))
+    return tuple(made)
+
+
+_NOTHING: tuple[BindingForm | None, Provider | None] = None, None
+
+
+def _bound(
+    instance: Instance,
+    need: Need,
+    form: BindingForm,
+    provider: Provider,
+    uneven: set[tuple[str, str]],
+    findings: Findings,
+) -> Binding:
+    """What provides one command; reported when nothing does and nothing stands in.
+
+    ``uneven`` has the interfaces and providers whose axes were told to differ.
+    """
+    at, notes = form.at("to"), [(need.origin, f"{need.name} is required here")]
+
+    def report(code: str, message: str, hint: str | None) -> None:
+        findings.error(code, at, message, notes=notes, hint=hint)
+
+    found = found_in(provider, need.name, report)
+    own = name_of(provider)
+    if found is None and not need.optional:
+        array = ungathered(provider, need.name)
+        if array is not None:
+            message = f"{array.name} cannot give {need.name} as one: its reply is not per axis"
+            report("RV-1213", message, "bind to one of its members, or join them by `facade`")
+        else:
+            message = f"{own} does not provide {need.name}, which {instance.name} requires"
+            near = meant(need.name, offered(provider))
+            hint = near or "provide it, or say what stands in: `else: ...`"
+            report("RV-1204", message, hint)
+    if found is not None and need.command.per_axis:
+        axes = provided_axes(found, need.name)
+        if axes != need.axes and (need.interface, name_of(found)) not in uneven:
+            uneven.add((need.interface, name_of(found)))
+            message = (
+                f"{name_of(found)} has {_axes(axes)}, and {instance.name}.{need.interface} works "
+                f"on {need.axes}"
+            )
+            report("RV-1205", message, "join devices by `array`, or change `axes`")
+    limit = LONGEST if form.lost("time_limit") else form.time_limit
+    limit = None if limit is None else Ns(limit)
+    return Binding(instance.name, form.origin, need, found, limit)
+
+
+def _axes(count: int) -> str:
+    return "1 axis" if count == 1 else f"{count} axes"
+
+
+# --- What follows ------------------------------------------------------------------
+
+
+def with_bindings(system: System, bindings: tuple[Binding, ...]) -> System:
+    """The system with its bindings: stand-ins that nobody needs gone, calls in the budgets."""
+    of: defaultdict[str, list[Binding]] = defaultdict(list)
+    for binding in bindings:
+        of[binding.instance].append(binding)
+    if not of:
+        return system
+    instances = tuple(
+        replace(one, component=_pruned(one.component, of[one.name])) for one in system.instances
+    )
+    kept = {i.name: {row.name for row in i.component.runnables()} | {"ports"} for i in instances}
+    costs = {i.name: _costs(i.component, of[i.name]) for i in instances}
+    processors = (_of_kept(one, kept, costs) for one in system.processors)
+    used = [b.provider for b in bindings if isinstance(b.provider, Device)]
+    return replace(
+        system,
+        components=tuple(_in_use(one, instances) for one in system.components),
+        instances=instances,
+        processors=tuple(one for one in processors if one.slots),
+        devices=tuple(dict.fromkeys(part for device in used for part in _parts(device))),
+        bindings=bindings,
+    )
+
+
+def _parts(device: Device) -> tuple[Device, ...]:
+    """A device behind the pieces that it is made of."""
+    return (*(part for member in device.members for part in _parts(member)), device)
+
+
+def _pruned(component: Component, bindings: Iterable[Binding]) -> Component:
+    """A component as an instance has it: without the stand-ins that nobody needs."""
+    idle = {
+        b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is not None
+    }
+    idle -= {b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is None}
+    gone = {item for a in component.activities if a.name in idle for item in a.writes}
+    return replace(
+        component,
+        activities=tuple(a for a in component.activities if a.name not in idle),
+        data=tuple(data for data in component.data if data.name not in gone),
+    )
+
+
+def _in_use(component: Component, instances: Iterable[Instance]) -> Component:
+    """A component with what any of its instances has."""
+    own = [i.component for i in instances if i.component.name == component.name]
+    if not own:
+        return component
+    activities = {a.name for one in own for a in one.activities}
+    data = {item.name for one in own for item in one.data}
+    return replace(
+        component,
+        activities=tuple(a for a in component.activities if a.name in activities),
+        data=tuple(item for item in component.data if item.name in data),
+    )
+
+
+def _costs(component: Component, bindings: Sequence[Binding]) -> dict[str, Ns]:
+    """What the devices that each row calls add to its budget.
+
+    A region reads once in an execution, and calls once in each of its steps; what serves
+    requests does both for each.
+    """
+    found: dict[str, Ns] = {}
+    for row in component.runnables():
+        served = component.served_by(row.name)
+        times = served.depth if served is not None else 1
+        steps = row.steps_per_execution if isinstance(row, Region) else times
+        found[row.name] = Ns(
+            sum(
+                wcet_of(b.provider, b.need.name) * (times if b.need.is_read else steps)
+                for b in bindings
+                if b.need.name in (row.reads if b.need.is_read else row.sends)
+            )
+        )
+    return found
+
+
+def _of_kept(
+    processor: Processor, kept: dict[str, set[str]], costs: dict[str, dict[str, Ns]]
+) -> Processor:
+    """A processor with the rows that are left, and what they call in their budgets."""
+    left = [s for s in processor.slots if s.owner not in kept or s.name in kept[s.owner]]
+    period = processor.period
+    if left and period == table_period(processor.slots):
+        period = table_period(left) or period
+    slots = tuple(_with_calls(slot, costs.get(slot.owner, {})) for slot in left)
+    return replace(processor, period=period, slots=slots)
+
+
+def _with_calls(slot: Slot, costs: dict[str, Ns]) -> Slot:
+    cost = costs.get(slot.name, Ns(0))
+    if not cost:
+        return slot
+    return replace(slot, timing=replace(slot.timing, wcet=Ns(slot.timing.wcet + cost)))

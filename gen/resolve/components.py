@@ -1,0 +1,349 @@
+"""Components resolved: what their names mean, then their regions and activities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from ravenchart.gen.files.schema import (
+    ActivityForm,
+    ComponentForm,
+    PortRegionForm,
+    ProbeForm,
+    RegionForm,
+)
+from ravenchart.gen.files.schema_frames import WatchForm
+from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.language.terms import Flow, Ns, Type
+from ravenchart.gen.model.commands import Command, Need
+from ravenchart.gen.model.component import Activity, Component, Direction, StateRef
+from ravenchart.gen.model.statechart import DONE, Region, Timing
+from ravenchart.gen.origins import Origin
+
+from .chart_names import States, concurrent_states, names_of
+from .chart_structure import structure_errors
+from .charts import region_of
+from .flows import Targets, Use, called, flow_of
+from .interfaces import heard_of, needs_of, provided_of, servers_serve_once, stand_ins_agree
+from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
+from .vocabulary import Vocabulary
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """A component as deployment sees it; what was wrong keeps its name.
+
+    ``rows`` are the names that a processor's table may hold, ``damaged`` the
+    regions and activities that had errors.
+    """
+
+    component: Component
+    members: Members
+    rows: Scope[str]
+    damaged: frozenset[str]
+    is_damaged: bool
+
+
+def timing_of(
+    name: str,
+    form: PortRegionForm | RegionForm | ActivityForm | ProbeForm | WatchForm,
+    findings: Findings,
+) -> Timing:
+    """Period, WCET and deadline, checked against each other."""
+    given = None if isinstance(form, ProbeForm) else form.deadline
+    deadline = form.period if given is None else given
+    if deadline > form.period:
+        message = (
+            f"the deadline of {name}, {shown(deadline)}, is longer than its period, "
+            f"{shown(form.period)}"
+        )
+        findings.error("RV-0703", form.at("deadline"), message)
+    elif form.wcet > deadline:
+        limit = "period" if deadline == form.period else "deadline"
+        message = f"{name} may take {shown(form.wcet)}, longer than its {limit}, {shown(deadline)}"
+        findings.error("RV-0703", form.at("wcet"), message)
+    return Timing(Ns(form.period), Ns(form.wcet), Ns(deadline))
+
+
+def parts_of(
+    name: str,
+    form: ComponentForm,
+    types: Scope[Type],
+    literals: frozenset[str],
+    dictionary: Scope[Command],
+    system: str,
+    findings: Findings,
+) -> Parts:
+    """A component with all its parts that are sound."""
+    before = findings.count()
+    space = Namespace(name, system, findings)
+    members = members_of(form, types, space)
+    needs = needs_of(form, dictionary, types, members, space)
+    hears = heard_of(form, dictionary, types, members, findings)
+    states: Scope[Scope[str]] = Scope("region", open=form.lost("regions"))
+    for gone in form.dropped("regions"):
+        states.declare(gone, None, None)
+    damaged: set[str] = set()
+    names: dict[str, States] = {}
+    for region, at in (form.regions or {}).items():
+        count = findings.count()
+        names[region] = names_of(region, at, findings)
+        states.declare(region, at.origin, names[region], findings)
+        if findings.count() > count or at.damaged:
+            damaged.add(region)
+    words = vocabulary_of(members, states, literals)
+    outputs, calls = outputs_of(members), _calls(form, members, needs)
+    targets = Targets(members.data_types, outputs, members.events, calls)
+    regions: list[Region] = []
+    activities: Scope[Activity] = Scope("activity")
+    for region, at in (form.regions or {}).items():
+        count = findings.count()
+        timing = timing_of(region, at, findings)
+        own = replace(words, own_region=region, concurrent=concurrent_states(at.states))
+        made = region_of(region, at, timing, names[region], own, targets, findings)
+        regions.append(made)
+        if findings.count() == count and region not in damaged:
+            findings.items.extend(structure_errors(made))
+        if findings.count() > count:
+            damaged.add(region)
+    for activity, on in (form.activities or {}).items():
+        count = findings.count()
+        doing = _activity(activity, on, words, targets, findings)
+        activities.declare(activity, on.origin, doing, findings)
+        if findings.count() > count or on.damaged:
+            damaged.add(activity)
+    provides = (
+        provided_of(given, at, dictionary, types, members, activities, findings)
+        for given, at in (form.provides or {}).items()
+    )
+    component = Component(
+        name=name,
+        origin=form.origin,
+        parameters=members.parameters.sound(),
+        ports=members.ports.sound(),
+        events=members.events.sound(),
+        data=members.data.sound(),
+        port_region=_port_region(name, form, members, findings),
+        regions=tuple(regions),
+        activities=activities.sound(),
+        invariants=invariants_of(form, words, findings),
+        needs=needs,
+        provides=tuple(one for one in provides if one is not None),
+        hears=hears,
+    )
+    if findings.count() == before:
+        stand_ins_agree(form, component, findings)
+        servers_serve_once(component, findings)
+    if not (component.regions or component.activities or form.damaged or component.port_region):
+        message = f"the component {name} has nothing to run: no region, no activity, no input"
+        findings.error("RV-0513", form.origin, message)
+    hurt = findings.count() > before or form.damaged
+    return Parts(component, members, _rows(name, form, component), frozenset(damaged), hurt)
+
+
+def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> Scope[Need]:
+    """The required commands that can be called."""
+    scope: Scope[Need] = Scope("required command")
+    scope.open = form.lost("requires") or bool(form.dropped("requires"))
+    called = {need.name.lower(): need for need in needs if not need.is_read}
+    for name, origin, port in members.ports.items.values():
+        if port is None or port.is_command:
+            scope.declare(name, origin, called.get(name.lower()))
+    return scope
+
+
+def _rows(name: str, form: ComponentForm, component: Component) -> Scope[str]:
+    """What tables may hold of an instance of the component."""
+    scope: Scope[str] = Scope(f"region or activity of {name}")
+    scope.open = form.lost("regions") or form.lost("activities")
+    if component.port_region is not None:
+        scope.declare("ports", None, "ports")
+    elif (
+        form.lost("port_region")
+        or form.lost("ports")
+        or form.dropped("ports")
+        or component.inputs()
+    ):
+        scope.declare("ports", None, None)
+    sound: tuple[Region | Activity, ...] = (*component.regions, *component.activities)
+    for item in sound:
+        scope.declare(item.name, item.origin, item.name)
+    for lost in (
+        *(form.regions or {}),
+        *form.dropped("regions"),
+        *form.dropped("activities"),
+    ):
+        scope.declare(lost, None, None)
+    return scope
+
+
+def _port_region(
+    name: str, form: ComponentForm, members: Members, findings: Findings
+) -> Timing | None:
+    """When the port handlers run: exactly when there are input ports."""
+    inputs = [p for p in members.ports.sound() if p.direction is Direction.IN]
+    if form.port_region is not None:
+        timing = timing_of("the port region", form.port_region, findings)
+        if not inputs and not members.ports.has_lost():
+            message = f"{name} has a port region and no input port"
+            findings.error("RV-0511", form.at_key("port_region"), message, hint="remove it")
+        return timing
+    if inputs and not form.lost("port_region"):
+        message = f"{name} has input ports and needs a port region"
+        findings.error(
+            "RV-0511",
+            form.origin,
+            message,
+            notes=[(inputs[0].origin, f"`{inputs[0].name}` is an input port")],
+            hint="`port_region: {period: ..., wcet: ...}` says when arrivals are handled",
+        )
+    return None
+
+
+# --- Activities ------------------------------------------------------------------
+
+
+def _activity(
+    name: str, form: ActivityForm, words: Vocabulary, targets: Targets, findings: Findings
+) -> Activity:
+    timing = timing_of(name, form, findings)
+    while_in = None
+    if form.while_ is not None:
+        while_in = _state_ref(form.while_, form.at("while"), words, findings)
+    targets = replace(targets, do_activity=form.while_ is not None)
+    lists = _lists(form, words, targets, findings)
+    flow: Flow | None = None
+    if not isinstance(form.body, str):
+        count = findings.count()
+        flow = flow_of(form.body, words, targets, findings)
+        use = Use()
+        use.flow(flow)
+        if findings.count() == count and not form.damaged:
+            lists = _agreed(name, form, lists, use, targets, findings)
+    return Activity(
+        name=name,
+        origin=form.origin,
+        timing=timing,
+        reads=lists["reads"],
+        writes=lists["writes"],
+        sends=(*lists["sends"], *lists["calls"]),
+        raises=lists["raises"],
+        while_in=while_in,
+        flow=flow,
+    )
+
+
+def _state_ref(text: str, origin: Origin, words: Vocabulary, findings: Findings) -> StateRef | None:
+    region, dot, state = text.partition(".")
+    if not dot or not region or not state or "." in state:
+        message = f"`{text}` must have the form Region.State"
+        findings.error("RV-0306", origin, message)
+        return None
+    states = words.regions.look_up(region, origin, findings)
+    found = None if states is None else states.look_up(state, origin, findings)
+    vertex = states.vertices.find(state) if isinstance(states, States) else None
+    if found is not None and vertex is not None and vertex.is_final:
+        message = f"`{found}` is a final state, and here a plain state is wanted"
+        findings.error("RV-0514", origin, message, hint="nothing is done in a final state")
+    return None if found is None else StateRef(words.regions.items[region.lower()][0], found)
+
+
+def _lists(
+    form: ActivityForm, words: Vocabulary, targets: Targets, findings: Findings
+) -> dict[str, tuple[str, ...]]:
+    """The declared reads, writes, sends and raises, as the names were declared."""
+    known: Mapping[str, tuple[str, tuple[Scope[object], ...]]] = {
+        "reads": (
+            "data item, parameter, input port or region",
+            (words.readable, words.regions),  # type: ignore[dict-item]
+        ),
+        "writes": ("data item", (targets.data,)),  # type: ignore[dict-item]
+        "sends": ("output port", (targets.outputs,)),  # type: ignore[dict-item]
+        "calls": ("required command", ()),
+        "raises": ("event", (targets.events,)),  # type: ignore[dict-item]
+    }
+    lists: dict[str, tuple[str, ...]] = {}
+    for key, given in (
+        ("reads", form.reads),
+        ("writes", form.writes),
+        ("sends", form.sends),
+        ("calls", form.calls),
+        ("raises", form.raises),
+    ):
+        kind, scopes = known[key]
+        names: Scope[str] = Scope(f"entry of `{key}`")
+        for index, name in enumerate(given or ()):
+            origin = form.item_at(key, index)
+            if key == "raises" and name.lower() == DONE:
+                declared = _done(targets, origin, findings)
+            elif key == "calls":
+                need = called(name, origin, words, targets, findings)
+                declared = None if need is None else need.name
+            elif key in ("reads", "sends") and targets.calls.find(name) is not None:
+                message = f"`{name}` is a command that is called, and here it stands in `{key}`"
+                findings.error("RV-1206", origin, message, hint="name it under `calls`")
+                declared = None
+            else:
+                declared = _declared(name, kind, scopes, origin, findings)
+            if declared is not None and not names.declare(declared, origin, declared):
+                message = f"`{declared}` stands twice in `{key}`"
+                findings.error("RV-0303", origin, message, hint="remove one of them")
+        lists[key] = names.sound()
+    return lists
+
+
+def _done(targets: Targets, origin: Origin, findings: Findings) -> str | None:
+    """`DONE`, which only a do activity raises."""
+    if not targets.do_activity:
+        message = f"only a do activity raises `{DONE}`"
+        hint = "a do activity has `while: Region.State`, and completes that state"
+        findings.error("RV-0527", origin, message, hint=hint)
+        return None
+    return DONE
+
+
+def _declared(
+    name: str, kind: str, scopes: Iterable[Scope[object]], origin: Origin, findings: Findings
+) -> str | None:
+    """The name as declared in one of these scopes; None when unknown or unsound."""
+    for scope in scopes:
+        if name.lower() in scope.items:
+            declared, _, item = scope.items[name.lower()]
+            if item is None:
+                findings.lose()
+            return None if item is None else declared
+    if not any(scope.open for scope in scopes):
+        near = meant(name, (known for scope in scopes for known in scope.names()))
+        findings.error("RV-0305", origin, f"there is no {kind} named `{name}`", hint=near)
+    findings.lose()
+    return None
+
+
+def _agreed(
+    name: str,
+    form: ActivityForm,
+    lists: dict[str, tuple[str, ...]],
+    use: Use,
+    targets: Targets,
+    findings: Findings,
+) -> dict[str, tuple[str, ...]]:
+    """What the flow does; where that was declared too, both must agree."""
+    agreed: dict[str, tuple[str, ...]] = {}
+    for key, verb, done in (
+        ("reads", "read", use.reads),
+        ("writes", "write", use.writes),
+        ("sends", "send on", [one for one in use.sends if targets.calls.find(one) is None]),
+        ("calls", "call", [one for one in use.sends if targets.calls.find(one) is not None]),
+        ("raises", "raise", use.raises),
+    ):
+        agreed[key] = lists[key] if form.has(key) else tuple(done)
+        if not form.has(key):
+            continue
+        for item in (one for one in done if one not in lists[key]):
+            message = f"the flow of {name} does {verb} `{item}`, and `{key}` does not name it"
+            findings.error("RV-0414", form.at(key), message, hint=f"add it, or leave `{key}` out")
+        for item in (one for one in lists[key] if one not in done):
+            message = f"the flow of {name} does not {verb} `{item}`, and `{key}` names it"
+            findings.error("RV-0414", form.at(key), message, hint=f"remove it from `{key}`")
+    return agreed

@@ -1,0 +1,519 @@
+"""Deployment resolved: nodes, buses, instances, connections, messages and processors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from ravenchart.gen.derive.completion import table_deadline, table_period
+from ravenchart.gen.derive.identifiers import OPEN
+from ravenchart.gen.files.schema import (
+    ChainForm,
+    ConnectionForm,
+    InstanceForm,
+    NodeForm,
+    ProcessorForm,
+    ShutdownForm,
+    SupervisionForm,
+)
+from ravenchart.gen.files.schema_frames import BusForm, DelayedForm, MessageForm, RequestedForm
+from ravenchart.gen.language.names import Findings, Scope
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.language.terms import BOOLEAN, Ns, Scalar
+from ravenchart.gen.model.component import Direction, Port
+from ravenchart.gen.model.statechart import Timing
+from ravenchart.gen.model.system import (
+    Bus,
+    BusErrors,
+    Chain,
+    Connection,
+    End,
+    Instance,
+    Message,
+    Node,
+    Processor,
+    Shutdown,
+    Slot,
+    Supervision,
+    Tick,
+    Work,
+)
+from ravenchart.gen.origins import Origin
+
+from .components import Parts, timing_of
+from .layouts import layout_of, size_of
+from .values import constant
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """What the elements of a deployment may refer to."""
+
+    nodes: Scope[Node]
+    buses: Scope[Bus]
+    parts: Scope[Parts]
+    instances: Scope[Instance]
+    findings: Findings
+
+
+def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
+    """A node, with the timing of its probe."""
+    times = Ns(form.context_switch), Ns(form.critical_section)
+    probe = None
+    if form.probe is not None:
+        probe = timing_of("the probe", form.probe, findings)
+    tick = None
+    if form.tick is not None:
+        tick = Tick(Ns(form.tick.period), Ns(form.tick.wcet))
+        if tick.wcet > tick.period:
+            message = (
+                f"the tick may take {shown(tick.wcet)}, longer than its period, "
+                f"{shown(tick.period)}"
+            )
+            findings.error("RV-0703", form.tick.at("wcet"), message)
+    return Node(
+        name,
+        form.origin,
+        *times,
+        form.trace,
+        probe,
+        Ns(form.release),
+        tick,
+        form.cores,
+        _supervision(form.supervision, findings),
+    )
+
+
+def _supervision(form: SupervisionForm | None, findings: Findings) -> Supervision | None:
+    """The supervision of a node; a look takes no longer than its period."""
+    if form is None:
+        return None
+    if form.wcet > form.period:
+        message = (
+            f"the supervision may take {shown(Ns(form.wcet))}, longer than its period, "
+            f"{shown(Ns(form.period))}"
+        )
+        findings.error("RV-0703", form.at("wcet"), message)
+    return Supervision(Ns(form.period), Ns(form.wcet), Ns(form.margin))
+
+
+def bus_of(name: str, form: BusForm, findings: Findings) -> Bus:
+    """A bus."""
+    if form.data_rate is not None and form.data_rate < form.bit_rate:
+        message = f"the data rate of {name} is below its bit rate"
+        findings.error("RV-0613", form.at("data_rate"), message, hint="leave it out, or raise it")
+    watch = None if form.watch is None else timing_of(f"{name}.watch", form.watch, findings)
+    delayed = form.recovery if isinstance(form.recovery, DelayedForm) else None
+    for key in ("on_error_passive", "on_bus_off", "on_recovered", "recovery"):
+        needs = form.has(key) if key != "recovery" else delayed is not None
+        if needs and watch is None and not form.lost("watch"):
+            message = f"`{key}` of {name} needs the key `watch`: nothing looks at the controllers"
+            hint = "add `watch: {period: ..., wcet: ...}`, and the row "
+            hint += f"`{name}.watch` to a table of each node"
+            findings.error("RV-0618", form.at_key(key), message, hint=hint)
+    return Bus(
+        name,
+        form.origin,
+        form.bit_rate,
+        form.receive_depth,
+        form.transmit_depth,
+        Ns(form.driver_wcet),
+        None if form.errors is None else BusErrors(Ns(form.errors.period), form.errors.burst),
+        form.data_rate,
+        by_priority=form.buffers == "priority",
+        audsley=form.identifiers == "audsley",
+        watch=watch,
+        recovers_after=None if delayed is None else Ns(delayed.after),
+    )
+
+
+def with_events(bus: Bus, form: BusForm, site: Site) -> tuple[Bus, bool]:
+    """The bus with the events that it raises and is asked by, and whether all of them are sound."""
+    lists: list[tuple[str, BusForm | RequestedForm, str, list[str] | None]] = [
+        ("on_error_passive", form, "on_error_passive", form.on_error_passive),
+        ("on_bus_off", form, "on_bus_off", form.on_bus_off),
+        ("on_recovered", form, "on_recovered", form.on_recovered),
+    ]
+    if isinstance(form.recovery, RequestedForm):
+        lists.append(("recovers_on", form.recovery, "on", form.recovery.on))
+    found: dict[str, tuple[tuple[str, str], ...]] = {}
+    whole = not form.lost("recovery")
+    for name, holder, key, texts in lists:
+        made = [
+            event_at(text, holder.item_at(key, index), site)
+            for index, text in enumerate(texts or ())
+        ]
+        found[name] = tuple(pair for pair in made if pair is not None)
+        lost = holder.lost(key) or holder.list_damaged(key) or None in made
+        whole = whole and not lost
+    return (
+        replace(
+            bus,
+            on_error_passive=found["on_error_passive"],
+            on_bus_off=found["on_bus_off"],
+            on_recovered=found["on_recovered"],
+            recovers_on=found.get("recovers_on", ()),
+        ),
+        whole,
+    )
+
+
+def instance_of(name: str, form: InstanceForm, site: Site) -> Instance | None:
+    """An instance with all its parameters; None when its component or node is not sound."""
+    findings = site.findings
+    parts = site.parts.look_up(form.component, form.at("component"), findings)
+    node = site.nodes.look_up(form.node, form.at("node"), findings)
+    if parts is None:
+        return None
+    given = {key.lower(): key for key in form.parameters or {}}
+    lost = {key.lower() for key in form.dropped("parameters")}
+    values: list[tuple[str, Scalar]] = []
+    for _, key in given.items():
+        origin = form.entry_at("parameters", key)
+        parts.members.parameters.look_up(key, origin, findings)
+    for parameter in parts.component.parameters:
+        entry = given.get(parameter.name.lower())
+        value = parameter.default
+        if entry is not None and form.parameters is not None:
+            place = form.place("parameters", entry)
+            value = constant(
+                form.parameters[entry], place, parameter.name, parameter.type, findings
+            )
+        elif value is None and parameter.name.lower() not in lost and not form.lost("parameters"):
+            message = f"{name} does not set the parameter `{parameter.name}`, which has no default"
+            notes = [(parameter.origin, f"`{parameter.name}` is declared here")]
+            hint = f"add `parameters: {{{parameter.name}: ...}}`"
+            findings.error("RV-0314", form.origin, message, notes=notes, hint=hint)
+        if value is not None:
+            values.append((parameter.name, value))
+    if node is None:
+        return None
+    return Instance(name, form.origin, parts.component, node.name, tuple(values))
+
+
+def _split(text: str, shape: str, origin: Origin, findings: Findings) -> tuple[str, str] | None:
+    owner, dot, name = text.partition(".")
+    if not dot or not owner or not name or "." in name:
+        findings.error("RV-0306", origin, f"`{text}` must have the form {shape}")
+        return None
+    return owner, name
+
+
+def port_at(text: str, origin: Origin, site: Site) -> tuple[End, Port] | None:
+    """The port that ``instance.port`` names."""
+    pair = _split(text, "instance.port", origin, site.findings)
+    if pair is None:
+        return None
+    instance = site.instances.look_up(pair[0], origin, site.findings)
+    if instance is None:
+        return None
+    parts = site.parts.find(instance.component.name)
+    if parts is None:
+        return None
+    ports = parts.members.ports.items.items()
+    named = Scope(
+        f"port of {instance.component.name}",
+        {key: at for key, at in ports if at[2] is None or not at[2].is_command},
+    )
+    named.open = parts.members.ports.open
+    port = named.look_up(pair[1], origin, site.findings)
+    return None if port is None else (End(instance.name, port.name), port)
+
+
+def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
+    """The (instance, event) that ``instance.Event`` names."""
+    pair = _split(text, "instance.Event", origin, site.findings)
+    if pair is None:
+        return None
+    instance = site.instances.look_up(pair[0], origin, site.findings)
+    if instance is None:
+        return None
+    parts = site.parts.find(instance.component.name)
+    if parts is None:
+        return None
+    named = Scope(f"event of {instance.component.name}", parts.members.events.items)
+    named.open = parts.members.events.open
+    event = named.look_up(pair[1], origin, site.findings)
+    if event is not None and event.type is not None:
+        message = f"the event {event.name} carries {event.type.name}, and here is no value for it"
+        site.findings.error("RV-0528", origin, message, hint="name an event without a type")
+    return None if event is None else (instance.name, event.name)
+
+
+def _end(text: str, origin: Origin, wanted: Direction, site: Site) -> tuple[End, Port] | None:
+    """A port of the wanted direction."""
+    found = port_at(text, origin, site)
+    if found is None or found[1].direction is wanted:
+        return found
+    other = Direction.IN if wanted is Direction.OUT else Direction.OUT
+    key = "from" if wanted is Direction.OUT else "to"
+    message = f"{found[0]} is an {other.value}put port; `{key}` takes an {wanted.value}put port"
+    notes = [(found[1].origin, f"`{found[1].name}` is declared here")]
+    site.findings.error("RV-0601", origin, message, notes=notes)
+    return None
+
+
+def connection_of(form: ConnectionForm, site: Site) -> Connection | None:
+    """A connection between two ports that exist, of the right directions."""
+    source = _end(form.from_, form.at("from"), Direction.OUT, site)
+    target = _end(form.to, form.at("to"), Direction.IN, site)
+    if source is None or target is None:
+        return None
+    return Connection(form.origin, source[0], target[0])
+
+
+def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
+    """A message, its signals laid out; its type is that of its ports."""
+    findings = site.findings
+    bus = site.buses.look_up(form.bus, form.at("bus"), findings)
+    source = None
+    if form.from_ is not None:
+        source = _end(form.from_, form.at("from"), Direction.OUT, site)
+    texts: list[tuple[str, Origin]] = []
+    if isinstance(form.to, str):
+        texts = [(form.to, form.at("to"))]
+    elif form.to is not None:
+        texts = [(text, form.item_at("to", index)) for index, text in enumerate(form.to)]
+    targets = [_end(text, origin, Direction.IN, site) for text, origin in texts]
+    sound = [target for target in targets if target is not None]
+    gone = form.lost("from") or form.lost("to") or form.list_damaged("to")
+    foreign = form.from_ is None and not texts and not gone
+    if foreign and form.bytes is None and not form.lost("bytes"):
+        message = f"the message {name} has neither `from` nor `to`"
+        hint = (
+            "name the port that sends it or the one that receives it; of a frame that others "
+            "send to others, give the `bytes`"
+        )
+        findings.error("RV-0608", form.origin, message, hint=hint)
+        return None
+    for key in ("signals", "multiplexor") if foreign else ():
+        if form.has(key):
+            message = f"the message {name} has no value, and `{key}` no meaning"
+            findings.error("RV-0210", form.at_key(key), message, hint="remove it")
+    if foreign and form.id is None and not form.lost("id"):
+        message = f"the message {name} is sent by others and needs the key `id`"
+        findings.error("RV-0202", form.origin, message)
+    period = _message_period(name, form, source, site)
+    if form.has("sporadic") and (foreign or source is not None):
+        why = "is sent by others to others" if foreign else f"is sent by {form.from_}"
+        message = f"the message {name} {why}, and `sporadic` has no meaning"
+        findings.error("RV-0210", form.at_key("sporadic"), message, hint="remove it")
+    broken = (form.from_ is not None and source is None) or len(sound) < len(targets)
+    if bus is None or broken or gone or period is None:
+        return None
+    if form.lost("bytes") or form.lost("id") or (foreign and form.id is None):
+        return None
+    type_ = BOOLEAN if foreign else (source or sound[0])[1].type
+    signals = () if foreign else layout_of(name, form, type_, findings)
+    length = None if signals is None else size_of(name, form, signals, findings)
+    if signals is None or length is None:
+        return None
+    return Message(
+        name=name,
+        origin=form.origin,
+        bus=bus.name,
+        identifier=OPEN if form.id is None else form.id,
+        extended=form.extended,
+        type=type_,
+        signals=signals,
+        length=length,
+        source=None if source is None else source[0],
+        targets=tuple(target[0] for target in sound),
+        period=period,
+        deadline=None if form.deadline is None else Ns(form.deadline),
+        fd=form.format == "fd",
+        sporadic=source is None and form.sporadic is not False,
+    )
+
+
+def _message_period(
+    name: str, form: MessageForm, source: tuple[End, Port] | None, site: Site
+) -> Ns | None:
+    """The period given, or the shortest of what sends the message."""
+    findings = site.findings
+    if form.from_ is None:
+        if form.period is None and not form.lost("period") and not form.lost("from"):
+            message = f"the message {name} comes from outside and needs the key `period`"
+            hint = "give the least time between two of its frames"
+            findings.error("RV-0609", form.origin, message, hint=hint)
+        return None if form.period is None else Ns(form.period)
+    if form.period is not None:
+        message = f"the message {name} has the period of what sends it; leave `period` out"
+        findings.error("RV-0609", form.at_key("period"), message)
+    if source is None:
+        return None
+    instance = site.instances.find(source[0].instance)
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    if instance is None or parts is None:
+        return None
+    period = instance.component.send_period(source[1].name)
+    if period is None and not parts.is_damaged:
+        message = f"the message {name} has no period: nothing sends on {source[0]}"
+        notes = [(source[1].origin, f"`{source[1].name}` is declared here")]
+        hint = "send on the port by an activity (`sends:`) or in a flow (`send:`)"
+        findings.error("RV-0609", form.at("from"), message, notes=notes, hint=hint)
+    return period
+
+
+# --- Processors --------------------------------------------------------------------
+
+
+def processor_of(name: str, form: ProcessorForm, site: Site) -> Processor | None:
+    """A processor with its table; divisors and priority are left to `derive`."""
+    findings = site.findings
+    node = None
+    if form.node is not None:
+        node = site.nodes.look_up(form.node, form.at("node"), findings)
+    bus = None
+    if form.released_by is not None:
+        bus = site.buses.look_up(form.released_by, form.at("released_by"), findings)
+        if form.period is None and not form.lost("period"):
+            message = f"the sporadic processor {name} needs the key `period`"
+            hint = "give the least time between two of its releases"
+            findings.error("RV-0202", form.origin, message, hint=hint)
+        if form.offset and form.has("offset"):
+            message = "`offset` has no meaning for a sporadic processor"
+            findings.error("RV-0210", form.at_key("offset"), message, hint="remove it")
+    slots = [
+        _slot(text, form.item_at("activities", index), form, site)
+        for index, text in enumerate(form.activities)
+    ]
+    misses, overruns, silences = (
+        tuple(
+            found
+            for index, text in enumerate(given or ())
+            if (found := event_at(text, form.item_at(key, index), site)) is not None
+        )
+        for key, given in (
+            ("on_deadline_miss", form.on_deadline_miss),
+            ("on_overrun", form.on_overrun),
+            ("on_silence", form.on_silence),
+        )
+    )
+    sound = tuple(slot for slot in slots if slot is not None)
+    whole = len(sound) == len(slots) and not form.list_damaged("activities")
+    own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
+    period = table_period(own) if form.period is None else Ns(form.period)
+    if (node is None) != (form.node is None) or period is None or not (node or sound):
+        return None
+    if form.lost("node") or form.lost("period") or form.lost("released_by"):
+        return None
+    if form.released_by is not None and bus is None:
+        return None
+    if form.deadline is not None and form.deadline > period and whole:
+        message = f"the deadline of {name} is longer than its period"
+        findings.error("RV-0703", form.at("deadline"), message)
+    shortest = table_deadline(sound, period)
+    deadline = shortest if form.deadline is None else min(Ns(form.deadline), shortest)
+    return Processor(
+        name=name,
+        origin=form.origin,
+        node="" if node is None else node.name,
+        period=period,
+        offset=Ns(form.offset),
+        deadline=deadline,
+        priority=form.priority or 0,
+        stack_bytes=form.stack,
+        released_by=None if bus is None else bus.name,
+        slots=sound,
+        on_deadline_miss=misses,
+        on_overrun=overruns,
+        core=form.core,
+        on_silence=silences,
+    )
+
+
+def _slot(text: str, origin: Origin, form: ProcessorForm, site: Site) -> Slot | None:
+    """One row of a table."""
+    pair = _split(text, "instance.name or bus.receive", origin, site.findings)
+    if pair is None:
+        return None
+    owner, name = pair
+    if site.buses.knows(owner) and not site.instances.knows(owner):
+        return _bus_slot(text, name, owner, origin, form, site)
+    instance = site.instances.look_up(owner, origin, site.findings)
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    if instance is None or parts is None:
+        return None
+    if name.lower() == "ports" and not parts.rows.knows(name):
+        message = f"{instance.component.name} has no input ports, so no row `{text}`"
+        site.findings.error("RV-0305", origin, message, hint="remove the row")
+        return None
+    row = parts.rows.look_up(name, origin, site.findings)
+    if row is None:
+        return None
+    component = instance.component
+    if row == "ports" and component.port_region is not None:
+        timing, work = component.port_region, Work.PORT_REGION
+    elif any(region.name == row for region in component.regions):
+        timing, work = component.region(row).timing, Work.REGION
+    else:
+        activity = next(one for one in component.activities if one.name == row)
+        timing, work = activity.timing, Work.ACTIVITY
+    return Slot(origin, instance.name, work, row, timing, 1, 0)
+
+
+def _bus_slot(
+    text: str, name: str, owner: str, origin: Origin, form: ProcessorForm, site: Site
+) -> Slot | None:
+    """The row ``bus.receive``, the driver's time for one frame, or ``bus.watch``."""
+    bus = site.buses.find(owner)
+    if name.lower() not in ("receive", "watch"):
+        message = f"`{text}` is no row: a bus has the rows `{owner}.receive` and `{owner}.watch`"
+        site.findings.error("RV-0305", origin, message)
+        return None
+    if bus is not None and name.lower() == "watch":
+        if bus.watch is None:
+            message = f"`{text}` is no row: {owner} has no `watch`"
+            hint = f"add `watch: {{period: ..., wcet: ...}}` to {owner}"
+            site.findings.error("RV-0305", origin, message, hint=hint)
+            return None
+        return Slot(origin, bus.name, Work.BUS_WATCH, "watch", bus.watch, 1, 0)
+    if bus is None or form.period is None:
+        return None
+    deadline = form.period if form.deadline is None else form.deadline
+    timing = Timing(Ns(form.period), bus.driver_wcet, Ns(deadline))
+    return Slot(origin, bus.name, Work.BUS_RECEIVE, "receive", timing, 1, 0)
+
+
+def chain_of(name: str, form: ChainForm, messages: Scope[Message], site: Site) -> Chain | None:
+    """A chain whose messages and rows exist."""
+    places: list[str | None] = []
+    for index, text in enumerate(form.path):
+        origin = form.item_at("path", index)
+        if "." in text:
+            places.append(_row_at(text, origin, site))
+        else:
+            message = messages.look_up(text, origin, site.findings)
+            places.append(None if message is None else message.name)
+    if form.reaction is None and form.age is None and not form.damaged:
+        message_text = f"the chain {name} has no limit"
+        hint = "add `reaction:`, `age:`, or both"
+        site.findings.error("RV-0612", form.origin, message_text, hint=hint)
+    if None in places or form.list_damaged("path"):
+        return None
+    reaction = None if form.reaction is None else Ns(form.reaction)
+    age = None if form.age is None else Ns(form.age)
+    return Chain(name, form.origin, tuple(p for p in places if p), reaction, age)
+
+
+def _row_at(text: str, origin: Origin, site: Site) -> str | None:
+    """The id of the row ``instance.name``."""
+    pair = _split(text, "a message or instance.row", origin, site.findings)
+    instance = None if pair is None else site.instances.look_up(pair[0], origin, site.findings)
+    parts = None if instance is None else site.parts.find(instance.component.name)
+    if pair is None or instance is None or parts is None:
+        return None
+    row = parts.rows.look_up(pair[1], origin, site.findings)
+    return None if row is None else f"{instance.name}.{row}"
+
+
+def shutdown_of(form: ShutdownForm | None, site: Site) -> Shutdown:
+    """What a request to stop does."""
+    if form is None:
+        return Shutdown((), Ns(0))
+    raised: Iterable[tuple[str, str] | None] = (
+        event_at(text, form.item_at("raises", index), site)
+        for index, text in enumerate(form.raises)
+    )
+    return Shutdown(tuple(pair for pair in raised if pair is not None), Ns(form.grace))

@@ -1,0 +1,335 @@
+"""Device types, devices and their composites: their forms resolved.
+
+An array and a facade are decided here: what calls them calls the pieces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
+from ravenchart.gen.language.names import Findings, Scope, meant
+from ravenchart.gen.language.terms import Ns, Type
+from ravenchart.gen.model.commands import (
+    Command,
+    CommandKind,
+    Device,
+    DeviceType,
+    DriverCommand,
+    InterfaceEvent,
+    Provided,
+    Published,
+    Remote,
+    RemoteRead,
+    Server,
+)
+from ravenchart.gen.model.system import Instance
+from ravenchart.gen.origins import Origin
+
+from .interfaces import at_axes
+
+
+@dataclass(frozen=True, slots=True)
+class Facade:
+    """Several providers as one; each command belongs to one of them."""
+
+    name: str
+    members: tuple[Provider, ...]
+    chosen: tuple[tuple[str, Provider], ...]
+
+
+Provider = Device | Server | Facade
+
+
+def name_of(provider: Provider) -> str:
+    """How a model calls it."""
+    if isinstance(provider, Server):
+        return f"{provider.instance}.{provider.interface.name}"
+    return provider.name
+
+
+def offered(provider: Provider) -> tuple[str, ...]:
+    """The names of the commands that it provides."""
+    if isinstance(provider, Device):
+        return tuple(one.name for one in provider.provides)
+    if isinstance(provider, Server):
+        own = provider.interface
+        return (*(one.name for one in own.requests), *(one.name for one in own.published))
+    return tuple(dict.fromkeys(name for one in provider.members for name in offered(one)))
+
+
+def device_type_of(
+    name: str,
+    form: DeviceTypeForm,
+    dictionary: Scope[Command],
+    types: Scope[Type],
+    findings: Findings,
+) -> DeviceType | None:
+    """A device type whose commands are in the dictionary."""
+    found: Scope[DriverCommand] = Scope("command")
+    for text, wcet in form.provides.items():
+        at = form.entry_at("provides", text)
+        command = dictionary.look_up(text, at, findings)
+        if command is not None and command.kind is CommandKind.EVENT:
+            message = f"{command.name} is an event, and a device has no task that could raise it"
+            hint = "let the device be read, and a component tell of it"
+            findings.error("RV-1215", at, message, hint=hint)
+        elif command is not None:
+            made = DriverCommand(command, *at_axes(command, form.axes, types), Ns(wcet))
+            found.declare(command.name, at, made, findings)
+    if len(found.sound()) < len(form.provides) or form.damaged:
+        return None
+    return DeviceType(name, form.origin, form.axes, form.body == "simulated", found.sound())
+
+
+@dataclass(slots=True)
+class Devices:
+    """The devices of a model, each resolved when it is asked for first."""
+
+    forms: Scope[DeviceForm]
+    scope: Scope[Provider]
+    """Those that are known already; a name in it without an item is wrong."""
+    kinds: Scope[DeviceType]
+    instances: Scope[Instance]
+    types: Scope[Type]
+    findings: Findings
+    damaged: frozenset[str]
+    """Components that had errors: interfaces of theirs may be lost."""
+    under_way: list[str] = field(default_factory=list)
+
+    def all(self) -> Scope[Provider]:
+        """Every device."""
+        for name in self.forms.names():
+            self._make(name)
+        return self.scope
+
+    def provider(self, text: str, origin: Origin) -> Provider | None:
+        """The device, or the provided interface `instance.interface`, of that name."""
+        owner, dot, interface = text.partition(".")
+        if not dot:
+            return self.look_up(text, origin)
+        instance = self.instances.look_up(owner, origin, self.findings)
+        if instance is None:
+            return None
+        scope: Scope[Provided] = Scope(f"provided interface of {instance.component.name}")
+        scope.open = instance.component.name in self.damaged
+        for one in instance.component.provides:
+            scope.declare(one.name, one.origin, one)
+        found = scope.look_up(interface, origin, self.findings)
+        return None if found is None else Server(instance.name, found)
+
+    def look_up(self, name: str, origin: Origin) -> Provider | None:
+        """The device of that name."""
+        key = name.lower()
+        if key in self.under_way:
+            ring = " -> ".join((*self.under_way[self.under_way.index(key) :], key))
+            message = f"the device {name} is part of itself: {ring}"
+            self.findings.error("RV-1210", origin, message, hint="take it out of one of them")
+            return None
+        if key not in self.scope.items and not self.forms.knows(name):
+            self.forms.look_up(name, origin, self.findings)
+            return None
+        self._make(name)
+        return self.scope.look_up(name, origin, self.findings)
+
+    def _make(self, name: str) -> None:
+        """Make the device of that name, where there is one, once."""
+        form = self.forms.find(name)
+        if form is None or name.lower() in self.scope.items:
+            return
+        declared = self.forms.items[name.lower()][0]
+        self.under_way.append(name.lower())
+        made = self._made(declared, form)
+        self.under_way.pop()
+        self.scope.declare(declared, form.origin, made)
+
+    def _made(self, name: str, form: DeviceForm) -> Provider | None:
+        given = [key for key in ("type", "array", "facade") if form.has(key)]
+        lost = any(form.lost(key) for key in ("type", "array", "facade"))
+        if len(given) != 1 and not lost:
+            told = " and ".join(f"`{key}`" for key in given) or "none"
+            message = f"the device {name} has one of `type`, `array` and `facade`, and here {told}"
+            at = form.at_key(given[1]) if given else form.origin
+            hint = "a piece of equipment has a type; composites are devices of their own"
+            self.findings.error("RV-1210", at, message, hint=hint)
+            return None
+        if form.has("choose") and not form.has("facade"):
+            message = "`choose` has no meaning without `facade`"
+            hint = f"remove it: whoever is bound to {name} gets what {name} provides"
+            self.findings.error("RV-1210", form.at_key("choose"), message, hint=hint)
+        if form.type is not None:
+            kind = self.kinds.look_up(form.type, form.at("type"), self.findings)
+            if kind is None:
+                return None
+            return Device(name, form.origin, kind, (), kind.provides, kind.axes)
+        key = "array" if form.has("array") else "facade"
+        members = self._members(form, key)
+        if members is None:
+            return None
+        return (
+            self._array(name, form, members)
+            if key == "array"
+            else self._facade(form, name, members)
+        )
+
+    def _members(self, form: DeviceForm, key: str) -> list[Provider] | None:
+        """What a composite is made of."""
+        texts = (form.array if key == "array" else form.facade) or []
+        found: list[Provider] = []
+        for index, text in enumerate(texts):
+            at = form.item_at(key, index)
+            member = self.provider(text, at)
+            if member is None:
+                continue
+            if any(name_of(one) == name_of(member) for one in found):
+                message = f"{name_of(member)} stands twice in `{key}`"
+                self.findings.error("RV-1210", at, message, hint="remove one of them")
+            found.append(member)
+        whole = len(found) == len(texts) and not form.list_damaged(key)
+        return found if whole else None
+
+    def _array(self, name: str, form: DeviceForm, members: list[Provider]) -> Device | None:
+        """Devices of one kind as one: per axis commands are joined, others go to all."""
+        pieces: list[Device] = []
+        places: dict[str, str] = {}
+        for index, member in enumerate(members):
+            at = form.item_at("array", index)
+            for leaf in member.leaves() if isinstance(member, Device) else ():
+                first = places.setdefault(leaf.name, name_of(member))
+                if first != name_of(member):
+                    where = f"in {first}, {name_of(member)}"
+                    message = f"{leaf.name} stands twice in `array`: {where}"
+                    hint = "a piece of equipment has its axes once: remove one of them"
+                    self.findings.error("RV-1210", at, message, hint=hint)
+            if not isinstance(member, Device):
+                what = "a facade" if isinstance(member, Facade) else "a task's interface"
+                message = f"{name_of(member)} is {what}, and an array is made of devices"
+                hint = "join devices of one kind by `array`, and what differs by `facade`"
+                self.findings.error("RV-1211", at, message, hint=hint)
+            elif pieces and _kind(member) is not _kind(pieces[0]):
+                message = (
+                    f"{member.name} is of the type {_kind(member).name}, and {pieces[0].name} of "
+                    f"{_kind(pieces[0]).name}"
+                )
+                hint = "an array has one kind of device; join several kinds by `facade`"
+                self.findings.error("RV-1211", at, message, hint=hint)
+            else:
+                pieces.append(member)
+        if len(pieces) < len(members):
+            return None
+        axes = sum(piece.axes for piece in pieces)
+        joined = [
+            DriverCommand(
+                one.command,
+                *at_axes(one.command, axes, self.types),
+                Ns(sum(piece.command(one.name).wcet for piece in pieces)),
+            )
+            for one in pieces[0].provides
+            if one.command.per_axis or one.reply is None
+        ]
+        return Device(name, form.origin, None, tuple(pieces), tuple(joined), axes)
+
+    def _facade(self, form: DeviceForm, name: str, members: list[Provider]) -> Facade | None:
+        """Several kinds as one, and who is meant where two provide a command."""
+        chosen: list[tuple[str, Provider]] = []
+        for command, text in (form.choose or {}).items():
+            at = form.entry_at("choose", command)
+            names = [name_of(member) for member in members]
+            member = next((m for m in members if name_of(m).lower() == text.lower()), None)
+            if member is None:
+                message = f"`{text}` is no member of {name}"
+                value = form.place("choose", command).origin
+                self.findings.error("RV-1212", value, message, hint=meant(text, names))
+            elif command.lower() not in map(str.lower, (*offered(member), *told_by(member))):
+                message = f"{name_of(member)} does not provide `{command}`"
+                hint = meant(command, (*offered(member), *told_by(member)))
+                self.findings.error("RV-1212", at, message, hint=hint)
+            else:
+                chosen.append((command.lower(), member))
+        wrong = len(chosen) < len(form.choose or ()) or form.dropped("choose")
+        return None if wrong else Facade(name, tuple(members), tuple(chosen))
+
+
+def _kind(device: Device) -> DeviceType:
+    """The type of the pieces of a device."""
+    kind = device.leaves()[0].type
+    assert kind is not None
+    return kind
+
+
+Report = Callable[[str, str, str | None], None]
+"""Takes code, message and hint of what is wrong with a binding."""
+
+
+def found_in(provider: Provider, command: str, report: Report) -> Device | Server | None:
+    """What of a provider has that command; None when nothing has, or it was reported."""
+    if not isinstance(provider, Facade):
+        return provider if command in offered(provider) else None
+    meant_by = dict(provider.chosen).get(command.lower())
+    if meant_by is not None:
+        return found_in(meant_by, command, report)
+    having = [member for member in provider.members if command in offered(member)]
+    if len(having) > 1:
+        names = " and ".join(name_of(member) for member in having[:2])
+        message = f"{names} of {provider.name} both provide {command}"
+        hint = f"say which is meant: `choose: {{{command}: {name_of(having[0])}}}`"
+        report("RV-1212", message, hint)
+    return found_in(having[0], command, report) if having else None
+
+
+def tells(provider: Provider, event: str) -> tuple[tuple[Server, InterfaceEvent], ...]:
+    """Who raises an event, and by which port; of a facade whoever is chosen, or all."""
+    if isinstance(provider, Server):
+        return tuple((provider, one) for one in provider.interface.events if one.name == event)
+    if isinstance(provider, Device):
+        return ()
+    meant_by = dict(provider.chosen).get(event.lower())
+    members = provider.members if meant_by is None else (meant_by,)
+    return tuple(one for member in members for one in tells(member, event))
+
+
+def told_by(provider: Provider) -> tuple[str, ...]:
+    """The names of the events that it provides."""
+    if isinstance(provider, Server):
+        return tuple(one.name for one in provider.interface.events)
+    members = provider.members if isinstance(provider, Facade) else ()
+    return tuple(name for member in members for name in told_by(member))
+
+
+def ungathered(provider: Provider, command: str) -> Device | None:
+    """The array in a provider whose pieces have a command that they cannot give as one."""
+    if isinstance(provider, Facade):
+        arrays: Iterable[Device | None] = (ungathered(one, command) for one in provider.members)
+        return next((one for one in arrays if one is not None), None)
+    if not isinstance(provider, Device) or provider.type is not None:
+        return None
+    return provider if command in (one.name for one in _kind(provider).provides) else None
+
+
+def provided_axes(provider: Device | Server, command: str) -> int:
+    """The number of axes that a provider has."""
+    return provider.axes if isinstance(provider, Device) else provider.interface.axes
+
+
+def has_tasks(provider: Provider) -> bool:
+    """Whether a task provides something of it."""
+    members = provider.members if isinstance(provider, Facade) else ()
+    return isinstance(provider, Server) or any(has_tasks(one) for one in members)
+
+
+def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
+    """What a call adds to the budget of its caller; only a driver's work is counted apart."""
+    return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)
+
+
+def is_queued(provider: Device | Server | None, command: str) -> bool:
+    """Whether a call waits for the provider's processor."""
+    return isinstance(provider, Server) and not any(
+        isinstance(one, Published) and one.name == command for one in provider.interface.published
+    )
+
+
+def is_read(command: Command) -> bool:
+    """Whether nothing but a reply comes of it."""
+    return command.kind is CommandKind.READ

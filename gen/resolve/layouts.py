@@ -1,0 +1,244 @@
+"""The signals of a message, from what the model says of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
+from ravenchart.gen.language.names import Findings, meant
+from ravenchart.gen.language.terms import EnumerationType, IntegerType, ScalarType, Type
+from ravenchart.gen.model.signals import (
+    FD_SIZES,
+    RAW_LIMIT,
+    ByteOrder,
+    Signal,
+    automatic,
+    bits_of,
+    length_of,
+    overlaps,
+    packed,
+    room_of,
+    scalars_of,
+    width_for,
+)
+from ravenchart.gen.origins import Origin
+
+from .values import constant
+
+LAYOUT = "RV-0614"
+"""A signal cannot be laid out as given."""
+ROOM = "RV-0615"
+"""Two signals share bits, or one reaches beyond the frame."""
+SIZE = "RV-0616"
+"""There is no frame of that length, or it is too short."""
+
+SIGNED_BITS = 62
+"""Bits of a signed signal at most: its values are computed in 64."""
+
+
+def layout_of(
+    name: str, form: MessageForm, type_: Type, findings: Findings
+) -> tuple[Signal, ...] | None:
+    """The signals of a message with a value of that type; None where they are not sound."""
+    given = {key.lower(): key for key in form.signals or {}}
+    known = scalars_of(type_)
+    sound = not form.lost("signals") and not form.dropped("signals")
+    names = [field or "value" for field, _ in known]
+    for lowered, entry in given.items():
+        if lowered not in [one.lower() for one in names]:
+            message = f"{type_.name}, the type of {name}, has no field `{entry}`"
+            at = form.entry_at("signals", entry)
+            findings.error(LAYOUT, at, message, hint=meant(entry, names))
+            sound = False
+    maker = _Maker(name, form, findings)
+    selector = maker.selector(known)
+    signals: list[Signal] = []
+    starts: dict[str, int] = {}
+    for field, scalar in known:
+        key = given.get((field or "value").lower())
+        if selector is not None and selector.field == field:
+            made: Signal | None = selector
+            if key is not None and form.signals and form.signals[key].start is not None:
+                starts[selector.name] = selector.start
+        elif key is None or form.signals is None:
+            made = automatic(field, scalar)
+        else:
+            made = maker.signal(form.signals[key], key, field, scalar, selector)
+            if made is not None and form.signals[key].start is not None:
+                starts[made.name] = made.start
+        if made is None:
+            sound = False
+        else:
+            signals.append(replace(made, selects=selector is not None and selector.field == field))
+    if not sound or (form.multiplexor is not None and selector is None):
+        return None
+    laid = packed(signals, starts)
+    return laid if maker.fits(laid) else None
+
+
+def size_of(
+    name: str, form: MessageForm, signals: tuple[Signal, ...], findings: Findings
+) -> int | None:
+    """Bytes of the frame: those given, or as few as do; None where there is no such frame."""
+    fd = form.format == "fd"
+    needed = length_of(signals, fd=fd) if signals else 0
+    if form.bytes is None or (signals and bits_of(signals) > room_of(fd=fd)):
+        return needed
+    sizes = (0, *FD_SIZES) if fd else range(9)
+    if form.bytes not in sizes:
+        message = f"there is no frame of {form.bytes} bytes"
+        if fd:
+            hint = f"CAN FD has {', '.join(map(str, sizes))}"
+        else:
+            hint = "a classic frame has up to 8; write `format: fd` for more"
+        findings.error(SIZE, form.at("bytes"), message, hint=hint)
+        return None
+    if form.bytes < needed:
+        message = f"{name} needs {needed} bytes, and {form.bytes} are given"
+        findings.error(SIZE, form.at("bytes"), message, hint="leave `bytes` out, or give more")
+        return None
+    return form.bytes
+
+
+@dataclass(frozen=True, slots=True)
+class _Maker:
+    """Makes the signals of one message."""
+
+    name: str
+    form: MessageForm
+    findings: Findings
+
+    def wrong(self, key: str, part: str | None, message: str, hint: str | None = None) -> None:
+        """An error at a key of a signal, or at the signal itself."""
+        at = self._at(key, part)
+        self.findings.error(LAYOUT, at, message, hint=hint)
+
+    def _at(self, key: str, part: str | None) -> Origin:
+        given = (self.form.signals or {}).get(key)
+        if part is None or given is None:
+            return self.form.entry_at("signals", key)
+        return given.at_key(part)
+
+    def selector(self, known: Sequence[tuple[str | None, ScalarType]]) -> Signal | None:
+        """The multiplexor, as far as it is known before it has its place."""
+        text = self.form.multiplexor
+        if text is None:
+            return None
+        for field, scalar in known:
+            if field is not None and field.lower() == text.lower():
+                own = next((k for k in self.form.signals or {} if k.lower() == text.lower()), None)
+                given = SignalForm() if own is None else (self.form.signals or {})[own]
+                return self.signal(given, field, field, scalar, None)
+        at = self.form.at("multiplexor")
+        message = f"the value of {self.name} has no field `{text}`"
+        names = [field for field, _ in known if field is not None]
+        self.findings.error(LAYOUT, at, message, hint=meant(text, names))
+        return None
+
+    def signal(
+        self,
+        form: SignalForm,
+        key: str,
+        field: str | None,
+        scalar: ScalarType,
+        selector: Signal | None,
+    ) -> Signal | None:
+        """One signal as given; it starts at 0 where that is left open."""
+        before = self.findings.count()
+        is_selector = (self.form.multiplexor or "").lower() == key.lower()
+        codes = self._codes(form, key, scalar)
+        offset = form.offset
+        if isinstance(scalar, EnumerationType):
+            if offset is not None:
+                self.wrong(key, "offset", f"{scalar.name} is an enumeration and has no `offset`")
+            offset = 0
+        elif offset is None:
+            offset = 0 if form.signed or is_selector else scalar.first
+        order = ByteOrder(form.order)
+        made = Signal(field, scalar, form.start or 0, 1, offset, form.signed, order, codes)
+        made = self._with_width(form, key, made)
+        if order is ByteOrder.MOTOROLA and form.start is None:
+            hint = "give the place of its most significant bit"
+            self.wrong(key, "order", f"the Motorola signal `{key}` has no `start`", hint)
+        pages = self._pages(form, key, selector)
+        if is_selector and (form.signed or offset):
+            hint = "leave `signed` and `offset` out"
+            message = f"the raw values of the multiplexor `{key}` must be its values, from 0 on"
+            self.wrong(key, None, message, hint)
+        return None if self.findings.count() > before else replace(made, pages=pages)
+
+    def _codes(self, form: SignalForm, key: str, scalar: ScalarType) -> tuple[int, ...]:
+        if form.codes is None:
+            return ()
+        if isinstance(scalar, IntegerType):
+            self.wrong(key, "codes", f"{scalar.name} is no enumeration and has no `codes`")
+            return ()
+        if len(form.codes) != len(scalar.literals) or len(set(form.codes)) < len(form.codes):
+            count = len(scalar.literals)
+            message = f"`codes` must be {count} different numbers, one for each of {scalar.name}"
+            self.wrong(key, "codes", message)
+            return ()
+        return tuple(form.codes)
+
+    def _with_width(self, form: SignalForm, key: str, made: Signal) -> Signal:
+        low, high = made.raw_range
+        if low < 0 and not form.signed:
+            hint = "write `signed: true`, or another offset"
+            message = f"the raw values of `{key}` are {low} .. {high}, and it is not signed"
+            self.wrong(key, None, message, hint)
+            return made
+        needed = width_for(low, high, signed=form.signed)
+        width = needed if form.width is None else form.width
+        if width < needed:
+            hint = f"write `width: {needed}`, or leave it out"
+            message = f"`{key}` has {width} bits, and its raw values {low} .. {high} need {needed}"
+            self.wrong(key, "width", message, hint)
+        elif (form.signed and width > SIGNED_BITS) or high >= RAW_LIMIT:
+            message = f"`{key}` has {width} bits" if form.signed else f"`{key}` has raw values"
+            message += f", and a signed signal has {SIGNED_BITS} at most"
+            if not form.signed:
+                message = f"`{key}` has raw values up to {high}, and 2^62 - 1 is the last"
+            self.wrong(key, None, message)
+        return replace(made, width=width)
+
+    def _pages(self, form: SignalForm, key: str, selector: Signal | None) -> tuple[int, ...]:
+        if form.when is None:
+            return ()
+        if selector is None:
+            if not self.form.lost("multiplexor") and self.form.multiplexor is None:
+                hint = "write `multiplexor:` and the field that tells"
+                self.wrong(key, "when", f"{self.name} has no multiplexor", hint)
+            else:
+                self.findings.lose()
+            return ()
+        given = form.when if isinstance(form.when, list) else [form.when]
+        place = form.place("when")
+        found = [constant(one, place, selector.name, selector.type, self.findings) for one in given]
+        return tuple(sorted({selector.raw(one) for one in found if one is not None}))
+
+    def fits(self, signals: tuple[Signal, ...]) -> bool:
+        """Whether no two share bits, and none reaches beyond the longest frame there is."""
+        before = self.findings.count()
+        keys = {key.lower(): key for key in self.form.signals or {}}
+        for first, second in overlaps(signals):
+            named = keys.get(second.name.lower()) or keys.get(first.name.lower(), second.name)
+            shared = min(set(first.bits()) & set(second.bits()))
+            message = f"`{first.name}` and `{second.name}` share bit {shared} of {self.name}"
+            hint = "give one of them another `start`"
+            self.findings.error(ROOM, self.form.entry_at("signals", named), message, hint=hint)
+        if self.form.signals is None:
+            return True  # `payloads_fit` says what is too long
+        room = 8 * self.form.bytes if self.form.bytes is not None else None
+        room = room_of(fd=self.form.format == "fd") if room is None else room
+        for signal in signals:
+            last = max(signal.bits())
+            key = keys.get(signal.name.lower())
+            if last >= room and key is not None:
+                message = (
+                    f"`{signal.name}` of {self.name} reaches to bit {last}, and the frame has "
+                    f"{room} bits"
+                )
+                hint = "another `start`, a longer frame (`bytes`), or `format: fd`"
+                self.findings.error(ROOM, self._at(key, None), message, hint=hint)
+        return self.findings.count() == before

@@ -1,0 +1,385 @@
+"""Forms to a `System`: every name resolved, every type known, every place kept.
+
+What is wrong is reported and left out; what was left out keeps its name, so
+that its uses are not reported as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
+
+from ravenchart.gen.derive.distribution import Carrier, placed
+from ravenchart.gen.derive.identifiers import identified
+from ravenchart.gen.derive.remote import calling
+from ravenchart.gen.files.schema import ModelFile
+from ravenchart.gen.files.schema_devices import DeviceForm
+from ravenchart.gen.language.names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
+from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
+from ravenchart.gen.model.commands import Binding, DeviceType
+from ravenchart.gen.model.system import Bus, Connection, Instance, Message, Shutdown, System
+from ravenchart.gen.origins import Origin
+
+from .bindings import bindings_of, event_wires, given_bindings, with_bindings
+from .components import parts_of
+from .deployment import (
+    Site,
+    bus_of,
+    chain_of,
+    connection_of,
+    instance_of,
+    message_of,
+    node_of,
+    processor_of,
+    shutdown_of,
+    with_events,
+)
+from .devices import Devices, Provider, device_type_of
+from .interfaces import command_of, declare_vectors
+from .values import types_of
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """A system as far as it is sound, and where it is not.
+
+    ``damaged`` holds ``Component`` for a component that had any error and
+    ``Component.Name`` for a region or activity; ``sound_sections`` the
+    top-level sections in which no element was lost.
+    """
+
+    system: System
+    damaged: frozenset[str]
+    sound_sections: frozenset[str]
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """The sections of all files of a model, in the order read."""
+
+    files: Sequence[ModelFile]
+
+    def entries(self, section: str) -> list[tuple[str, Any]]:
+        """The named elements of a section."""
+        found: list[tuple[str, Any]] = []
+        for file in self.files:
+            found.extend((getattr(file, section) or {}).items())
+        return found
+
+    def dropped(self, section: str) -> list[str]:
+        """The names of the elements that were wrong in form."""
+        return [name for file in self.files for name in file.dropped(section)]
+
+    def is_lost(self, section: str) -> bool:
+        """Whether a whole section was wrong in form somewhere."""
+        return any(file.lost(section) for file in self.files)
+
+    def origin(self, section: str) -> Origin:
+        """Where the section begins first; the beginning of the model without it."""
+        given = [file.at_key(section) for file in self.files if file.has(section)]
+        return given[0] if given else self.files[0].origin
+
+
+def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Findings) -> Resolved:
+    """The system that the files describe, main file first.
+
+    ``whole`` tells that all files could be read.
+    """
+    model = Merged(files)
+    main = files[0]
+    name = main.system
+    if name is None:
+        if not main.lost("system"):
+            message = "the model has no name"
+            hint = "begin with `system: Name_Of_The_System`"
+            findings.error("RV-0801", main.origin, message, hint=hint)
+        name = ""
+    elif name.lower() in PREDEFINED_TYPES:
+        message = f"a system cannot be named `{name}`, like a unit or type of Ada"
+        findings.error("RV-0304", main.at("system"), message, hint="choose another name")
+    elif name.lower() in GNAT_PREFIXES:
+        message = (
+            f"a system cannot be named `{name}`: GNAT keeps files `{name.lower()}-*` for itself"
+        )
+        findings.error("RV-0304", main.at("system"), message, hint="choose a longer name")
+    for file in files[1:]:
+        if file.system is not None:
+            message = "only the main file names the system"
+            notes = [(main.at("system"), "the system is named here")]
+            findings.error("RV-0803", file.at_key("system"), message, notes=notes)
+    _check_sections(model, whole, findings)
+    _check_units(model, name, findings)
+    return _build(model, name, whole, digest, findings)
+
+
+MOST_PROCESSORS = 30
+"""Processors of a system at most: each has a priority of its own."""
+
+
+def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
+    """What no system can do without, and what this version has once."""
+    for section, noun in (
+        ("components", "component"),
+        ("nodes", "node"),
+        ("instances", "instance"),
+        ("processors", "processor"),
+    ):
+        empty = not model.entries(section) and not model.dropped(section)
+        if whole and empty and not model.is_lost(section):
+            hint = f"declare one under `{section}:`"
+            findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
+    for _, form in model.entries("buses")[1:]:
+        first = model.entries("buses")[0][1].origin
+        message = "a second bus: a system has one bus, so far"
+        hint = "declare one bus; another system may hold the other"
+        notes = [(first, "the first is here")]
+        findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
+    for _, form in model.entries("processors")[MOST_PROCESSORS:]:
+        message = f"a system has at most {MOST_PROCESSORS} processors"
+        hint = "let one processor run more rows: each table holds many"
+        findings.error("RV-0209", form.origin, message, hint=hint)
+    shutdowns = [file for file in model.files if file.shutdown is not None]
+    for file in shutdowns[1:]:
+        message = "`shutdown` is given twice"
+        notes = [(shutdowns[0].at_key("shutdown"), "the first is here")]
+        findings.error("RV-0803", file.at_key("shutdown"), message, notes=notes)
+
+
+def _check_units(model: Merged, system: str, findings: Findings) -> None:
+    """Names that become child units of the system must differ from each other and from others."""
+    taken = {
+        f"{name}_states".lower(): ("state of the device type", name, form.origin)
+        for name, form in model.entries("device_types")
+    }
+    for section, kind in (
+        ("components", "component"),
+        ("buses", "bus"),
+        ("instances", "instance"),
+        ("processors", "processor"),
+        ("device_types", "device type"),
+        ("devices", "device"),
+    ):
+        for name, form in model.entries(section):
+            other = None
+            if name.lower() == system.lower():
+                other = f"the system {system}"
+            elif name.lower() in CHILDREN:
+                other = CHILDREN[name.lower()]
+            elif name.lower() in PREDEFINED_TYPES:
+                other = "a unit or type of Ada"
+            if other is not None:
+                message = f"the {kind} `{name}` is named like {other}"
+                findings.error("RV-0304", form.origin, message, hint="choose another name")
+                continue
+            known = taken.setdefault(name.lower(), (kind, name, form.origin))
+            if known[0] != kind:
+                message = f"the {kind} `{name}` is named like the {known[0]} `{known[1]}`"
+                notes = [(known[2], f"the {known[0]} is here")]
+                hint = "both become units of the generated program: rename one"
+                findings.error("RV-0304", form.origin, message, notes=notes, hint=hint)
+
+
+@dataclass(slots=True)
+class _Sections:
+    """The sections as they are resolved; ``sound`` names those without an error."""
+
+    model: Merged
+    whole: bool
+    findings: Findings
+    sound: set[str] = field(default_factory=set)
+
+    def named(self, section: str, kind: str, make: Callable[[str, Any], T | None]) -> Scope[T]:
+        """The named elements of a section, each made from its form."""
+        scope = self.scope(section, kind)
+        self.fill(section, scope, make)
+        return scope
+
+    def scope(self, section: str, kind: str) -> Scope[Any]:
+        """The names of what was wrong in form in a section."""
+        scope: Scope[Any] = Scope(kind, open=self.model.is_lost(section) or not self.whole)
+        for gone in self.model.dropped(section):
+            scope.declare(gone, None, None)
+        return scope
+
+    def fill(self, section: str, scope: Scope[T], make: Callable[[str, Any], T | None]) -> None:
+        """Add the elements of a section to its scope."""
+        before = self.findings.count()
+        for name, form in self.model.entries(section):
+            scope.declare(name, form.origin, make(name, form), self.findings)
+        if self.findings.count() == before and not scope.has_lost():
+            self.sound.add(section)
+
+    def connections(self, site: Site) -> tuple[Connection, ...]:
+        """The connections, which have no names."""
+        before, lost = self.findings.count(), False
+        made: list[Connection | None] = []
+        for file in self.model.files:
+            made += [connection_of(form, site) for form in file.connections or ()]
+            lost = lost or file.list_damaged("connections") or file.lost("connections")
+        if self.whole and self.findings.count() == before and None not in made and not lost:
+            self.sound.add("connections")
+        return tuple(item for item in made if item is not None)
+
+    def bindings(
+        self,
+        kinds: Scope[DeviceType],
+        instances: Scope[Instance],
+        types: Scope[Type],
+        damaged: frozenset[str],
+    ) -> tuple[tuple[Binding, ...], tuple[Connection, ...]]:
+        """What provides each required command, and brings each event.
+
+        None where something of it was lost.
+        """
+        count = self.findings.count()
+        scope: Scope[Provider] = self.scope("devices", "device")
+        forms: Scope[DeviceForm] = Scope("device", open=scope.open)
+        for name, form in self.model.entries("devices"):
+            forms.declare(name, form.origin, form, self.findings)
+        devices = Devices(forms, scope, kinds, instances, types, self.findings, damaged)
+        given = given_bindings(
+            (form for file in self.model.files for form in file.bindings or ()), devices
+        )
+        known = devices.all().names()
+        lost = any(
+            file.list_damaged("bindings") or file.lost("bindings") for file in self.model.files
+        )
+        if lost or scope.has_lost() or self.findings.count() > count or not self.whole:
+            self.sound.discard("connections")
+            return (), ()
+        known += [f"{i.name}.{p.name}" for i in instances.sound() for p in i.component.provides]
+        made = bindings_of(instances.sound(), given, known, self.findings)
+        wires = event_wires(instances.sound(), given, self.findings)
+        if self.findings.count() > count:
+            self.sound.discard("connections")
+        return made, wires
+
+    def buses(self, site: Site) -> tuple[Bus, ...]:
+        """The buses, with the events that they raise and are asked by."""
+        forms = dict(self.model.entries("buses"))
+        found = [with_events(bus, forms[bus.name], site) for bus in site.buses.sound()]
+        if not all(whole for _, whole in found):
+            self.sound.discard("processors")
+        return tuple(bus for bus, _ in found)
+
+    def shutdown(self, site: Site) -> Shutdown:
+        """What a request to stop does."""
+        given = [file.shutdown for file in self.model.files if file.shutdown is not None]
+        lost = any(file.lost("shutdown") for file in self.model.files)
+        if lost or any(form.list_damaged("raises") for form in given):
+            self.sound.discard("processors")
+        return shutdown_of(given[0] if given else None, site)
+
+
+def _build(model: Merged, name: str, whole: bool, digest: str, findings: Findings) -> Resolved:
+    """Section by section, in the order in which they refer to each other."""
+    sections = _Sections(model, whole, findings)
+    type_forms = [(key, form.origin, form) for key, form in model.entries("types")]
+    types = types_of(type_forms, model.dropped("types"), name, findings)
+    types.open = model.is_lost("types") or not whole
+    dictionary = sections.named(
+        "commands", "command", lambda key, form: command_of(key, form, types, findings)
+    )
+    declare_vectors(dictionary, _axes(model), types)
+    literals = frozenset(
+        literal.lower()
+        for type_ in types.sound()
+        if isinstance(type_, EnumerationType)
+        for literal in type_.literals
+    )
+    parts = sections.named(
+        "components",
+        "component",
+        lambda key, form: parts_of(key, form, types, literals, dictionary, name, findings),
+    )
+    nodes = sections.named("nodes", "node", lambda key, form: node_of(key, form, findings))
+    buses = sections.named("buses", "bus", lambda name, form: bus_of(name, form, findings))
+    instances = sections.scope("instances", "instance")
+    site = Site(nodes, buses, parts, instances, findings)
+    sections.fill("instances", instances, lambda key, form: instance_of(key, form, site))
+    connections = sections.connections(site)
+    kinds = sections.named(
+        "device_types",
+        "device type",
+        lambda key, form: device_type_of(key, form, dictionary, types, findings),
+    )
+    messages = sections.named("messages", "message", lambda key, form: message_of(key, form, site))
+    processors = sections.named(
+        "processors", "processor", lambda key, form: processor_of(key, form, site)
+    )
+    if any(
+        made is None or len(made.slots) < len(form.activities) or form.damaged
+        for made, form in ((processors.find(k), f) for k, f in model.entries("processors"))
+    ):
+        sections.sound.discard("processors")
+    chains = sections.named(
+        "chains", "chain", lambda key, form: chain_of(key, form, messages, site)
+    )
+    stop = sections.shutdown(site)
+    lines = sections.buses(site)
+    damaged = {part.component.name for part in parts.sound() if part.is_damaged}
+    bindings, wires = sections.bindings(kinds, instances, types, frozenset(damaged))
+    if any(
+        part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts.sound()
+    ):
+        sections.sound.discard("connections")
+    for part in parts.sound():
+        damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
+    carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
+    connections, carried = carrier.carried((*connections, *wires), messages.sound())
+    system = System(
+        name=name,
+        origin=model.files[0].at_key("system"),
+        digest=digest,
+        types=_declared(types),
+        components=tuple(part.component for part in parts.sound()),
+        nodes=nodes.sound(),
+        buses=tuple(_with_family(bus, carried) for bus in lines),
+        instances=instances.sound(),
+        connections=connections,
+        messages=tuple(m for m in carried if not m.is_foreign),
+        traffic=tuple(m for m in carried if m.is_foreign),
+        processors=processors.sound(),
+        shutdown=stop,
+        chains=chains.sound(),
+    )
+    system = calling(with_bindings(system, bindings))
+    frames = identified(system.frames)
+    system = replace(
+        system,
+        messages=tuple(m for m in frames if not m.is_foreign),
+        traffic=tuple(m for m in frames if m.is_foreign),
+    )
+    system = placed(system)
+    return Resolved(system, frozenset(damaged), frozenset(sections.sound))
+
+
+def _with_family(bus: Bus, carried: Sequence[Message]) -> Bus:
+    """The bus, once it is known whether CAN FD frames travel on it."""
+    given = any(message.fd and message.bus == bus.name for message in carried)
+    return replace(bus, takes_fd=given or bus.data_rate is not None)
+
+
+def _hears_or_tells(component: str, model: Merged) -> bool:
+    """Whether interfaces of a component have events, which become connections."""
+    forms = [form for name, form in model.entries("components") if name == component]
+    sides = (side for form in forms for side in (form.requires, form.provides) if side)
+    return any(interface.events for side in sides for interface in side.values())
+
+
+def _axes(model: Merged) -> list[int]:
+    """The numbers of axes that interfaces and devices of the model have."""
+    found = [form.axes for _, form in model.entries("device_types")]
+    for _, form in model.entries("components"):
+        sides = (*(form.requires or {}).values(), *(form.provides or {}).values())
+        found += [side.axes for side in sides]
+    return found
+
+
+def _declared(types: Scope[Type]) -> tuple[Type, ...]:
+    """The types that the model declares, in model order."""
+    return tuple(type_ for type_ in types.sound() if type_ is not BOOLEAN)

@@ -1,0 +1,67 @@
+"""What expressions may name, and what a sound expression is known to yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ravenchart.gen.language.intervals import Interval
+from ravenchart.gen.language.names import Scope
+from ravenchart.gen.language.terms import EnumerationType, Expression, Reading, RecordType, Type
+
+EVENT = "event"
+"""What expressions call the value of the triggering event."""
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """What expressions of one region or activity may name."""
+
+    readable: Scope[tuple[Reading, str, Type]]
+    inputs: Scope[str]
+    regions: Scope[Scope[str]]
+    """Each region's states; the name of the region is that of the inner scope's kind."""
+    literals: frozenset[str]
+    """All enumeration literals of the model, in lower case."""
+    own_region: str | None = None
+    concurrent: frozenset[str] = frozenset()
+    """States of the own region that lie in one of several regions of a state, in lower case."""
+    no_event: str = "there is no triggering event here"
+    """Why ``event`` has no value."""
+
+    def with_event(self, event: str, type_: Type | None) -> Vocabulary:
+        """The same, where ``event`` is the value of the triggering event; silent without type."""
+        known = self.readable
+        value = None if type_ is None else (Reading.EVENT, event, type_)
+        items = {**known.items, EVENT: (EVENT, None, value)}
+        return replace(self, readable=Scope(known.kind, items, known.open))
+
+    def without_event(self, reason: str) -> Vocabulary:
+        """The same, with another reason why ``event`` has no value."""
+        return replace(self, no_event=reason)
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A sound expression; an integer has no ``type`` but bounds and a unit.
+
+    ``bare`` marks what holds only numbers: it agrees with every unit.
+    """
+
+    expression: Expression
+    type: EnumerationType | RecordType | None
+    bounds: Interval = (0, 0)
+    unit: str | None = None
+    bare: bool = False
+
+
+def described(checked: Checked) -> str:
+    """What an expression yields, in words."""
+    if checked.type is not None:
+        kind = "a record" if isinstance(checked.type, RecordType) else "a value"
+        return f"{kind} of type {checked.type.name}"
+    return "a number"
+
+
+def range_of(bounds: Interval, unit: str | None = None) -> str:
+    """An interval in words."""
+    return f"{bounds[0]} .. {bounds[1]}" + (f" {unit}" if unit else "")

@@ -1,0 +1,1 @@
+"""What a system must keep to be valid, each with its code."""

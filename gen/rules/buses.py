@@ -1,0 +1,76 @@
+"""Rules of what a bus tells the model of its controllers' faults, and of recovery from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.model.system import Bus, Slot, System, Work
+from ravenchart.gen.resolve.system import Resolved
+
+FAULTS = "RV-0618"
+"""A fault that cannot be noticed, or a recovery that nobody can request."""
+
+WATCH = "RV-0714"
+"""A bus with `watch` that a node watches in no row, or in several."""
+
+
+def _joining(system: System, bus: Bus) -> list[str]:
+    return [node.name for node in system.nodes if system.joins(bus.name, node.name)]
+
+
+def buses_are_watched(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A bus with `watch` has that row once on each of its nodes, and on no other."""
+    system = resolved.system
+    if not {"processors", "messages"} <= resolved.sound_sections:
+        return
+    for bus in system.buses:
+        joining = _joining(system, bus)
+        for node in system.nodes:
+            rows: list[Slot] = [
+                slot
+                for processor in system.processors
+                for slot in processor.slots
+                if slot.work is Work.BUS_WATCH
+                and (slot.owner, processor.node) == (bus.name, node.name)
+            ]
+            for slot in rows[1:]:
+                message = f"{slot.element} is allocated twice"
+                notes = [(rows[0].origin, "the first is here")]
+                yield error(WATCH, slot.origin, message, notes=notes, hint="remove one of the rows")
+            if rows and node.name not in joining:
+                message = f"{rows[0].element} has nothing to watch: {node.name} neither sends nor "
+                message += f"receives on {bus.name}"
+                yield error(WATCH, rows[0].origin, message, hint="remove the row")
+            if bus.watch is not None and node.name in joining and not rows:
+                where = "" if len(system.nodes) == 1 else f" on {node.name}"
+                message = f"no processor watches {bus.name}{where}"
+                hint = f"add the row `{bus.name}.watch` to the table of a periodic processor{where}"
+                yield error(WATCH, bus.origin, message, hint=hint)
+
+
+def bus_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The events of a bus are of its nodes, and each of these can recover."""
+    system = resolved.system
+    if not {"processors", "messages", "instances"} <= resolved.sound_sections:
+        return
+    for bus in system.buses:
+        joining = _joining(system, bus)
+        if not joining:
+            continue  # all is on one node: nothing travels on it
+        for instance, event in dict.fromkeys((*bus.raises, *bus.recovers_on)):
+            home = system.instance(instance).node
+            if home not in joining:
+                message = f"{bus.name} names {instance}.{event}, and {instance} is on {home}, "
+                message += f"which neither sends nor receives on {bus.name}"
+                hint = f"name an event of an instance on {' or '.join(joining)}"
+                yield error(FAULTS, bus.origin, message, hint=hint)
+        able = {system.instance(instance).node for instance, _ in bus.recovers_on}
+        for node in joining if bus.recovers_on else ():
+            if node not in able:
+                message = f"nothing on {node} can request recovery of its controller on {bus.name}"
+                hint = f"add an event of an instance on {node} to `recovery: {{on: [...]}}`"
+                yield error(FAULTS, bus.origin, message, hint=hint)
+
+
+BUS_RULES = (buses_are_watched, bus_events_can_come)

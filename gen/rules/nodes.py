@@ -1,0 +1,163 @@
+"""Rules of systems with several nodes: what may reach from one to another, and what not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.derive.calls import callers
+from ravenchart.gen.derive.remote import is_across, obstacle
+from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.model.commands import Remote
+from ravenchart.gen.origins import Origin
+from ravenchart.gen.resolve.system import Resolved
+
+ABSENT = "RV-0802"
+"""What cannot reach from one node to another yet."""
+
+ROOM = "RV-0617"
+"""Transmit buffers by priority that do not hold what a node sends."""
+
+SILENCE = "RV-0712"
+"""What the silence of a processor shall do that nothing can."""
+
+UNHEARD = "RV-0713"
+"""An event of the silence of a processor for which only that processor waits."""
+
+BUFFERS = 8
+"""Transmit buffers that the drivers with buffers by priority fill."""
+
+
+def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A command of another node is one that messages can carry; a device is on one node."""
+    system = resolved.system
+    told: set[tuple[str, Origin]] = set()
+    for binding in system.bindings:
+        problem = obstacle(system, binding) if is_across(system, binding) else None
+        if problem is not None and problem[:2] not in told:
+            code, origin, text, hint = problem
+            told.add((code, origin))
+            yield error(code, origin, text, hint=hint)
+    for device in system.devices:
+        homes = {
+            system.instance(row.partition(".")[0]).node: row for row in callers(system, device)
+        }
+        if len(homes) > 1:
+            ends = " and ".join(f"{row} on {node}" for node, row in homes.items())
+            text = f"the device {device.name} is called by {ends}"
+            yield error(ABSENT, device.origin, text, hint="let one node call it")
+
+
+def servers_call_once(resolved: Resolved) -> Iterator[Diagnostic]:
+    """What serves several requests in one execution may call as often: no message does."""
+    system = resolved.system
+    for binding in system.bindings:
+        component = system.instance(binding.instance).component
+        for row in component.senders(binding.need.name):
+            served = component.served_by(row.name)
+            if isinstance(binding.provider, Remote) and served is not None and served.depth > 1:
+                text = (
+                    f"{row.name} serves up to {served.depth} requests in one execution, so "
+                    f"{binding.provider.request} may be sent more often than once in its period"
+                )
+                notes = [(row.origin, f"{row.name} is declared here")]
+                hint = f"give {served.name} `queue: 1`, or call from another activity"
+                yield error("RV-0611", binding.origin, text, notes=notes, hint=hint)
+
+
+def cores_exist(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The node of a processor has its core."""
+    cores = {node.name: node.cores for node in resolved.system.nodes}
+    for processor in resolved.system.processors:
+        last = cores.get(processor.node)
+        if last is not None and processor.core > last:
+            text = f"{processor.name} is on core {processor.core}, and {processor.node} has {last}"
+            hint = f"give the node `cores: {processor.core}`, or the processor another core"
+            yield error("RV-0710", processor.origin, text, hint=hint)
+
+
+def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A processor raises events of instances on its node."""
+    system = resolved.system
+    for processor in system.processors:
+        for instance, event in processor.raised_for_it:
+            home = system.instance(instance).node
+            if home != processor.node:
+                text = (
+                    f"{processor.name} is on {processor.node}, and {instance}, of which it raises "
+                    f"{event}, on {home}"
+                )
+                hint = "raise an event of an instance there; a port can tell others"
+                yield error("RV-0707", processor.origin, text, hint=hint)
+
+
+def silence_is_seen(resolved: Resolved) -> Iterator[Diagnostic]:
+    """What a processor's silence raises needs a supervision, and somebody else who reacts."""
+    system = resolved.system
+    nodes = {node.name: node for node in system.nodes}
+    for processor in system.processors:
+        node = nodes.get(processor.node)
+        if node is None or not processor.on_silence:
+            continue
+        if node.supervision is None:
+            text = f"{processor.name} has `on_silence`, but nothing supervises {node.name}"
+            hint = f"give {node.name} `supervision: {{period: ..., wcet: ..., margin: ...}}`"
+            yield error(SILENCE, processor.origin, text, hint=hint)
+        for instance, event in processor.on_silence:
+            regions = system.instance(instance).component.regions
+            waiting = {f"{instance}.{r.name}" for r in regions if event in r.events()}
+            own = {slot.element for slot in processor.slots}
+            if waiting and waiting <= own:
+                text = (
+                    f"the silence of {processor.name} raises {instance}.{event}, for which only "
+                    f"{', '.join(sorted(waiting))} on {processor.name} itself waits"
+                )
+                hint = "raise an event of a region that another processor executes"
+                yield warning(UNHEARD, processor.origin, text, hint=hint)
+
+
+def supervision_has_one_core(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A supervisor calls the monitors of all processors: they are on its core."""
+    for node in resolved.system.nodes:
+        if node.supervision is not None and node.cores > 1:
+            text = f"{node.name} has `supervision` and {node.cores} cores"
+            hint = "leave `supervision` out: a supervisor sees the processors of one core only"
+            yield error(SILENCE, node.origin, text, hint=hint)
+
+
+def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
+    """By priority, each message that a node sends has a transmit buffer for itself."""
+    system = resolved.system
+    for bus in system.buses:
+        if not bus.by_priority:
+            continue
+        if bus.transmit_depth > BUFFERS:
+            text = f"{bus.name} has {bus.transmit_depth} transmit buffers by priority, and a"
+            text += f" controller {BUFFERS} at most"
+            hint = f"write `transmit_depth: {BUFFERS}` or less"
+            yield error(ROOM, bus.origin, text, hint=hint)
+        sent = [m for m in system.messages if m.bus == bus.name and m.source is not None]
+        for node in system.nodes:
+            own = [m for m in sent if system.sender(m) == node.name]
+            if len(own) > bus.transmit_depth:
+                text = f"{node.name} sends {len(own)} messages on {bus.name}, and its controller"
+                text += f" has {bus.transmit_depth} transmit buffers by priority"
+                hint = "raise `transmit_depth`, or write `buffers: fifo`"
+                yield error(ROOM, bus.origin, text, hint=hint)
+        for message in sent:
+            if message.limit > message.period:
+                text = f"{message.name} may take longer than its period, so two of it may wait,"
+                text += f" and {bus.name} has one transmit buffer by priority for each message"
+                hint = f"give it a deadline of {shown(message.period)} or less"
+                yield error(ROOM, message.origin, text, hint=hint)
+
+
+NODE_RULES = (
+    buffers_hold_what_is_sent,
+    calls_can_be_carried,
+    servers_call_once,
+    cores_exist,
+    raised_events_are_near,
+    silence_is_seen,
+    supervision_has_one_core,
+)

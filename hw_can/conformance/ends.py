@@ -1,0 +1,185 @@
+"""The two ends of the bus under test: how they are opened, and frames sent across."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+import can
+from can.interfaces import BACKENDS
+
+from ravenchart.hw_can.bench.peer import BenchError
+
+BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
+"""So that it is there in a checkout that is on the path and not installed, too."""
+
+PATIENCE = 2.0
+"""Seconds without a frame after which no more is waited for."""
+
+DRAINED = 100_000
+"""Frames that are thrown away at most before a case."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What is under test. ``bitrate`` in bit/s, None for that of the interface."""
+
+    interface: str
+    channel: str
+    receive_interface: str
+    receive_channel: str
+    bitrate: int | None = None
+    fd: bool = False
+    echo: bool = False
+    """One bus object that receives its own frames is both ends."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The interfaces, each once."""
+        return tuple(dict.fromkeys((self.interface, self.receive_interface)))
+
+    def options(self) -> dict[str, Any]:
+        """What `can.Bus` is told beside interface and channel."""
+        wanted: dict[str, Any] = {} if self.bitrate is None else {"bitrate": self.bitrate}
+        return wanted | ({"fd": True} if self.fd else {})
+
+
+@dataclass(slots=True)
+class Ends:
+    """Two ends of one bus; ``far is near`` when there is one with echo."""
+
+    setup: Setup
+    near: can.BusABC
+    far: can.BusABC
+    patience: float = PATIENCE
+    latencies: list[int] = field(default_factory=list)
+    """Each in ns, from the call of send to the return of recv."""
+    rate: float | None = None
+    """Frames per second, sent as fast as they can be."""
+    errors: list[can.Message] = field(default_factory=list)
+    """Error frames that came although none was sent."""
+
+    def across(self, frames: Sequence[can.Message]) -> list[can.Message]:
+        """What arrives at the far end when the near one sends ``frames``."""
+        return exchange(self, self.near, self.far, frames)
+
+    def back(self, frames: Sequence[can.Message]) -> list[can.Message]:
+        """What arrives at the near end when the far one sends ``frames``."""
+        return exchange(self, self.far, self.near, frames)
+
+    def drain(self) -> None:
+        """Throw away what earlier cases left, but keep its error frames."""
+        for bus in (self.near, self.far):
+            for _ in range(DRAINED):
+                message = bus.recv(0)
+                if message is None:
+                    break
+                if message.is_error_frame:
+                    self.errors.append(message)
+
+    def usable(self) -> bool:
+        """Whether both ends can still be read."""
+        try:
+            self.drain()
+        except Exception:
+            return False
+        return True
+
+    def close(self) -> None:
+        """Leave the bus, as far as that goes."""
+        for bus in (self.near, self.far):
+            with suppress(Exception):
+                bus.shutdown()
+
+
+def open_ends(setup: Setup, patience: float = PATIENCE) -> Ends:
+    """Both ends; BenchError in words when one cannot be opened."""
+    near = opened(setup.interface, setup.channel, setup, echo=setup.echo)
+    if setup.echo:
+        return Ends(setup, near, near, patience)
+    try:
+        far = opened(setup.receive_interface, setup.receive_channel, setup)
+    except BenchError:
+        near.shutdown()
+        raise
+    return Ends(setup, near, far, patience)
+
+
+def opened(interface: str, channel: str, setup: Setup, *, echo: bool = False) -> can.BusABC:
+    """One bus object; BenchError when that is impossible. Drivers raise what they like."""
+    if interface not in BACKENDS:
+        known = ", ".join(sorted(BACKENDS))
+        raise BenchError(f"python-can has no interface {interface!r}; it has {known}")
+    options = setup.options() | ({"receive_own_messages": True} if echo else {})
+    try:
+        return can.Bus(channel, interface, ignore_config=True, **options)
+    except PermissionError as fault:
+        raise BenchError(f"no permission for {interface} {channel!r}: {fault}") from None
+    except Exception as fault:
+        raise BenchError(f"{interface} {channel!r} cannot be opened: {words(fault)}") from None
+
+
+def words(fault: BaseException) -> str:
+    """What a driver's exception says, on one printable line."""
+    said = " ".join(str(fault).split()) or type(fault).__name__
+    if not isinstance(fault, can.CanError | OSError | BenchError):
+        said = f"{type(fault).__name__}: {said}"
+    return "".join(c if c.isprintable() else "?" for c in said)
+
+
+AHEAD = 200
+"""Frames sent before the first of them was received."""
+
+
+class _Listening(threading.Thread):
+    """Receives ``count`` frames, or until none has come for a while."""
+
+    def __init__(self, ends: Ends, bus: can.BusABC, count: int, *, errors: bool) -> None:
+        super().__init__(daemon=True)
+        self.got: list[can.Message] = []
+        self.fault: Exception | None = None
+        self.busy_at = time.monotonic()
+        """When a frame was sent or came last."""
+        self._ends, self._bus, self._count, self._errors = ends, bus, count, errors
+
+    def run(self) -> None:
+        """Receive."""
+        try:
+            while len(self.got) < self._count:
+                message = self._bus.recv(0.05)
+                if message is not None:
+                    self.busy_at = time.monotonic()
+                    stray = message.is_error_frame and not self._errors
+                    (self._ends.errors if stray else self.got).append(message)
+                elif time.monotonic() - self.busy_at > self._ends.patience:
+                    return
+        except Exception as fault:
+            self.fault = fault
+
+
+def exchange(
+    ends: Ends, sender: can.BusABC, receiver: can.BusABC, frames: Sequence[can.Message]
+) -> list[can.Message]:
+    """What ``receiver`` gets when ``sender`` sends ``frames`` one after the other.
+
+    At most ``AHEAD`` are on their way: the buffer of a socket holds few more, and a
+    receiver that this machine leaves no time is no fault of the bus.
+    """
+    errors = any(frame.is_error_frame for frame in frames)
+    listening = _Listening(ends, receiver, len(frames), errors=errors)
+    listening.start()
+    try:
+        for number, frame in enumerate(frames):
+            sender.send(frame)
+            listening.busy_at = time.monotonic()
+            while number - len(listening.got) >= AHEAD and listening.is_alive():
+                time.sleep(0.0005)
+    finally:
+        listening.join()
+    if listening.fault is not None:
+        raise listening.fault
+    return listening.got

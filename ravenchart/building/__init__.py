@@ -1,0 +1,1 @@
+"""From a model to its program: checked, generated, compiled; and the tools outside."""

@@ -1,0 +1,71 @@
+"""`ravenchart draw`: pictures of a model's charts and structure, or of generated Ada."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravenchart.building import toolchain
+from ravenchart.building.steps import Refused
+from ravenchart.gen.draw import structure_text
+from ravenchart.gen.draw.ada_chart import picture_of_ada
+from ravenchart.gen.draw.ada_text import NotDeclaredError
+from ravenchart.gen.draw.chart import chart_dot
+from ravenchart.gen.draw.mermaid import mermaid
+from ravenchart.gen.draw.picture import Picture, picture
+from ravenchart.gen.draw.plantuml import plantuml
+from ravenchart.gen.draw.structure import structure_dot
+from ravenchart.gen.draw.svg import finished
+from ravenchart.gen.model.system import System
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A kind of drawing: the text of a chart, that of a structure, how files end."""
+
+    suffix: str
+    chart: Callable[[Picture], str]
+    structure: Callable[[System], str]
+
+
+FORMATS: Mapping[str, Format] = {
+    "svg": Format(".svg", chart_dot, structure_dot),
+    "plantuml": Format(".puml", plantuml, structure_text.plantuml),
+    "mermaid": Format(".mmd", mermaid, structure_text.mermaid),
+}
+
+
+def texts(system: System, form: str = "svg") -> dict[str, str]:
+    """File name to text of every drawing of a system; for SVG the DOT that it is made of."""
+    chosen = FORMATS[form]
+    charts = (picture(c, region) for c in system.components for region in c.regions)
+    made = {f"{chart.title}{chosen.suffix}": chosen.chart(chart) for chart in charts}
+    return {f"structure{chosen.suffix}": chosen.structure(system), **made}
+
+
+def texts_of_ada(file: Path, form: str = "svg") -> dict[str, str]:
+    """The same for the chart that the spec of a generated region declares; or Refused."""
+    try:
+        chart = picture_of_ada(file.name, lambda name: _sibling(file, name))
+    except NotDeclaredError as problem:
+        raise Refused(str(problem)) from problem
+    return {f"{chart.title}{FORMATS[form].suffix}": FORMATS[form].chart(chart)}
+
+
+def _sibling(file: Path, name: str) -> str | None:
+    path = file.with_name(name)
+    return path.read_text(encoding="utf-8") if path.is_file() else None
+
+
+def write(drawings: Mapping[str, str], folder: Path) -> None:
+    """Write drawings; where they are SVG, Graphviz makes them of their DOT texts."""
+    done = {name: svg(text) if name.endswith(".svg") else text for name, text in drawings.items()}
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in done.items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def svg(dot: str) -> str:
+    """The drawing of a DOT text; ToolMissing without Graphviz."""
+    return finished(toolchain.filtered("dot", ["-Tsvg"], dot), dot)

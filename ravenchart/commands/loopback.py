@@ -1,0 +1,127 @@
+"""`ravenchart loopback`: one suite over any python-can interface with two ends on one bus."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ravenchart.hw_can.bench.peer import BenchError
+from ravenchart.hw_can.conformance.ends import Setup, open_ends
+from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, histogram, run
+
+from . import loopback_files
+
+WIDTH = 80
+"""Columns of the table."""
+
+BAR = 40
+"""Columns of the longest bar of the histogram."""
+
+_STYLES = {Verdict.PASSED: "", Verdict.FAILED: "bold red", Verdict.SKIPPED: "dim"}
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    sub.add_argument("--interface", required=True, metavar="NAME", help="as python-can names it")
+    sub.add_argument("--channel", required=True, help="as that interface names it")
+    sub.add_argument(
+        "--receive-interface", metavar="NAME", help="of the other end (default: the same)"
+    )
+    sub.add_argument(
+        "--receive-channel", metavar="CHANNEL", help="of the other end (default: the same)"
+    )
+    sub.add_argument(
+        "--echo",
+        action="store_true",
+        help="one bus object that receives its own frames is both ends: for a single adapter",
+    )
+    sub.add_argument("--bitrate", type=_bitrate, metavar="BIT/S", help="default: the interface's")
+    sub.add_argument("--fd", action="store_true", help="test CAN FD frames too")
+    sub.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML there")
+    sub.add_argument("--html", type=Path, metavar="FILE", help="write a report there")
+
+
+def show(result: LoopbackResult, console: Console | None = None) -> None:
+    """Print a row for each case, the histogram of latencies, and the verdict."""
+    out = console or Console(width=WIDTH, highlight=False)
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("case", no_wrap=True)
+    table.add_column("")
+    table.add_column("s", justify="right", no_wrap=True)
+    table.add_column("seen, or the reason", overflow="fold", ratio=1)
+    for case in result.cases:
+        cells = (case.name, case.verdict.value, f"{case.seconds:.2f}", case.detail)
+        table.add_row(*map(Text, cells), style=_STYLES[case.verdict])
+    out.print(table)
+    bars = histogram(result.latencies)
+    if bars:
+        out.print("\nlatency, send to receive")
+        highest = max(count for _, count in bars)
+        for below, count in bars:
+            bar = "#" * -(-BAR * count // highest)
+            out.print(f"  < {below:>7,} us {count:>5,} {bar}".rstrip())
+    out.print(Text(f"\n{verdict_line(result)}", style="green" if result.passed else "bold red"))
+
+
+def verdict_line(result: LoopbackResult) -> str:
+    """PASS or FAIL, and how many cases ended how."""
+    passed, failed, skipped = map(result.count, Verdict)
+    word = "PASS" if result.passed else "FAIL"
+    return f"{word}: {passed} passed, {failed} failed, {skipped} skipped"
+
+
+def tested(options: argparse.Namespace) -> bool:
+    """Run the suite, print and write it; whether nothing failed and something passed.
+
+    Raises BenchError when the bus cannot be opened, OSError when a file cannot be written.
+    """
+    both = options.receive_interface is not None or options.receive_channel is not None
+    if options.echo and both:
+        raise BenchError("--echo goes without --receive-interface and --receive-channel")
+    setup = Setup(
+        interface=options.interface,
+        channel=options.channel,
+        receive_interface=options.receive_interface or options.interface,
+        receive_channel=options.receive_channel or options.channel,
+        bitrate=options.bitrate,
+        fd=options.fd,
+        echo=options.echo,
+    )
+    ends = open_ends(setup)
+    try:
+        result = run(ends)
+    finally:
+        ends.close()
+    show(result)
+    if options.junit is not None:
+        options.junit.write_text(loopback_files.junit(result), encoding="utf-8")
+    if options.html is not None:
+        options.html.write_text(loopback_files.html(result), encoding="utf-8")
+    return result.passed
+
+
+def main() -> int:
+    """The command alone, without what the others need: 0 passed, 1 failed, 2 not run."""
+    parser = argparse.ArgumentParser(prog="loopback")
+    add_arguments(parser)
+    try:
+        return 0 if tested(parser.parse_args()) else 1
+    except (BenchError, OSError) as problem:
+        print(f"loopback: error: {problem}", file=sys.stderr)
+        return 2
+
+
+def _bitrate(text: str) -> int:
+    """A nominal bit rate, 1 .. 1,000,000 bit/s."""
+    if not (text.isascii() and text.isdigit() and 0 < int(text) <= 1_000_000):
+        raise argparse.ArgumentTypeError(f"{text!r} is not 1 .. 1000000 bit/s")
+    return int(text)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

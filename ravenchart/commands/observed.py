@@ -1,0 +1,46 @@
+"""`ravenchart analyse --observed`: recorded execution times against the model's budgets."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+from ravenchart.analysis.present.report import Execution, executions
+from ravenchart.analysis.system.observed import TraceError, of_model, read_map, read_trace
+from ravenchart.analysis.units import microseconds
+from ravenchart.building.steps import Checked, Refused
+
+
+def within_budgets(checked: Checked, path: Path) -> bool:
+    """Print every activity that was executed, nearest to its budget first; none is above it.
+
+    ``path`` is the trace that `ravenchart run` writes beside its report, of a program that
+    was generated from this model: ``generated/trace.json`` says what its numbers mean.
+    `Refused` for a trace that cannot be read, was cut off, or holds no executions.
+    """
+    names = checked.generated / "trace.json"
+    try:
+        trace_map = read_map(names.read_text(encoding="utf-8"), str(names))
+        with path.open(encoding="ascii", errors="replace") as lines:
+            seen = read_trace(lines, trace_map, str(path))
+        of_model(seen, checked.system.digest, str(path))
+    except TraceError as fault:
+        raise Refused(str(fault)) from None
+    if not seen.complete:
+        raise Refused(f"{path}: error: the trace was cut off: the run did not end by itself")
+    rows = executions(checked.analysis, seen)
+    if not rows:
+        raise Refused(f"{path}: error: no activity of {checked.system.name} was executed")
+    every = {slot.element for processor in checked.system.processors for slot in processor.slots}
+    return tell(rows, every)
+
+
+def tell(rows: Sequence[Execution], every: Collection[str]) -> bool:
+    """Print what was seen of each of ``rows``, and which of ``every`` was not; none is above."""
+    for row in rows:
+        longest, budget = microseconds(row.observed), microseconds(row.claimed)
+        word = "ABOVE" if row.exceeded else "within"
+        print(f"{row.row}: {longest} us, {word} its budget of {budget} us")
+    for name in sorted(set(every) - {row.row for row in rows}):
+        print(f"{name}: not executed in this run")
+    return not any(row.exceeded for row in rows)

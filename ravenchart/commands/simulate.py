@@ -1,0 +1,175 @@
+"""`ravenchart simulate`: a model in virtual time, by its program or by the interpreter.
+
+The program is the generated one without tasks and buses: a main that holds the
+processors' tables, reads numbered stimuli from standard input, calls the rows in the
+order of `behaviour.machine` and prints the lines of `Record.text`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.interpreter.region import Stuck
+from ravenchart.behaviour.interpreter.stimuli import Raised, Stimuli, read
+from ravenchart.behaviour.interpreter.traces import Record, parsed
+from ravenchart.behaviour.rules.outside import external_events
+from ravenchart.building import children, toolchain
+from ravenchart.building.steps import (
+    Checked,
+    Refused,
+    build_home,
+    replace_file,
+    without_clashes,
+    write_first_versions,
+)
+from ravenchart.gen.derive.distribution import as_one
+from ravenchart.gen.diagnostics import Diagnostic, error, render, render_all, warning
+from ravenchart.gen.emit.nodes.simulation import numbers
+from ravenchart.gen.emit.nodes.simulation import stimuli as stimuli_of_system
+from ravenchart.gen.emit.program import simulation, source_folders
+from ravenchart.gen.files.load import LARGEST, read_file
+from ravenchart.gen.files.located import lines_of
+from ravenchart.gen.model.system import System
+from ravenchart.gen.origins import Origin
+
+
+def stimuli_of(system: System, path: Path) -> Stimuli:
+    """The stimuli in a file; Refused with everything that is wrong with them."""
+    try:
+        content = read_file(path, LARGEST + 1)
+        if len(content) > LARGEST:
+            raise ValueError(f"it is larger than {LARGEST // 2**20} MiB")
+        text = content.decode("utf-8").removeprefix("\ufeff")
+    except UnicodeDecodeError as problem:
+        raise _refused([_unreadable(path, "it is not UTF-8 text")], path, "") from problem
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", None) or str(problem)
+        raise _refused([_unreadable(path, reason)], path, "") from problem
+    stimuli, found = read(text, str(path), system)
+    if stimuli is None:
+        raise _refused(found, path, text)
+    return stimuli
+
+
+def _unreadable(path: Path, reason: str) -> Diagnostic:
+    message = f"cannot read {path}: {reason[:1].lower()}{reason[1:]}"
+    return error("RV-1001", Origin(str(path), 1, 1), message)
+
+
+def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
+    sources = {str(path): lines_of(text)} if text else {}
+    return Refused(render_all(found, sources))
+
+
+def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
+    """What the interpreter executes; Refused when the chart gets stuck."""
+    try:
+        return list(Machine(as_one(system)).run(stimuli))
+    except Stuck as stuck:
+        hint = "give it a segment with the guard `else`"
+        raise Refused(render(error("RV-1007", stuck.origin, str(stuck), hint=hint), {})) from stuck
+
+
+def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
+    """What the generated program executes."""
+    without_clashes(checked)
+    write_first_versions(checked)
+    program = build_simulation(checked.system, checked.folder, _home(checked))
+    return run_simulation(checked.system, program, stimuli)
+
+
+def _home(checked: Checked) -> Path:
+    return build_home(checked, "simulation")
+
+
+def build_simulation(system: System, folder: Path, home: Path) -> Path:
+    """Write and compile the program in virtual time below ``home``; its path.
+
+    The sources that are not generated are below the ``folder`` of the model.
+    """
+    source = home / "source"
+    source.mkdir(parents=True, exist_ok=True)
+    files = simulation(system)
+    for old in source.iterdir():
+        if old.name not in files:
+            old.unlink()
+    for name, text in files.items():
+        replace_file(source / name, text)
+    project = next(name for name in files if name.endswith(".gpr"))
+    places = [str((folder / place).resolve()) for place in source_folders(system)]
+    given = {"RAVENCHART_USER": ",".join(places)} if places else {}
+    toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project], source, given)
+    return home / project.removesuffix(".gpr")
+
+
+def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[Record]:
+    """The steps that the compiled program executes under the stimuli."""
+    known = {
+        (instance.lower(), what.lower()): (number, of_type)
+        for number, (instance, what, of_type) in enumerate(stimuli_of_system(system), 1)
+    }
+    lines = [str(stimuli.until)]
+    for entry in stimuli.entries:
+        owner, what = entry.place
+        number, of_type = known[(owner.lower(), what.lower())]
+        values = numbers(of_type, entry.value)
+        lines.append(" ".join(map(str, (entry.at, number, *values))))
+    text = "".join(f"{line}\n" for line in lines)
+    done = children.run([program], text)
+    if done.returncode:
+        raise toolchain.ToolFailed(f"{program.name}: {done.stderr.strip()}")
+    return [parsed(line) for line in done.stdout.splitlines()]
+
+
+def left_out(system: System) -> Diagnostic | None:
+    """A warning of the activities that the interpreter does not execute: those of the user."""
+    rows = [
+        (f"{instance.name}.{activity.name}", activity.origin)
+        for instance in system.instances
+        for activity in instance.component.activities
+        if activity.flow is None
+    ]
+    if not rows:
+        return None
+    names = ", ".join(name for name, _ in rows)
+    message = f"the interpreter leaves out what the user writes: {names}"
+    hint = (
+        "what these write, send and raise is missing from the trace; leave out `--interpreter`: "
+        "the program in virtual time executes them"
+    )
+    return warning("RV-1009", rows[0][1], message, hint=hint)
+
+
+def unexpected(system: System, stimuli: Stimuli) -> list[Diagnostic]:
+    """A warning for each event that comes from outside, which `check` does not reckon with."""
+    components = {i.name: i.component for i in system.instances}
+    raised = dict.fromkeys((e.instance, e.event) for e in stimuli.entries if isinstance(e, Raised))
+    found: list[Diagnostic] = []
+    for instance, name in raised:
+        component = components[instance]
+        if name not in {event for event, _ in external_events(component, system)}:
+            origin = next(e.origin for e in component.events if e.name == name)
+            message = f"only {component.name} raises {name}, and `check` relies on that"
+            hint = f"write `{name}: {{external: true}}` where it may come from outside too"
+            found.append(warning("RV-1010", origin, message, hint=hint))
+    return found
+
+
+def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
+    """The trace of a model under the stimuli of a file, one step a line."""
+    bindings = checked.system.bindings
+    if interpreter and bindings:
+        message = "the interpreter knows no drivers: it executes no models with bindings"
+        hint = "leave out `--interpreter`: the program in virtual time has them"
+        raise Refused(render(error("RV-1008", bindings[0].origin, message, hint=hint), {}))
+    stimuli = stimuli_of(checked.system, events)
+    for one in unexpected(checked.system, stimuli):
+        print(render(one, {}), file=sys.stderr)
+    if interpreter:
+        records = simulated_by_interpreter(checked.system, stimuli)
+    else:
+        records = simulated_by_program(checked, stimuli)
+    return "".join(f"{one.json() if as_json else one.text()}\n" for one in records)

@@ -1,0 +1,1 @@
+"""CAN databases of others as parts of a model."""

@@ -1,0 +1,315 @@
+"""`ravenchart import`: the messages of a CAN database as types, ports and messages of a model.
+
+What models have no words for is changed or left out, and the text says so at its top.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree
+
+import cantools
+import yaml
+from cantools.database import Database
+from cantools.database.can import Message, Signal
+from cantools.database.errors import Error as DatabaseFault
+
+from ravenchart.building.steps import Refused
+from ravenchart.gen.language.names import meant
+from ravenchart.gen.language.quantities import duration
+from ravenchart.gen.resolve.layouts import SIGNED_BITS
+
+from .names import HIDDEN, Names
+from .signals import Unsayable, Words, check_room, parts_of, words_of
+
+FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
+"""Databases by the ending of their files; a file with another one is read as DBC."""
+CLASSIC = 8
+"""Bytes of a classic frame at most."""
+MONITOR = "monitor"
+"""The node that receives every message."""
+
+
+@dataclass(slots=True)
+class Imported:
+    """Part of a model, and what of the database is not in it."""
+
+    text: str
+    problems: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class Periods:
+    """Least times between frames that a database does not say, as models write durations."""
+
+    default: str | None = None
+    """Of each message without a cycle time and without a row."""
+    rows: Mapping[str, str] = field(default_factory=dict)
+    """Of messages by name; they stand before the cycle time of the database."""
+
+    def of(self, message: Message) -> str | None:
+        """That of a message; None where nobody says."""
+        return self.rows.get(message.name) or _cycle(message) or self.default
+
+
+def periods(default: str | None, path: Path | None) -> Periods:
+    """What the call says of periods: ``path`` is YAML, ``message: 20 ms``. Refused when wrong."""
+    rows: object = {}
+    if path is not None:
+        try:
+            rows = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+        except (OSError, UnicodeDecodeError, yaml.YAMLError) as fault:
+            raise Refused(f"{path}: error: {fault}") from None
+    if not isinstance(rows, dict):
+        raise Refused(f"{path}: error: expected rows `message: 20 ms`")
+    found = Periods(default, {str(name): str(text) for name, text in rows.items()})
+    given = [("--period", default)] if default is not None else []
+    for place, text in (*given, *((f"{path}: {name}", one) for name, one in found.rows.items())):
+        time = duration(text)
+        if time is None or time <= 0:
+            raise Refused(f"{place}: error: `{text}` is no duration such as `20 ms`")
+    return found
+
+
+def imported(
+    path: Path, node: str | None, given: Periods | None = None, *, lenient: bool = False
+) -> Imported:
+    """The messages of a database as seen from one of its nodes. Refused when it cannot be read.
+
+    None: seen by a node that receives all of them. A signal that cannot be said is left out of
+    what the node receives; what it sends is left out as a whole, for its bytes would be others.
+    ``lenient``: signals that share bits or reach beyond their frame are left out, too.
+    """
+    given = given or Periods()
+    database = _database(path, lenient=lenient)
+    names = [one.name for one in database.nodes]
+    if node is not None and node not in names:
+        hint = meant(node, names) if names else "it has no nodes: use `--all`"
+        raise Refused(f"{path}: error: no node is called {node}" + (f": {hint}" if hint else ""))
+    unknown = [name for name in given.rows if name not in {m.name for m in database.messages}]
+    if unknown:
+        hint = meant(unknown[0], [m.name for m in database.messages])
+        told = f"no message is called {unknown[0]}" + (f": {hint}" if hint else "")
+        raise Refused(f"{path}: error: {told}")
+    writer = _Writer(node, given, Names(m.name for m in database.messages))
+    problems: list[str] = []
+    for message in database.messages:
+        try:
+            writer.add(message)
+        except Unsayable as problem:
+            problems.append(f"{path}: error: {message.name} is left out: {problem}")
+    problems += [f"{path}: error: {left}" for left in writer.left_out]
+    return Imported(writer.text(path.name), problems)
+
+
+def _database(path: Path, *, lenient: bool) -> Database:
+    ending = path.suffix.lower()
+    form = ending.removeprefix(".") if ending in FORMATS else "dbc"
+    try:
+        database = cantools.database.load_file(path, database_format=form, strict=not lenient)
+    except (OSError, ValueError, DatabaseFault, ElementTree.ParseError) as fault:
+        room = not lenient and ("overlapping" in str(fault) or "does not fit" in str(fault))
+        hint = f"\n{path}: hint: `--lenient` leaves such signals out" if room else ""
+        raise Refused(f"{path}: error: {fault}{hint}") from None
+    if not isinstance(database, Database):
+        raise Refused(f"{path}: error: it has diagnostics, and no messages")
+    return database
+
+
+@dataclass(slots=True)
+class _Writer:
+    """The sections of the model, line by line."""
+
+    node: str | None
+    periods: Periods
+    names: Names
+    """Of the messages."""
+    known: dict[str, str] = field(default_factory=dict)
+    """Definition to name of the types, in the order in which they are needed."""
+    type_names: Names = field(default_factory=Names)
+    literals: set[str] = field(default_factory=set)
+    """In lower case: no type has such a name."""
+    records: list[str] = field(default_factory=list)
+    ports: list[str] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
+    changes: list[tuple[str, str]] = field(default_factory=list)
+    """What is otherwise than in the database: where, and how."""
+    left_out: list[str] = field(default_factory=list)
+    """Signals that are not in the model, each with its message and the reason."""
+
+    def __post_init__(self) -> None:
+        """No type has a name that it would hide."""
+        self.type_names.avoid(HIDDEN)
+
+    @property
+    def own_name(self) -> str:
+        """The node's name as a model can have it."""
+        return Names().new(self.node or MONITOR)
+
+    @property
+    def component(self) -> str:
+        """The component that has the ports."""
+        return f"{self.own_name[:1].upper()}{self.own_name[1:]}_Ports"
+
+    @property
+    def instance(self) -> str:
+        """What the text takes the component's instance to be called."""
+        return self.own_name.lower()
+
+    def text(self, source: str) -> str:
+        """All of it; what a database cannot know is left to the reader."""
+        seen = self.node or "a node that receives everything"
+        lines = [
+            f"# From {source}, as seen by {seen}. Add what the ports do, `{self.instance}:` under",
+            "# `instances:`, and a bus called `bus`.",
+            *self._table(),
+            "types:",
+            *(f"  {name}: {definition}" for definition, name in self.known.items()),
+            *self.records,
+            "components:",
+            f"  {self.component}:",
+            "    ports:" if self.ports else "    ports: {}",
+            *self.ports,
+            "messages:" if self.messages else "messages: {}",
+            *self.messages,
+        ]
+        return "\n".join(lines) + "\n"
+
+    def _table(self) -> list[str]:
+        """What is otherwise than in the database."""
+        if not self.changes:
+            return []
+        width = max(len(where) for where, _ in self.changes)
+        return [
+            "#",
+            "# Otherwise than in the database:",
+            *(f"# {where:{width}}  {' '.join(how.split())}" for where, how in self.changes),
+        ]
+
+    def add(self, message: Message) -> None:
+        """A message, or `Unsayable`."""
+        period = self.periods.of(message)
+        sends = self.node is not None and self.node in message.senders
+        takes = self.node is None or self.node in message.receivers
+        if not sends and period is None:
+            raise Unsayable(
+                "it has no cycle time, which a message from outside needs; `--period` gives one"
+            )
+        lines = self._head(message)
+        if not sends and not takes:
+            self.messages += [*lines, f"    period: {period}"]
+            return
+        signals = self._signals(message, whole=sends)
+        if not signals:
+            if sends:
+                raise Unsayable("it has no signals, and a port has a value")
+            self.changes.append((message.name, "is on the bus alone: no port has its value"))
+            self.messages += [*lines, f"    period: {period}"]
+            return
+        name = self.names.of(message.name)
+        own = self._named(message, signals)
+        fields = ", ".join(f"{own[s]}: {self._type(message, s, w)}" for s, w in signals.items())
+        record = self.type_names.new(f"{name}_Data", self.literals)
+        self.records.append(f"  {record}: {{fields: {{{fields}}}}}")
+        way = "out" if sends else "in"
+        often = f"  # every {period}" if sends and period is not None else ""
+        self.ports.append(f"      {name}: {{{way}: {record}}}{often}")
+        end = f"{self.instance}.{name}"
+        lines += [f"    from: {end}"] if sends else [f"    to: {end}", f"    period: {period}"]
+        selector = _selector(message)
+        if selector is not None:
+            lines.append(f"    multiplexor: {own[selector]}")
+        lines.append("    signals:")
+        for signal, words in signals.items():
+            pages = _pages(signal, None if selector is None else signals[selector])
+            lines.append(f"      {own[signal]}: {{{', '.join([*words.keys, *pages])}}}")
+        self.messages += lines
+
+    def _head(self, message: Message) -> list[str]:
+        name = self.names.of(message.name)
+        if name != message.name:
+            self.changes.append((message.name, f"is named {name}"))
+        lines = [f"  {name}:", "    bus: bus", f"    id: {message.frame_id:#x}"]
+        lines += ["    extended: true"] if message.is_extended_frame else []
+        if message.length > CLASSIC and not message.is_fd:
+            self.changes.append((message.name, f"is a CAN FD frame: it has {message.length} bytes"))
+        lines += ["    format: fd"] if message.is_fd or message.length > CLASSIC else []
+        return [*lines, f"    bytes: {message.length}"]
+
+    def _named(self, message: Message, signals: Mapping[Signal, Words]) -> dict[Signal, str]:
+        """The names of the signals; notes what is changed in them."""
+        names = Names(signal.name for signal in signals)
+        for signal, words in signals.items():
+            where, name = f"{message.name}.{signal.name}", names.of(signal.name)
+            if name != signal.name:
+                self.changes.append((where, f"is named {name}"))
+            if signal not in message.signals:
+                self.changes.append((where, f"is half of a signal of more than {SIGNED_BITS} bits"))
+            if words.raw is not None:
+                self.changes.append((where, f"counts raw values: {words.raw}{_formula(signal)}"))
+            for old, new in words.renamed:
+                self.changes.append((where, f"its value `{old}` is named {new}"))
+        return {signal: names.of(signal.name) for signal in signals}
+
+    def _type(self, message: Message, signal: Signal, words: Words) -> str:
+        """The name of the type, which is added where there is none like it."""
+        if words.literals == ():
+            return "Boolean"
+        definition = words.range
+        if words.literals:
+            definition = f"{{values: [{', '.join(words.literals)}]}}"
+            self.literals |= {name.lower() for name in words.literals}
+        if definition not in self.known:
+            wanted = f"{self.names.of(message.name)}_{signal.name}"
+            self.known[definition] = self.type_names.new(wanted, self.literals)
+        return self.known[definition]
+
+    def _signals(self, message: Message, *, whole: bool) -> dict[Signal, Words]:
+        """What can be said of the signals; all of them when ``whole``, or `Unsayable`."""
+        found: dict[Signal, Words] = {}
+        left_out: list[str] = []
+        several = [s.name for s in message.signals if s.is_multiplexer]
+        selector = _selector(message)
+        for signal in (part for one in message.signals for part in parts_of(one)):
+            try:
+                if len(several) > 1 and signal.multiplexer_ids:
+                    raise Unsayable(f"there are several multiplexors, {', '.join(several)}")
+                check_room(message, signal, list(found))
+                found[signal] = words_of(signal, taken=self.type_names.taken)
+                if selector in found:
+                    _pages(signal, found[selector])
+            except Unsayable as problem:
+                if whole or signal is selector:
+                    raise Unsayable(f"its signal {signal.name}: {problem}") from None
+                found.pop(signal, None)
+                left_out.append(f"{message.name}.{signal.name} is left out: {problem}")
+        self.left_out += left_out
+        return found
+
+
+def _selector(message: Message) -> Signal | None:
+    """The multiplexor, where there is one alone."""
+    selectors = [s for s in message.signals if s.is_multiplexer]
+    return selectors[0] if len(selectors) == 1 else None
+
+
+def _pages(signal: Signal, selector: Words | None) -> list[str]:
+    """The key that says with which values of the multiplexor a signal is there."""
+    if selector is None or not signal.multiplexer_ids:
+        return []
+    return [f"when: [{', '.join(selector.literal(page) for page in signal.multiplexer_ids)}]"]
+
+
+def _formula(signal: Signal) -> str:
+    """How a value comes of the raw one."""
+    if signal.conversion.is_float:
+        return ""
+    scale, offset = signal.conversion.scale, signal.conversion.offset
+    unit = f" {signal.unit}" if signal.unit else ""
+    return f" (value = {scale:g} * raw + {offset:g}{unit})"
+
+
+def _cycle(message: Message) -> str | None:
+    return f"{message.cycle_time} ms" if message.cycle_time else None

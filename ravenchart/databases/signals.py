@@ -1,0 +1,198 @@
+"""The signals of a CAN database as types and layouts of a model.
+
+A value counts the scale of its signal: 0.1 degC is a unit. A signal that models have no such
+words for, such as one of a negative scale, is imported as its raw counts, and that is said.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence, Set
+from dataclasses import dataclass
+from decimal import Decimal
+
+from cantools.database.can import Message, Signal
+
+from ravenchart.gen.model.signals import RAW_LIMIT, ByteOrder, positions
+from ravenchart.gen.resolve.layouts import SIGNED_BITS
+
+from .names import HIDDEN, Names
+
+LONGEST_UNIT = 20
+"""Characters of a unit at most."""
+
+
+class Unsayable(Exception):  # noqa: N818
+    """A message or signal has something that models have no words for; the text says what."""
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """What a model says of a signal."""
+
+    literals: tuple[str, ...] | None
+    """Of an enumeration; () for Boolean, None for an integer."""
+    codes: tuple[int, ...]
+    range: str
+    """Of an integer: its definition."""
+    keys: tuple[str, ...]
+    """Of the layout."""
+    raw: str | None = None
+    """Why it counts raw values, if it does."""
+    renamed: tuple[tuple[str, str], ...] = ()
+    """Literals that have another name than in the database."""
+
+    def literal(self, code: int) -> str:
+        """How a model writes a raw value."""
+        if self.literals is None:
+            return str(code)
+        return ("False", "True")[code] if not self.literals else self.literals[self._at(code)]
+
+    def _at(self, code: int) -> int:
+        if code not in self.codes:
+            raise Unsayable(f"its multiplexor has no value {code}")
+        return self.codes.index(code)
+
+
+def words_of(signal: Signal, *, taken: Set[str] = frozenset()) -> Words:
+    """A signal in a model's words; `Unsayable` when not even its raw counts can be said.
+
+    ``taken`` are names that no literal may have.
+    """
+    try:
+        return _exact_words(signal, taken)
+    except Unsayable as reason:
+        return _raw_words(signal, str(reason))
+
+
+def _layout(signal: Signal) -> tuple[str, ...]:
+    keys = [f"start: {signal.start}", f"width: {signal.length}"]
+    keys += ["order: motorola"] if signal.byte_order == "big_endian" else []
+    keys += ["signed: true"] if _is_signed(signal) else []
+    return tuple(keys)
+
+
+def _is_signed(signal: Signal) -> bool:
+    return signal.is_signed and not signal.conversion.is_float
+
+
+def _raw_words(signal: Signal, reason: str) -> Words:
+    low, high = _by_width(signal)
+    if max(-low, high) >= RAW_LIMIT:
+        raise Unsayable(f"it has more than {SIGNED_BITS} bits")
+    return Words(None, (), f"{{range: [{low}, {high}]}}", _layout(signal), reason)
+
+
+def _exact_words(signal: Signal, taken: Set[str]) -> Words:
+    if signal.conversion.is_float:
+        raise Unsayable("it is a floating-point number")
+    scale, offset = _exact(signal.conversion.scale), _exact(signal.conversion.offset)
+    if scale <= 0:
+        raise Unsayable(f"its scale is {scale}")
+    low, high = _raw_range(signal, scale, offset)
+    choices = dict(sorted((signal.conversion.choices or {}).items()))
+    if choices:
+        if scale != 1 or offset != 0 or (min(choices), max(choices)) != (low, high):
+            raise Unsayable("some of its values have names, and others have none")
+        texts = [str(name) for name in choices.values()]
+        if dict(zip(choices, texts, strict=True)) == {0: "False", 1: "True"}:
+            return Words((), (0, 1), "", _layout(signal))
+        names = Names()
+        names.avoid(taken | HIDDEN)
+        literals = tuple(names.new(text) for text in texts)
+        codes = f"codes: [{', '.join(map(str, choices))}]"
+        renamed = tuple(pair for pair in zip(texts, literals, strict=True) if pair[0] != pair[1])
+        return Words(literals, tuple(choices), "", (*_layout(signal), codes), None, renamed)
+    counts = offset / scale
+    if counts != int(counts):
+        raise Unsayable("its offset is no whole number of counts")
+    if signal.is_multiplexer and counts:
+        raise Unsayable("a multiplexor has no offset")
+    low, high = low + int(counts), high + int(counts)
+    if max(-low, high) >= RAW_LIMIT:
+        raise Unsayable(f"it has values of more than {SIGNED_BITS} bits")
+    unit = signal.unit or ""
+    if scale != 1:
+        unit = f"{scale:f} {unit}".strip()
+    if len(unit) > LONGEST_UNIT or not unit.isprintable() or '"' in unit or "\\" in unit:
+        raise Unsayable(f"its unit `{unit}` is not one of at most {LONGEST_UNIT} characters")
+    shown = f', unit: "{unit}"' if unit else ""
+    keys = (*_layout(signal), f"offset: {int(counts)}")
+    return Words(None, (), f"{{range: [{low}, {high}]{shown}}}", keys)
+
+
+def _exact(value: float | int) -> Decimal:
+    return Decimal(repr(value)) if isinstance(value, float) else Decimal(value)
+
+
+def _by_width(signal: Signal) -> tuple[int, int]:
+    if _is_signed(signal):
+        return -(1 << signal.length - 1), (1 << signal.length - 1) - 1
+    return 0, (1 << signal.length) - 1
+
+
+def _raw_range(signal: Signal, scale: Decimal, offset: Decimal) -> tuple[int, int]:
+    """The least and the greatest raw value: by the limits that are given, and by the width."""
+    low, high = _by_width(signal)
+    if signal.minimum is not None and signal.maximum is not None:
+        first, last = (
+            (_exact(limit) - offset) / scale for limit in (signal.minimum, signal.maximum)
+        )
+        low, high = max(low, math.ceil(first)), min(high, math.floor(last))
+    if low > high:
+        raise Unsayable("it has no value within its limits")
+    return low, high
+
+
+# --- where it is in the frame ------------------------------------------------
+
+
+HALF = 32
+"""Bits of the less significant part of a signal that is too wide."""
+
+
+def parts_of(signal: Signal) -> tuple[Signal, ...]:
+    """The signal itself, or its two halves where it has more bits than a model's number."""
+    if signal.length <= SIGNED_BITS or signal.is_multiplexer:
+        return (signal,)
+    bits = _bits(signal)
+    if signal.byte_order == "little_endian":
+        starts = {"High": bits[HALF], "Low": bits[0]}
+    else:
+        starts = {"High": bits[-1], "Low": bits[HALF - 1]}
+    widths = {"High": signal.length - HALF, "Low": HALF}
+    return tuple(
+        Signal(
+            f"{signal.name}_{half}",
+            start,
+            widths[half],
+            byte_order=signal.byte_order,
+            multiplexer_ids=signal.multiplexer_ids,
+            multiplexer_signal=signal.multiplexer_signal,
+        )
+        for half, start in starts.items()
+    )
+
+
+def check_room(message: Message, signal: Signal, others: Sequence[Signal]) -> None:
+    """`Unsayable` when a signal is beyond the frame, or shares bits with one of ``others``."""
+    own = frozenset(_bits(signal))
+    paged = any(one.is_multiplexer for one in message.signals)
+    if max(own) >= 8 * message.length:
+        raise Unsayable(f"it reaches beyond the {message.length} bytes of its frame")
+    for other in others:
+        if own & frozenset(_bits(other)) and not (paged and _are_apart(signal, other)):
+            raise Unsayable(f"it shares bits with {other.name}")
+
+
+def _bits(signal: Signal) -> tuple[int, ...]:
+    """Its bits in the frame, the least significant first."""
+    intel = signal.byte_order == "little_endian"
+    order = ByteOrder.INTEL if intel else ByteOrder.MOTOROLA
+    return positions(signal.start, signal.length, order)
+
+
+def _are_apart(one: Signal, other: Signal) -> bool:
+    """Are they on different pages, so that no frame has both?"""
+    pages, others = set(one.multiplexer_ids or ()), set(other.multiplexer_ids or ())
+    return bool(pages and others) and not pages & others

@@ -1,0 +1,1 @@
+"""gnatprove run, what it found, and the record of it."""

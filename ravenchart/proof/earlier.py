@@ -1,0 +1,71 @@
+"""Results of earlier proofs, kept by the content that they speak of.
+
+A key is the SHA-256 over gnatprove's version, the run's settings, and the name and bytes of every
+file that it may read: another byte, tool or switch is another key. Entries are in `kept`; one
+that cannot be read is proved again. Whoever can write there can lie: see ASM-016 in
+proofs/assumptions.md.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ravenchart.building import kept
+from ravenchart.paths import ROOT
+
+from .spark_results import Entity, Outside, Results
+
+if TYPE_CHECKING:
+    from .proving import Task
+
+FORMAT = 1
+"""Part of each key: raised when what an entry holds changes."""
+KIND = "proofs"
+
+
+def key(version: str, task: Task, inputs: Mapping[Path, str]) -> str:
+    """What the results depend on, as one digest; where objects go is no part of it."""
+    scenario = {n: v for n, v in sorted(task.scenario.items()) if n != "RAVENCHART_BUILD"}
+    base = task.project.resolve().parent
+    parts = [
+        FORMAT,
+        version,
+        task.project.name,
+        scenario,
+        task.warnings,
+        task.whole,
+        sorted(task.units),
+        sorted((_place(path, base), digest) for path, digest in inputs.items()),
+    ]
+    return kept.digest(parts)
+
+
+def _place(path: Path, base: Path) -> str:
+    """The same for the same file in another checkout or another place of the model."""
+    return os.path.relpath(path, ROOT if path.is_relative_to(ROOT) else base)
+
+
+def load(key: str) -> Results | None:
+    """The results of an earlier run; None when there are none that can be read."""
+    found: Any = kept.load(KIND, key)
+    try:
+        return Results(
+            found["checks"],
+            found["justified"],
+            found["unproved"],
+            found["assumed"],
+            tuple(Outside(**o) for o in found["outside"]),
+            frozenset(found["files"]),
+            tuple(Entity(e["path"], e["checks"], tuple(e["provers"])) for e in found["entities"]),
+        )
+    except (KeyError, TypeError):
+        return None
+
+
+def store(key: str, results: Results) -> None:
+    """Keep the results; where that is not possible, the next proof is a run again."""
+    kept.store(KIND, key, {**asdict(results), "files": sorted(results.files)})

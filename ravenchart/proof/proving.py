@@ -1,0 +1,162 @@
+"""Running gnatprove, and keeping the record of what it found.
+
+A record is one TOML file per project: for each source that the proof read its SHA-256, for
+each subprogram its checks and the provers that discharged them. No date, host
+or time stands in it, so a difference means a change.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ravenchart.building import toolchain
+from ravenchart.paths import ROOT
+
+from . import earlier as proof_cache
+from . import spark_results
+from .spark_results import Results
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One gnatprove run."""
+
+    project: Path
+    scenario: Mapping[str, str]
+    results: tuple[Path, ...]
+    """The folders that the results land in; emptied before."""
+    sources: tuple[Path, ...]
+    """Folders with all that the proof may read: Ada sources, projects, configuration pragmas."""
+    warnings: str = "continue"
+    """``error``: a warning of flow analysis fails the run."""
+    whole: bool = False
+    """Prove the projects that this one uses again."""
+    units: tuple[str, ...] = ()
+    """The source files to prove, when not all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """The outcome of one gnatprove run, and the sources it speaks of."""
+
+    results: Results
+    sources: tuple[tuple[str, str], ...]
+    """(path below the checkout, SHA-256), sorted."""
+    tool: str
+    """The first line of ``gnatprove --version``."""
+    cached: bool = field(default=False, compare=False)
+    """Whether the results are those of an earlier run on the same content."""
+
+    @property
+    def clean(self) -> bool:
+        """Everything proved, nothing justified or assumed."""
+        found = self.results
+        return not (found.unproved or found.justified or found.assumed)
+
+    def summary(self) -> str:
+        """The one line that every proof run ends in."""
+        found = self.results
+        proved = found.checks - found.justified - found.unproved
+        return (
+            f"checks {found.checks}, proved {proved}, justified {found.justified}, "
+            f"assumed {found.assumed}, outside SPARK {len(found.outside)}"
+            + (" (proved before from the same content)" if self.cached else "")
+        )
+
+
+def prove(task: Task, *, fresh: bool = False) -> Proof:
+    """Run gnatprove, or take the results of an earlier run on the same content.
+
+    ToolFailed with gnatprove's messages when anything is left. ``fresh`` runs it in any case.
+    The result folders are emptied first, so the results are those of this run alone.
+    """
+    version = toolchain.run("gnatprove", ["--version"], task.project.parent, {})
+    inputs = _inputs(task.sources)
+    key = proof_cache.key(version, task, inputs)
+    results = None if fresh else proof_cache.load(key)
+    cached = results is not None
+    if results is None:
+        results = _run(task)
+        if not results.unproved:
+            proof_cache.store(key, results)
+    read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
+    sources = tuple(sorted((_shown(path), digest) for path, digest in read.items()))
+    return Proof(results, sources, version.partition("\n")[0], cached)
+
+
+def _run(task: Task) -> Results:
+    for folder in task.results:
+        shutil.rmtree(folder, ignore_errors=True)
+    arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline"]
+    arguments.append(f"--warnings={task.warnings}")
+    if not task.whole:
+        arguments.append("--no-subprojects")
+    if task.units:
+        arguments += ["-u", *task.units]
+    toolchain.run("gnatprove", arguments, task.project.parent, task.scenario)
+    return spark_results.read_results(task.results, task.units)
+
+
+SOURCES = (".ads", ".adb", ".gpr", ".adc")
+"""Endings of the files that a proof may depend on."""
+
+
+def _inputs(folders: Sequence[Path]) -> dict[Path, str]:
+    """Every file that the proof may read, with its SHA-256."""
+    found = {path.resolve() for folder in folders for path in folder.glob("*")}
+    return {p: digest(p) for p in sorted(found) if p.suffix in SOURCES and p.is_file()}
+
+
+def _is_read(path: Path, results: Results) -> bool:
+    """Ada sources by what gnatprove says it read; projects and configuration always."""
+    return path.suffix not in (".ads", ".adb") or path.name in results.files
+
+
+def _shown(path: Path) -> str:
+    base = ROOT
+    return path.relative_to(base).as_posix() if path.is_relative_to(base) else str(path)
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file's bytes, in hexadecimal."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def record_text(proof: Proof) -> str:
+    """The record of a proof as TOML."""
+    found = proof.results
+    lines = [
+        "# Written by `make prove`. Checked against the sources by `make test`.",
+        f"checks = {found.checks}",
+        f"proved = {found.checks - found.justified - found.unproved}",
+        f"justified = {found.justified}",
+        f"assumed = {found.assumed}",
+        f"outside = {json.dumps([o.name for o in found.outside])}",
+        "",
+        "[sources]",
+        *(f'"{path}" = "{digest}"' for path, digest in proof.sources),
+        "",
+        "[entities]",
+        *(
+            f'"{e.path}" = {{ checks = {e.checks}, provers = {json.dumps(e.provers)} }}'
+            for e in found.entities
+        ),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def stale_sources(record: Path) -> tuple[str, ...]:
+    """The sources that differ from what the record says was proved."""
+    found = tomllib.loads(record.read_text(encoding="utf-8"))
+    stale = []
+    for name, wanted in found["sources"].items():
+        path = ROOT / name
+        if not path.is_file() or digest(path) != wanted:
+            stale.append(name)
+    return tuple(stale)

@@ -1,0 +1,128 @@
+"""What a run lost, missed or overran, held against what its scenario expects.
+
+Nothing that was counted may go unsaid: of each count the scenario says how often it may be,
+and why, or the run fails. Excused is only what the host demonstrably did.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ravenchart.analysis.present.report import Comparison, Execution
+from ravenchart.analysis.system.observed import Observation
+from ravenchart.gen.model.system import System
+from ravenchart.hw_can.bench.scenario import EXPECTED, Expected, Scenario
+
+from .process import Ended
+
+Key = tuple[str, str]
+"""Key of a scenario's `expect`, and the name behind it."""
+
+DEADLINE_MISS, OVERRUN = "DEADLINE_MISS", "OVERRUN"
+"""Faults that are counted for each processor, and found in each row, too."""
+
+
+def said(kind: str, name: str, count: int) -> str:
+    """A count in words."""
+    if kind == "missed":
+        return f"{name} missed {count} deadline{'' if count == 1 else 's'}"
+    if kind == "overran":
+        return f"{name} {'ran' if count else 'never ran'} for longer than the model claims"
+    return f"{kind}: {name}, {'once' if count == 1 else f'{count} times'}"
+
+
+def excused(
+    compared: Sequence[Comparison], executed: Sequence[Execution], ended: Ended
+) -> tuple[frozenset[str], frozenset[str]]:
+    """Processors and rows that were late or long by no more than the host withheld the core."""
+    withheld = max((row.withheld for row in compared), default=0)
+    late = frozenset(row.task for row in compared if row.explained)
+    long = frozenset(
+        row.row
+        for row in executed
+        if row.exceeded and (not ended.real_time or row.observed - row.claimed <= withheld)
+    )
+    return late, long
+
+
+def counted(
+    seen: Observation,
+    compared: Sequence[Comparison],
+    executed: Sequence[Execution],
+    ended: Ended,
+) -> dict[Key, int]:
+    """Every fault of a run, with its count; without what the host is excused for."""
+    late, long = excused(compared, executed, ended)
+    found: dict[Key, int] = {}
+    for what, n in seen.losses.items():
+        if not what.lower().endswith("trace"):
+            found["lost", what] = n
+    for what, n in seen.faults.items():
+        if what.upper() == OVERRUN and (long or not ended.real_time):
+            continue
+        if what.upper() != DEADLINE_MISS:
+            found["fault", what] = n
+    for name, processor in seen.processors.items():
+        if name not in late:
+            found["missed", name] = processor.misses
+    for row in executed:
+        if row.exceeded and row.row not in long:
+            found["overran", row.row] = 1
+    return {key: n for key, n in found.items() if n}
+
+
+def judged(plan: Scenario | None, system: System | None, found: dict[Key, int]) -> Iterator[str]:
+    """Why a run fails by what it counted.
+
+    Where nobody plays a scenario nobody need be on the bus: then what is lost there, and the
+    faults that follow, are no failure.
+    """
+    if plan is None:
+        alone = system is not None and bool(system.buses)
+        of_time = {key: n for key, n in found.items() if key[0] in ("missed", "overran")}
+        for (kind, name), n in (of_time if alone else found).items():
+            yield said(kind, name, n)
+    else:
+        yield from _differences(plan.expected, found)
+
+
+def _differences(expected: Sequence[Expected], found: dict[Key, int]) -> Iterator[str]:
+    """In words, each count that is not expected, and each expectation that did not hold."""
+    told = {(_kind(one), one.name.lower()): one for one in expected}
+    for (kind, name), n in found.items():
+        words = said(kind, name, n)
+        match = told.pop((kind, name.lower()), None)
+        if match is None:
+            yield f"{words}; the scenario does not expect it"
+        elif not match.allows(n):
+            yield f"{words}; the scenario expects {match.limit}"
+    for (kind, _), one in told.items():
+        if not one.allows(0):
+            yield f"{said(kind, one.name, 0)}; the scenario expects {one.limit}"
+
+
+def told(plan: Scenario | None, found: dict[Key, int]) -> Iterator[str]:
+    """What was lost, and each fault, with the cause that the scenario gives."""
+    causes = {
+        (_kind(one), one.name.lower()): one.because for one in (plan.expected if plan else ())
+    }
+    for (kind, name), n in found.items():
+        cause = causes.get((kind, name.lower()))
+        if kind in ("lost", "fault") or cause is not None:
+            yield said(kind, name, n) + (f": {cause}" if cause else "")
+
+
+def _kind(one: Expected) -> str:
+    return next(key for key, form in EXPECTED.items() if isinstance(one, form))
+
+
+def not_judged(
+    compared: Sequence[Comparison], executed: Sequence[Execution], ended: Ended
+) -> str | None:
+    """Why the timing of the run says nothing; None where it was judged."""
+    if not ended.real_time:
+        return "the controller had no real-time priorities"
+    if not any(excused(compared, executed, ended)):
+        return None
+    withheld = max(row.withheld for row in compared)
+    return f"the host withheld the core for up to {withheld / 1e6:.1f} ms"

@@ -1,0 +1,212 @@
+"""The controller as a process: started on one core, watched, asked to end."""
+
+from __future__ import annotations
+
+import os
+import queue
+import re
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+from ravenchart.building import children
+
+ERROR = "error: "
+"""How a controller begins a line about a failure of its own."""
+
+START_LIMIT = 10.0
+"""How long a controller may take to open its bus, in s."""
+
+STOP_MARGIN = 3.0
+"""How long it may take to end beyond its own grace, in s."""
+
+_PORT = re.compile(r"can: slcan on 127\.0\.0\.1:(\d{1,5})")
+_JOINED = re.compile(r"can: joined the bus at 127\.0\.0\.1:(\d{1,5})")
+_REAL_TIME = (os.SCHED_FIFO, os.SCHED_RR)
+
+
+class StartError(Exception):
+    """The controller did not come up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How the process ended. ``exit_code`` is negative for a signal.
+
+    ``real_time``: while it ran, at least one of its threads had a real-time policy.
+    ``stolen``: time in ns that a hypervisor took of its core meanwhile, 0 where none did.
+    """
+
+    exit_code: int
+    killed: bool
+    real_time: bool
+    warnings: tuple[str, ...]
+    stolen: int = 0
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why it stopped itself, in its own words; nothing where it was asked to."""
+        own = (line for line in self.warnings if line.startswith(ERROR))
+        return tuple(line.removeprefix(ERROR) for line in own) if self.exit_code else ()
+
+
+def stolen_time(core: int) -> int:
+    """Time in ns that a hypervisor has taken of a core so far: `steal` of proc(5)."""
+    ticks = 0
+    with suppress(OSError, ValueError, IndexError):
+        for line in Path("/proc/stat").read_text(encoding="ascii").splitlines():
+            if line.startswith(f"cpu{core} "):
+                ticks = int(line.split()[8])
+    return ticks * (10**9 // os.sysconf("SC_CLK_TCK"))
+
+
+class ControllerProcess:
+    """A running controller; its output is read all the time, so it never blocks on it."""
+
+    def __init__(self, executable: Path, trace: Path, core: int, **environment: str) -> None:
+        """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
+
+        ``environment`` is what it is told besides: by whom the bus is reached.
+        """
+        told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
+        try:
+            self._process = children.popen(
+                [executable.absolute()],
+                core=core,
+                env={**os.environ, **told},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+            )
+        except OSError as fault:
+            raise StartError(f"{executable} cannot be started: {fault.strerror}") from None
+        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._warnings: list[str] = []
+        self._real_time = False
+        self._core = core
+        self._stolen = stolen_time(core)
+        self._asked: float | None = None
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        self._readers = [
+            threading.Thread(target=self._read_output, args=(self._process.stdout,), daemon=True),
+            threading.Thread(target=self._read_errors, args=(self._process.stderr,), daemon=True),
+        ]
+        for reader in self._readers:
+            reader.start()
+
+    def wait_for_port(self) -> int:
+        """The TCP port of its bus, once it says so; StartError when it does not."""
+        return self._wait_for(_PORT)
+
+    def wait_until_joined(self) -> None:
+        """Until it is a node of the bus that it was told of; StartError when it does not say so."""
+        self._wait_for(_JOINED)
+
+    def _wait_for(self, said: re.Pattern[str]) -> int:
+        deadline = time.monotonic() + START_LIMIT
+        while (rest := deadline - time.monotonic()) > 0:
+            try:
+                line = self._lines.get(timeout=rest)
+            except queue.Empty:
+                break
+            if line is None:
+                with suppress(subprocess.TimeoutExpired):
+                    self._process.wait(timeout=1.0)
+                    self._readers[-1].join(timeout=1.0)
+                raise StartError(self._early_end())
+            match = said.fullmatch(line.strip())
+            if match:
+                return int(match[1])
+        raise StartError(f"the controller did not open its bus within {START_LIMIT:g} s")
+
+    def note_policies(self) -> None:
+        """Remember whether any thread has a real-time policy now."""
+        tasks = Path(f"/proc/{self._process.pid}/task")
+        with suppress(OSError):
+            for thread in tasks.iterdir():
+                with suppress(OSError):
+                    self._real_time |= os.sched_getscheduler(int(thread.name)) in _REAL_TIME
+
+    def runs_for(self, seconds: float) -> bool:
+        """Let it run for that long; whether it still does."""
+        try:
+            self._process.wait(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            return True
+        return False
+
+    def ask_to_end(self, grace: float) -> bool:
+        """Ask it to end, once; whether it has, or took longer than ``grace`` and STOP_MARGIN."""
+        if self._process.poll() is not None:
+            return True
+        if self._asked is None:
+            self.note_policies()
+            self._process.terminate()
+            self._asked = time.monotonic()
+        return time.monotonic() > self._asked + grace + STOP_MARGIN
+
+    def stop(self, grace: float) -> Ended:
+        """Ask it to end, and kill it when it does not in time."""
+        killed = False
+        self.ask_to_end(grace)
+        rest = (self._asked or 0.0) + grace + STOP_MARGIN - time.monotonic()
+        try:
+            self._process.wait(timeout=max(0.0, rest))
+        except subprocess.TimeoutExpired:
+            killed = True
+            self._process.kill()
+            self._process.wait()
+        for reader in self._readers:
+            reader.join(timeout=1.0)
+        stolen = stolen_time(self._core) - self._stolen
+        warnings = tuple(self._warnings)
+        return Ended(self._process.returncode, killed, self._real_time, warnings, stolen)
+
+    def _early_end(self) -> str:
+        """What happened when the output ended before the port was known."""
+        code = self._process.poll()
+        said = f": {self._warnings[-1]}" if self._warnings else ""
+        if code is None:
+            return f"the controller closed its output before it opened its bus{said}"
+        return f"the controller ended with exit code {code} before it opened its bus{said}"
+
+    def _read_output(self, stream: IO[bytes]) -> None:
+        for line in stream:
+            self._lines.put(line.decode(errors="replace"))
+        self._lines.put(None)
+
+    def _read_errors(self, stream: IO[bytes]) -> None:
+        for line in stream:
+            text = line.decode(errors="replace").rstrip()
+            if text:
+                self._warnings.append(text)
+
+
+@contextmanager
+def separate_cores() -> Iterator[int]:
+    """The controller's core; this thread keeps off it, where there is another one.
+
+    It also takes the lowest real-time priority, where it may: else other load of
+    the host would look like a bench that falls silent. Processes and threads
+    started meanwhile inherit the core and not the priority.
+    """
+    affinity, policy = os.sched_getaffinity(0), os.sched_getscheduler(0)
+    parameter = os.sched_getparam(0)
+    core, *others = sorted(affinity)
+    if others:
+        os.sched_setaffinity(0, others)
+    with suppress(PermissionError):
+        lowest = os.sched_param(os.sched_get_priority_min(os.SCHED_FIFO))
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, lowest)
+    try:
+        yield core
+    finally:
+        os.sched_setaffinity(0, affinity)
+        with suppress(PermissionError):
+            os.sched_setscheduler(0, policy, parameter)

@@ -1,0 +1,445 @@
+"""One run of a controller: started, put through a scenario, judged, reported."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from ravenchart.analysis.present.plots import svg
+from ravenchart.analysis.present.report import RunReport, compare, executions, render
+from ravenchart.analysis.system.journeys import journeys
+from ravenchart.analysis.system.observed import (
+    Observation,
+    TraceError,
+    TraceMap,
+    of_model,
+    read_map,
+    read_trace,
+    together,
+)
+from ravenchart.analysis.system.timing import Analysis
+from ravenchart.building.steps import Program
+from ravenchart.commands import bus
+from ravenchart.gen.language.terms import Ns
+from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
+from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
+from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
+from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
+
+from . import expected, judge, plots, result, summary
+from .process import ControllerProcess, Ended, StartError, separate_cores
+from .result import RunResult
+
+DEFAULT_GRACE = 1.0
+"""Grace of a controller whose model is not at hand, in s."""
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Controller:
+    """The program of a node, and the map of its trace."""
+
+    node: str
+    executable: Path
+    trace_json: Path
+
+
+def controller(made: Program) -> Controller:
+    """A program built, to be run. ToolFailed with the compiler's words."""
+    return Controller(made.node, made.build(), made.generated / "trace.json")
+
+
+@dataclass(frozen=True, slots=True)
+class RunRequest:
+    """A built model to run: ``generated`` holds its DBC.
+
+    Without a scenario the controllers run on their own for ``seconds``. The report
+    goes to ``folder``.
+    """
+
+    analysis: Analysis
+    controllers: tuple[Controller, ...]
+    generated: Path
+    scenario: Path | None
+    seconds: float
+    folder: Path
+
+
+def run_model(request: RunRequest, console: Console | None = None) -> RunResult | None:
+    """Run, print the summary and write the report; None where nothing could be run."""
+    out = console or summary.terminal()
+    first = request.controllers[0]
+    try:
+        with out.status("start the controller") as status:
+            by_priority = any(one.by_priority for one in request.analysis.system.buses)
+            if len(request.controllers) > 1 or by_priority:
+                outcome = run_nodes(
+                    request.controllers,
+                    request.analysis,
+                    _dbc(request),
+                    request.scenario,
+                    request.seconds,
+                    request.folder,
+                    lambda text: status.update(text),
+                )
+            elif request.scenario is None:
+                outcome = run_alone(
+                    first.executable,
+                    first.trace_json,
+                    request.seconds,
+                    request.folder,
+                    analysis=request.analysis,
+                )
+            else:
+                outcome = run_controller(
+                    first.executable,
+                    first.trace_json,
+                    _dbc(request),
+                    request.scenario,
+                    None,
+                    request.folder,
+                    lambda text: status.update(text),
+                    analysis=request.analysis,
+                )
+    except (ScenarioError, BenchError, TraceError) as fault:
+        out.print(str(fault), markup=False, soft_wrap=True)
+        return None
+    written = write_report(outcome, request.analysis, request.folder)
+    out.print(outcome.title, markup=False)
+    print_summary(outcome, out)
+    for path in written:
+        out.print(f"report: {path}", markup=False, soft_wrap=True)
+    summary.print_verdict(out, outcome.verdict, outcome.failures)
+    return outcome
+
+
+def run_controller(
+    executable: Path,
+    trace_json: Path,
+    dbc: Path,
+    scenario: Path,
+    duration: float | None,
+    out_dir: Path,
+    progress: Progress = lambda text: None,
+    *,
+    analysis: Analysis | None = None,
+) -> RunResult:
+    """Run ``executable`` through ``scenario``, for at most ``duration`` seconds.
+
+    The controller gets one core for itself where there are two; its trace stays in
+    ``out_dir``. With ``analysis`` what was seen is held against the bounds. Raises
+    ScenarioError, BenchError and TraceError for inputs that cannot be used, before
+    anything runs; whatever goes wrong later is a failure in the result.
+    """
+    plan = load_scenario(scenario)
+    if plan.bus_events:
+        raise ScenarioError(f"{scenario.name}: error: `bus` is for a system with several nodes")
+    codec = Codec.from_file(dbc)
+
+    def play(process: ControllerProcess, grace: float) -> ScenarioResult:
+        peer = Peer.connect(process.wait_for_port(), codec)
+        return run_scenario(
+            plan,
+            peer,
+            limit=duration,
+            progress=progress,
+            ended=lambda: process.ask_to_end(grace),
+        )
+
+    return _run(executable, trace_json, out_dir, plan.title, plan, play, analysis)
+
+
+def run_alone(
+    executable: Path,
+    trace_json: Path,
+    seconds: float,
+    out_dir: Path,
+    *,
+    analysis: Analysis | None = None,
+) -> RunResult:
+    """Run ``executable`` for that long with nobody on its bus."""
+
+    def play(process: ControllerProcess, grace: float) -> None:
+        if not process.runs_for(seconds):
+            raise StartError(f"the controller ended by itself within {seconds:g} s")
+
+    title = f"{seconds:g} s without a scenario"
+    return _run(executable, trace_json, out_dir, title, None, play, analysis)
+
+
+def write_report(outcome: RunResult, analysis: Analysis, out_dir: Path) -> tuple[Path, ...]:
+    """Write report.html into ``out_dir``, and positions.png of drives; the paths of both."""
+    out_dir.mkdir(parents=True, exist_ok=True)
+    written: list[Path] = []
+    pictures: list[tuple[str, str]] = []
+    played = outcome.scenario_result
+    if played is not None and played.tracks:
+        figure = plots.positions(played.tracks, result.spans(outcome), result.marks(played))
+        picture = out_dir / "positions.png"
+        picture.write_bytes(plots.png(figure))
+        written.append(picture)
+        caption = "Target and true position of each axis, its states in the band above."
+        pictures.append((caption, svg(figure)))
+    run = RunReport(
+        title=outcome.title,
+        passed=outcome.passed,
+        verdict="; ".join(outcome.failures) or _passed(outcome),
+        notes=outcome.notes,
+        steps=outcome.steps,
+        frames=tuple(result.frames(outcome)),
+        comparable=outcome.ended.real_time,
+        journeys=outcome.journeys,
+        observation=outcome.observation,
+        pictures=tuple(pictures),
+    )
+    page = out_dir / "report.html"
+    page.write_text(render(analysis, run), encoding="utf-8")
+    return (page, *written)
+
+
+def _passed(outcome: RunResult) -> str:
+    """What stands beside PASS."""
+    why = outcome.not_judged
+    return f"nothing failed; timing was not judged: {why}" if why else "nothing failed"
+
+
+def print_summary(outcome: RunResult, console: Console | None = None) -> None:
+    """Print what the run showed, 80 columns wide, without the verdict."""
+    out = console or summary.terminal()
+    if outcome.steps:
+        summary.print_steps(out, outcome.steps)
+    if outcome.observation is not None:
+        summary.print_states(out, outcome.observation.states_visited())
+    frames = list(result.frames(outcome))
+    if frames:
+        summary.print_frames(out, frames)
+    if outcome.compared:
+        summary.print_comparison(out, outcome.compared, comparable=outcome.ended.real_time)
+    if outcome.journeys:
+        summary.print_journeys(out, outcome.journeys)
+    summary.print_positions(out, list(result.positions(outcome)))
+    for note in outcome.notes:
+        out.print(f"note: {note}", markup=False)
+
+
+def _run(
+    executable: Path,
+    trace_json: Path,
+    out_dir: Path,
+    title: str,
+    plan: Scenario | None,
+    play: Callable[[ControllerProcess, float], ScenarioResult | None],
+    analysis: Analysis | None,
+) -> RunResult:
+    """Start the controller, ``play``, stop it, and put everything together."""
+    trace_map = read_map(_text(trace_json), trace_json.name)
+    out_dir.mkdir(parents=True, exist_ok=True)
+    trace = (out_dir / "trace.txt").absolute()
+    trace.unlink(missing_ok=True)
+    grace = analysis.system.shutdown.grace / 1e9 if analysis else DEFAULT_GRACE
+    problems: list[str] = []
+    played: ScenarioResult | None = None
+    ended = Ended(0, False, False, ())
+    with separate_cores() as core:
+        try:
+            process = ControllerProcess(executable, trace, core)
+        except StartError as fault:
+            problems.append(str(fault))
+        else:
+            try:
+                played = play(process, grace)
+            except (StartError, BenchError) as fault:
+                problems.append(str(fault))
+            finally:
+                ended = process.stop(grace)
+    seen = None
+    if not problems or (ended.reasons and trace.is_file()):
+        seen = read(trace, trace_map, problems)
+    return concluded(title, plan, played, seen, ended, problems, analysis)
+
+
+def concluded(
+    title: str,
+    plan: Scenario | None,
+    played: ScenarioResult | None,
+    seen: Observation | None,
+    ended: Ended,
+    problems: list[str],
+    analysis: Analysis | None,
+) -> RunResult:
+    """Everything that a run showed, put together and judged."""
+    if seen is not None:
+        seen.stolen = Ns(ended.stolen)
+    disturbed = plan is not None and bool(plan.bus_events)
+    took = journeys(analysis, seen) if analysis and seen and not disturbed else ()
+    compared = compare(analysis, seen) if analysis and seen else ()
+    executed = executions(analysis, seen) if analysis and seen else ()
+    checks = judge.check_trace(plan.trace_checks, seen) if plan and seen else ()
+    system = analysis.system if analysis else None
+    counted = expected.counted(seen, compared, executed, ended) if seen else {}
+    unaccounted: tuple[str, ...] = ()
+    if system and seen:
+        real_time = ended.real_time
+        unaccounted = tuple(judge.unaccounted(system, seen, compared, real_time=real_time))
+    return RunResult(
+        title=title,
+        scenario=plan,
+        scenario_result=played,
+        observation=seen,
+        ended=ended,
+        steps=judge.step_rows(played, checks) if played else (),
+        compared=compared,
+        journeys=took,
+        failures=(
+            *judge.stops(ended),
+            *problems,
+            *unaccounted,
+            *judge.failures(ended, played, seen, checks, compared, took),
+            *expected.judged(plan, system, counted),
+        ),
+        notes=(
+            *result.notes(ended, played, seen, executed, compared),
+            *expected.told(plan, counted),
+        ),
+        clock_offset=result.clock_offset(played, seen, system) if system else None,
+        not_judged=expected.not_judged(compared, executed, ended),
+    )
+
+
+def read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation | None:
+    """The trace, or one more problem."""
+    try:
+        with trace.open(encoding="ascii", errors="replace") as lines:
+            seen = read_trace(lines, trace_map, trace.name)
+        if seen.complete or seen.digest:
+            of_model(seen, trace_map.digest, trace.name)
+        return seen
+    except OSError as fault:
+        problems.append(f"the controller wrote no trace: {fault.strerror}")
+    except TraceError as fault:
+        problems.append(str(fault))
+    return None
+
+
+def _dbc(request: RunRequest) -> Path:
+    """The DBC of the model's bus; BenchError when it has none."""
+    for one in request.analysis.system.buses:
+        return request.generated / f"{one.name.lower()}.dbc"
+    raise BenchError(f"{request.analysis.system.name} has no bus for a scenario to play on")
+
+
+def _text(path: Path) -> str:
+    """The text of an input file; TraceError when it cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as fault:
+        raise TraceError(f"{path}: error: cannot be read: {fault}") from None
+
+
+def run_nodes(
+    controllers: Sequence[Controller],
+    analysis: Analysis,
+    dbc: Path,
+    scenario: Path | None,
+    seconds: float,
+    out_dir: Path,
+    progress: Progress = lambda text: None,
+) -> RunResult:
+    """Run the controllers of several nodes on one simulated bus, through ``scenario``.
+
+    Without one they run for ``seconds``. Each gets a core as far as there are as many.
+    Raises as `run_controller`; ToolMissing and ToolFailed where the bus cannot be built.
+    """
+    plan = None if scenario is None else load_scenario(scenario)
+    codec = Codec.from_file(dbc)
+    maps = [read_map(_text(c.trace_json), c.trace_json.name) for c in controllers]
+    out_dir.mkdir(parents=True, exist_ok=True)
+    traces = [(out_dir / f"trace-{c.node}.txt").absolute() for c in controllers]
+    for trace in traces:
+        trace.unlink(missing_ok=True)
+    grace = analysis.system.shutdown.grace / 1e9
+    problems: list[str] = []
+    played: ScenarioResult | None = None
+    ended: list[Ended] = []
+    cores = sorted(os.sched_getaffinity(0))
+    words = _bus_words(analysis, controllers, plan)
+    with separate_cores(), bus.running("port=0", *words) as (_, channel):
+        running: list[ControllerProcess] = []
+        try:
+            for number, (one, trace) in enumerate(zip(controllers, traces, strict=True)):
+                told = {
+                    "RAVENCHART_BUS_PORT": channel.rpartition(":")[2],
+                    "RAVENCHART_BUS_NAME": one.node[:NAME_LENGTH],
+                }
+                core = cores[number % len(cores)]
+                running.append(ControllerProcess(one.executable, trace, core, **told))
+                running[-1].wait_until_joined()
+            if plan is None:
+                early = next((p for p in running if not p.runs_for(seconds / len(running))), None)
+                if early is not None:
+                    raise StartError(f"a controller ended by itself within {seconds:g} s")
+            else:
+                peer = Peer.join(channel, codec)
+                played = run_scenario(plan, peer, progress=progress)
+        except (StartError, BenchError) as fault:
+            problems.append(str(fault))
+        finally:
+            ended = [process.stop(grace) for process in running]
+    seen: Observation | None = None
+    stopped = any(one.reasons for one in ended) and all(trace.is_file() for trace in traces)
+    if not problems or stopped:
+        parts = [read(t, m, problems) for t, m in zip(traces, maps, strict=True)]
+        if all(part is not None for part in parts):
+            named = zip(controllers, parts, strict=True)
+            seen = together({c.node: part for c, part in named if part is not None})
+    title = plan.title if plan else f"{seconds:g} s without a scenario"
+    return concluded(title, plan, played, seen, _all_ended(ended), problems, analysis)
+
+
+def _bus_words(
+    analysis: Analysis, controllers: Sequence[Controller], plan: Scenario | None
+) -> list[str]:
+    """What the bus server is told: its bit rates, and what happens on the bus when.
+
+    Raises BenchError where it cannot have such a rate, and ScenarioError where the scenario
+    cuts off a node that there is not.
+    """
+    line = analysis.system.buses[0]
+    data_rate = (line.data_rate or line.bit_rate) if line.takes_fd else 0
+    for rate in (line.bit_rate, data_rate):
+        if rate and bus.SECOND % rate:
+            raise BenchError(f"error: {line.name}: {bus.uneven(rate)}")
+    words = [f"bitrate={line.bit_rate}", f"data_bitrate={data_rate}"]
+    if line.by_priority:
+        words.append("buffer=priority")
+    numbers = {controller.node.lower(): n for n, controller in enumerate(controllers, 1)}
+    for event in plan.bus_events if plan else ():
+        at = round(event.at * 1e9)
+        if isinstance(event, Mend):
+            words.append(f"event={at}:mend")
+        elif isinstance(event, Hold):
+            words.append(f"event={at}:hold_{event.hold}")
+        elif not isinstance(event, Cut):
+            words.append(f"event={at}:let_go")
+        elif numbers.get(event.cut.lower(), 1) > 1:
+            words.append(f"event={at}:cut:{numbers[event.cut.lower()]}")
+        else:
+            known = ", ".join(c.node for c in controllers[1:])
+            raise ScenarioError(f"error: bus: cut takes one of {known}, not {event.cut}")
+    return words
+
+
+def _all_ended(ended: Sequence[Ended]) -> Ended:
+    """How several controllers ended, as of one: the worst of each."""
+    return Ended(
+        exit_code=next((one.exit_code for one in ended if one.exit_code), 0),
+        killed=any(one.killed for one in ended),
+        real_time=all(one.real_time for one in ended),
+        warnings=tuple(dict.fromkeys(line for one in ended for line in one.warnings)),
+        stolen=max((one.stolen for one in ended), default=0),
+    )

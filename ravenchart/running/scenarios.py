@@ -1,0 +1,298 @@
+"""A scenario held against its model, before anything is built.
+
+Messages and fields are those of the bus's CAN database, which is what the bench speaks;
+regions, states and ports are those of the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import cantools
+from cantools.database.can import Message as DbcMessage
+from cantools.database.can import Signal as DbcSignal
+
+from ravenchart.building.steps import Refused
+from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.emit.buses.dbc import emit_dbc
+from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import Instance, System
+from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
+from ravenchart.hw_can.bench.peer import BenchError, Codec
+from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
+from ravenchart.hw_can.bench.reading import Path as Place
+from ravenchart.hw_can.bench.scenario import (
+    Cut,
+    Expected,
+    Lost,
+    Missed,
+    Overran,
+    Scenario,
+    ScenarioError,
+    Send,
+    TraceCheck,
+    WaitFor,
+    load_scenario,
+)
+
+LOSSES = ("lost_out", "lost_in", "rejected_lines")
+"""What the controller of a bus counts as lost."""
+VALUE = "RV-1305"
+"""A value that the field of a message does not have."""
+
+
+def checked(path: Path, system: System) -> Scenario:
+    """The scenario in a file; Refused with everything that does not fit it or the model."""
+    try:
+        scenario = load_scenario(path)
+    except ScenarioError as fault:
+        raise Refused(str(fault)) from None
+    source = scenario.source
+    assert source is not None
+    found = problems(scenario, system)
+    if found:
+        raise Refused(rendered(found, source.file, source.text))
+    return scenario
+
+
+def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
+    """What a scenario names that the model does not have, and values that do not fit."""
+    source = scenario.source
+    assert source is not None
+    if not system.buses:
+        message = f"{system.name} has no bus for a scenario to play on"
+        return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
+    database = cantools.database.load_string(emit_dbc(system, system.buses[0]), "dbc")
+    assert isinstance(database, cantools.database.Database)
+    check = _Check(source, system, {m.name: m for m in database.messages}, Codec(database))
+    check.drives(scenario)
+    for index, step in enumerate(scenario.steps):
+        if isinstance(step, Send):
+            check.send(step, ("steps", index))
+        elif isinstance(step, WaitFor):
+            check.wait_for(step, ("steps", index))
+    for index, one in enumerate(scenario.trace_checks):
+        check.trace(one, ("expect_trace", index))
+    check.bus(scenario)
+    for index, fault in enumerate(scenario.expected):
+        check.expected(fault, ("expect", index))
+    return source.found
+
+
+class _Check:
+    """What a scenario may name."""
+
+    def __init__(
+        self, source: Source, system: System, messages: dict[str, DbcMessage], codec: Codec
+    ) -> None:
+        self.source = source
+        self.system = system
+        self.messages = messages
+        self.codec = codec
+
+    # --- messages
+
+    def drives(self, scenario: Scenario) -> None:
+        """Messages and fields of the drives, and what their plots show."""
+        for name, drive in scenario.drives.items():
+            path = ("drives", name)
+            for key, text, wanted in (
+                ("set_point", drive.set_point, SET_POINT_FIELDS),
+                ("feedback", drive.feedback, FEEDBACK_FIELDS),
+            ):
+                message = self.message(text, (*path, key))
+                fields = {signal.name for signal in message.signals} if message else set(wanted)
+                missing = [one for one in wanted if one not in fields]
+                if missing:
+                    told = f"{text} has no field `{missing[0]}`, which a simulated drive needs"
+                    hint = f"the fields of a `{key}` are {', '.join(wanted)}"
+                    self.source.wrong(UNKNOWN, (*path, key), told, hint)
+            if drive.target is not None:
+                self.signal(drive.target, (*path, "target"))
+            if drive.states is not None:
+                self.region(drive.states, (*path, "states"))
+
+    def send(self, step: Send, path: Place) -> None:
+        """A message with all of its fields, each with a value that it has."""
+        message = self.message(step.send, (*path, "send"))
+        if message is None:
+            return
+        before = len(self.source.found)
+        for name, value in step.fields.items():
+            signal = self.field(message, name, (*path, "with", name), key=True)
+            if signal is not None:
+                self.value(signal, value, (*path, "with", name))
+        if len(self.source.found) == before:
+            try:
+                self.codec.encode(step.send, step.fields)
+            except BenchError as fault:  # a field that is missing, or of another page
+                hint = f"the fields are {_names(message.signals)}"
+                self.source.wrong(VALUE, (*path, "with"), str(fault), hint)
+
+    def wait_for(self, step: WaitFor, path: Place) -> None:
+        """A field, and a value that it can have."""
+        signal = self.signal(step.wait_for, (*path, "wait_for"))
+        if signal is not None:
+            self.value(signal, step.value, (*path, "is"), by_name=True)
+
+    def signal(self, text: str, path: Place) -> DbcSignal | None:
+        """The field of ``message.field``."""
+        owner, _, name = text.partition(".")
+        message = self.message(owner, path)
+        return None if message is None else self.field(message, name, path)
+
+    def message(self, name: str, path: Place) -> DbcMessage | None:
+        """A message of the bus."""
+        if name not in self.messages:
+            told = f"there is no message `{name}` on {self.system.buses[0].name}"
+            hint = f"the messages are {', '.join(self.messages)}"
+            self.source.wrong(UNKNOWN, path, told, hint)
+        return self.messages.get(name)
+
+    def field(
+        self, message: DbcMessage, name: str, path: Place, *, key: bool = False
+    ) -> DbcSignal | None:
+        """A field of a message."""
+        for signal in message.signals:
+            if signal.name == name:
+                return signal
+        told = f"{message.name} has no field `{name}`"
+        self.source.wrong(UNKNOWN, path, told, f"the fields are {_names(message.signals)}", key=key)
+        return None
+
+    def value(
+        self, signal: DbcSignal, value: bool | int | str, path: Place, *, by_name: bool = False
+    ) -> None:
+        """A value that the field has: one of its names, or a number in its range.
+
+        What arrives is told ``by_name`` where values have names.
+        """
+        low, high = signal.minimum, signal.maximum
+        if signal.choices is not None:
+            names = [str(choice) for choice in signal.choices.values()]
+            coded = not by_name and not isinstance(value, str) and value in signal.choices
+            fits = value in names or coded
+            wanted = f"one of {', '.join(names)}"
+        else:
+            assert low is not None and high is not None
+            fits = not isinstance(value, str) and low <= value <= high
+            wanted = f"a number from {low} to {high}"
+            wanted += "" if signal.unit is None else f", in {signal.unit}"
+        if not fits:
+            told = f"`{signal.name}` must be {wanted}, not `{value}`"
+            self.source.wrong(VALUE, path, told)
+
+    # --- regions, states, ports, nodes
+
+    def trace(self, check: TraceCheck, path: Place) -> None:
+        """A region or a controller with its states, and the ports that times count from."""
+        controllers = {one.element for one in elements(self.system) if one.kind == "bus"}
+        if check.region in controllers:
+            for key, state in (("reaches", check.reaches), ("then", check.then)):
+                if state is not None and state not in CONTROLLER_STATES:
+                    told = f"the controller of {check.region} has no state `{state}`"
+                    hint = f"name one of {', '.join(CONTROLLER_STATES)}"
+                    self.source.wrong(UNKNOWN, (*path, key), told, hint)
+        else:
+            region = self.region(check.region, (*path, "region"))
+            for key, state in (("reaches", check.reaches), ("then", check.then)):
+                if region is not None and state is not None:
+                    self.state(region, check.region, state, (*path, key))
+        for key, port in (
+            ("after_last", check.after_last),
+            ("after_silence", check.after_silence),
+        ):
+            if port is not None:
+                self.port(port, (*path, key))
+
+    def state(self, region: Region, shown: str, name: str, path: Place) -> None:
+        """A state that a trace can tell of: one without states inside."""
+        leaves = [state.name for state in region.states if state.is_leaf]
+        if name not in leaves:
+            known = any(state.name == name for state in region.states)
+            told = f"{shown} has no state `{name}`"
+            told = f"`{name}` has states inside, and a trace tells of these" if known else told
+            self.source.wrong(UNKNOWN, path, told, f"name one of {', '.join(leaves)}")
+
+    def region(self, text: str, path: Place) -> Region | None:
+        """The region ``instance.region``."""
+        found = self.owner(text, path)
+        if found is None:
+            return None
+        instance, name = found
+        for region in instance.component.regions:
+            if region.name == name:
+                return region
+        regions = ", ".join(region.name for region in instance.component.regions) or "none"
+        told = f"{instance.name} has no region `{name}`"
+        self.source.wrong(UNKNOWN, path, told, f"its regions: {regions}")
+        return None
+
+    def port(self, text: str, path: Place) -> None:
+        """An input port, ``instance.port``."""
+        found = self.owner(text, path)
+        if found is None:
+            return
+        instance, name = found
+        ports = [port.name for port in instance.component.inputs()]
+        if name not in ports:
+            told = f"{instance.name} has no input port `{name}`"
+            self.source.wrong(UNKNOWN, path, told, f"its input ports: {', '.join(ports) or 'none'}")
+
+    def owner(self, text: str, path: Place) -> tuple[Instance, str] | None:
+        """The instance of ``instance.name``, and the name."""
+        owner, _, name = text.partition(".")
+        for instance in self.system.instances:
+            if instance.name == owner:
+                return instance, name
+        hint = f"the instances are {', '.join(one.name for one in self.system.instances)}"
+        self.source.wrong(UNKNOWN, path, f"there is no instance `{owner}`", hint)
+        return None
+
+    def bus(self, scenario: Scenario) -> None:
+        """Nodes that can be cut off: all but the first."""
+        homes = [node.name for node in self.system.nodes]
+        if scenario.bus_events and len(homes) == 1:
+            told = f"`bus` is for a system with several nodes, and {self.system.name} has one"
+            self.source.wrong(MISFIT, ("bus",), told, "remove `bus`", key=True)
+            return
+        for index, event in enumerate(scenario.bus_events):
+            if isinstance(event, Cut) and event.cut.lower() not in map(str.lower, homes[1:]):
+                told = f"`{event.cut}` cannot be cut off"
+                hint = f"name one of {', '.join(homes[1:])}: it and those behind it are cut off"
+                self.source.wrong(UNKNOWN, ("bus", index, "cut"), told, hint)
+
+    def expected(self, fault: Expected, path: Place) -> None:
+        """A fault of something that the model has, once."""
+        kinds: dict[type[Expected], tuple[str, str, list[str]]] = {
+            Lost: ("lost", "counts of losses", self.losses()),
+            Missed: ("missed", "processors", [one.name for one in self.system.processors]),
+            Overran: (
+                "overran",
+                "rows",
+                [slot.element for one in self.system.processors for slot in one.slots],
+            ),
+        }
+        if type(fault) not in kinds:
+            return
+        key, kind, names = kinds[type(fault)]
+        if fault.name.lower() not in map(str.lower, names):
+            told = f"there is no `{fault.name}` among the {kind}"
+            self.source.wrong(UNKNOWN, (*path, key), told, f"one of {', '.join(names)}")
+
+    def losses(self) -> list[str]:
+        """The names of what a run may lose."""
+        nodes = [node.name for node in self.system.nodes]
+        homes = [f"{node}." for node in nodes] if len(nodes) > 1 else [""]
+        return [
+            f"{home}{bus.name}.{count}"
+            for home in homes
+            for bus in self.system.buses
+            for count in LOSSES
+        ]
+
+
+def _names(signals: Iterable[DbcSignal]) -> str:
+    return ", ".join(signal.name for signal in signals)

@@ -1,0 +1,121 @@
+"""The run in a terminal of 80 columns: verdict last, colour never alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from ravenchart.analysis.present.report import Comparison, FrameRow, StepRow
+from ravenchart.analysis.present.table import WIDTH
+from ravenchart.analysis.system.journeys import Journey
+from ravenchart.analysis.units import microseconds
+
+
+def terminal() -> Console:
+    """A console of that width; without colour when the output is no terminal."""
+    return Console(width=WIDTH, highlight=False)
+
+
+def print_steps(console: Console, steps: Sequence[StepRow]) -> None:
+    """What was done, and how it went."""
+    table = _table("at s>", "step", "outcome")
+    for step in steps:
+        outcome = step.outcome if step.passed else f"FAILED: {step.outcome}"
+        style = "" if step.passed else "bold red"
+        table.add_row(f"{step.at:5.2f}", escape(step.text), escape(outcome), style=style)
+    _section(console, "steps", table)
+
+
+def print_states(console: Console, states: dict[str, tuple[str, ...]]) -> None:
+    """The states that each region visited."""
+    table = _table("region", "states visited, in order of the first visit")
+    for region, visited in states.items():
+        table.add_row(region, ", ".join(visited) or "none")
+    _section(console, "states", table)
+
+
+def print_frames(console: Console, frames: Sequence[FrameRow]) -> None:
+    """The CAN frames both ways."""
+    table = _table("message", "to controller>", "from controller>")
+    names = dict.fromkeys(f.message for f in frames)
+    counts = {(f.message, f.direction): f.count for f in frames}
+    for name in names:
+        both = (counts.get((name, d), 0) for d in ("to controller", "from controller"))
+        table.add_row(name, *(str(count) if count else "-" for count in both))
+    _section(console, "CAN frames", table)
+
+
+def print_comparison(console: Console, compared: Sequence[Comparison], *, comparable: bool) -> None:
+    """Observed beside bound."""
+    table = _table("processor", "releases>", "misses>", "observed us>", "bound us>", "ratio>", "")
+    for row in compared:
+        bad = row.word in ("MISS", "ABOVE") and (comparable or row.misses > 0)
+        table.add_row(
+            row.task,
+            str(row.releases),
+            str(row.misses),
+            microseconds(row.observed),
+            "-" if row.bound is None else microseconds(row.bound),
+            f"{100 * row.ratio:.0f} %" if row.bound else "-",
+            row.word if comparable or bad else "",
+            style="bold red" if bad else "",
+        )
+    _section(console, "longest responses", table)
+    if not comparable:
+        console.print("not comparable: the controller had no real-time priorities")
+
+
+def print_journeys(console: Console, took: Sequence[Journey]) -> None:
+    """The longest reaction of each chain beside its bound."""
+    table = _table("chain", "reactions>", "observed us>", "bound us>", "limit us>", "")
+    for row in took:
+        table.add_row(
+            row.chain,
+            str(row.count),
+            microseconds(row.observed),
+            microseconds(row.bound),
+            microseconds(row.limit),
+            "ABOVE" if row.exceeded else "ok",
+            style="bold red" if row.exceeded else "",
+        )
+    _section(console, "longest reactions of chains", table)
+
+
+def print_positions(console: Console, lines: Sequence[str]) -> None:
+    """Where the axes ended."""
+    if lines:
+        console.print(Text("\npositions", style="bold"))
+        for line in lines:
+            console.print(Text(line))
+
+
+def print_verdict(console: Console, verdict: str, failures: Sequence[str]) -> None:
+    """One line, and the further reasons below it."""
+    console.print()
+    style = "bold red" if failures else "bold green"
+    console.print(Text(verdict, style=style), soft_wrap=True)
+    for reason in failures[1:]:
+        console.print(Text(f"         also: {reason}", style="red"), soft_wrap=True)
+
+
+def _table(*columns: str) -> Table:
+    """A table without lines; a column ending in ``>`` is set to the right."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
+    for column in columns:
+        right = column.endswith(">")
+        table.add_column(
+            column.removesuffix(">"),
+            justify="right" if right else "left",
+            overflow="fold",
+            no_wrap=right,
+        )
+    return table
+
+
+def _section(console: Console, title: str, table: Table) -> None:
+    console.print(Text(f"\n{title}", style="bold"))
+    console.print(table)

@@ -1,0 +1,194 @@
+"""What `make check` and `make prove` do over the whole checkout.
+
+check: generated/ is what the models give, and every Ada unit compiles without
+a warning, with contracts executed and without. prove: gnatprove on the runtime
+and the HAL with each driver, on the bus server, on the compiled part of the analysis and on
+the examples, and the records of it.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ravenchart.building import steps, toolchain
+from ravenchart.building.steps import Refused
+from ravenchart.building.toolchain import ToolFailed, ToolMissing
+from ravenchart.paths import ROOT
+from ravenchart.proof import outside_spark, proving
+
+RECORDS = ROOT / "proofs" / "records"
+OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
+"""What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
+PATIENCE = 300.0
+"""Seconds of processor time for the rules of behaviour: here they shall come to their end."""
+
+EXAMPLES = (
+    "cartesian_robot",
+    "crossing",
+    "pump",
+    "qhsmtst",
+    "surgical_robot",
+    "three_components",
+    "two_nodes",
+)
+DRIVERS = tuple(steps.DRIVER_FOLDERS)
+PROVED_WITH = {"bus": ("protocol",)}
+"""Folders of hw_can/ that only this driver uses, though every project has them."""
+GENERIC_BODIES = {"ravenchart-can-controllers.adb", "ravenchart-can-ctu_cores.adb"}
+"""Of these the instances are proved: of the first that below, of the other one that it brings."""
+INSTANCES = ("instance_bus.ads", "instance_program.adb")
+"""An instance, and the program with its tasks and those of the processors."""
+BUS = "bus"
+KERNEL = "analysis-kernel"
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One thing to prove: the name of its record, and the run."""
+
+    name: str
+    task: proving.Task
+
+
+def targets(names: Sequence[str] = ()) -> Iterator[Target]:
+    """Runtime with each driver, bus server, analysis, examples; only those named, if some are."""
+    for driver in DRIVERS:
+        if not names or f"runtime-{driver}" in names:
+            yield _runtime(driver)
+    if not names or BUS in names:
+        yield _bus()
+    if not names or KERNEL in names:
+        yield _kernel()
+    for example in EXAMPLES:
+        if not names or example in names:
+            yield from _example(example)
+
+
+def record_names(example: str) -> tuple[str, ...]:
+    """The records of an example: one, or one for each node that has a program."""
+    generated = ROOT / "examples" / example / "generated"
+    nodes = sorted(project.parent.name for project in generated.glob("*/*.gpr"))
+    return tuple(f"{example}-{node}" for node in nodes) or (example,)
+
+
+def _bus() -> Target:
+    folder, obj = ROOT / "hw_can" / "bus", ROOT / "obj"
+    task = proving.Task(
+        folder / "can_bus.gpr",
+        {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
+        (obj / "bus-checks" / "gnatprove", obj / f"checks-{DRIVERS[0]}" / "gnatprove"),
+        (folder, *steps.runtime_folders(DRIVERS[0])),
+        warnings="error",
+        whole=True,
+    )
+    return Target(BUS, task)
+
+
+def _kernel() -> Target:
+    folder = ROOT / "analysis" / "kernel"
+    results = (ROOT / "obj" / "kernel" / "objects" / "gnatprove",)
+    sources = (ROOT, ROOT / "spark_runtime", folder, *(p for p in folder.rglob("*") if p.is_dir()))
+    task = proving.Task(folder / "kernel.gpr", {}, results, sources, warnings="error", whole=True)
+    return Target(KERNEL, task)
+
+
+def _runtime(driver: str) -> Target:
+    """All of it with the first driver; with another only what differs."""
+    obj = ROOT / "obj"
+    project = ROOT / "proofs" / "proofs.gpr"
+    folders = (*PROVED_WITH.get(driver, ()), *steps.DRIVER_FOLDERS[driver])
+    own = tuple(ROOT / "hw_can" / folder for folder in folders)
+    sources = {path.name for folder in own for path in folder.glob("*.ad[sb]")}
+    bodies = {name for name in sources if name.endswith(".adb")}
+    specs = {name for name in sources - bodies if f"{name[:-1]}b" not in bodies}
+    task = proving.Task(
+        project,
+        {"MODE": "checks", "CAN_DRIVER": driver},
+        (obj / f"proofs-checks-{driver}" / "gnatprove", obj / f"checks-{driver}" / "gnatprove"),
+        (project.parent, project.parent / "instances", *steps.runtime_folders(driver)),
+        warnings="error",
+        whole=True,
+        units=()
+        if driver == DRIVERS[0]
+        else (*sorted((bodies | specs) - GENERIC_BODIES), *INSTANCES),
+    )
+    return Target(f"runtime-{driver}", task)
+
+
+def _example(name: str) -> Iterator[Target]:
+    checked = steps.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
+    steps.write_program(checked)
+    driver = steps.default_driver(checked)
+    for made in steps.programs_of(checked):
+        target = f"{name}-{made.folder}" if made.folder else name
+        yield Target(target, made.proof(driver, warnings="error"))
+
+
+def prove(names: Sequence[str]) -> bool:
+    """Prove everything, or what is named, and write the records; True when nothing is left.
+
+    With the environment variable FRESH results of earlier proofs are not used.
+    """
+    RECORDS.mkdir(parents=True, exist_ok=True)
+    clean = True
+    for target in targets(names):
+        print(f"proving {target.name} ...", flush=True)
+        proof = proving.prove(target.task, fresh=bool(os.environ.get("FRESH")))
+        reasons = outside_spark.reasons_for_target(OUTSIDE, target.name)
+        print(f"{target.name}: {proof.summary()}", flush=True)
+        for line in outside_spark.lines(proof.results.outside, reasons):
+            print(f"  {line}", flush=True)
+        (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")
+        clean = clean and proof.clean and outside_spark.agree(proof.results.outside, reasons)
+    return clean
+
+
+def check(_names: Sequence[str]) -> bool:
+    """Generated files up to date, and every build free of warnings."""
+    fresh = True
+    for example in EXAMPLES:
+        checked = steps.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)
+        if checked.warnings:
+            print(checked.warnings, file=sys.stderr)
+            fresh = False
+        written = steps.write_program(checked)
+        if written.changed:
+            print(f"{written.folder}: {written.changed} files were not what the model gives")
+            fresh = False
+        for mode in ("checks", "release"):
+            for made in steps.programs_of(checked):
+                made.build(mode)
+            print(f"{example}: builds without a warning ({mode})", flush=True)
+    others = (ROOT / "hw_can" / "bus" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")
+    for mode in ("checks", "release"):
+        for project in others:
+            options = ["-p", "-q", "-j0", "-P", project.name]
+            variables = {"MODE": mode, "CAN_DRIVER": DRIVERS[0]}
+            toolchain.run("gprbuild", options, project.parent, variables)
+        for driver in DRIVERS[1:]:
+            options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
+            variables = {"MODE": mode, "CAN_DRIVER": driver}
+            toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
+        print(f"runtime, HAL, bus and tests: build without a warning ({mode})", flush=True)
+    return fresh
+
+
+def main() -> int:
+    """``check``, or ``prove`` and the names of what to prove; the exit status."""
+    works: dict[str, Callable[[Sequence[str]], bool]] = {"check": check, "prove": prove}
+    work = works[sys.argv[1]]
+    try:
+        return 0 if work(sys.argv[2:]) else 1
+    except (Refused, ToolFailed, outside_spark.WrongList) as failed:
+        print(str(failed).rstrip(), file=sys.stderr)
+        return 1
+    except ToolMissing as missing:
+        print(f"ravenchart: error: {missing}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
