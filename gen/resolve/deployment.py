@@ -42,6 +42,7 @@ from ravenchart.gen.origins import Origin
 
 from .components import Parts, timing_of
 from .layouts import layout_of, size_of
+from .protection import protection_of
 from .values import constant
 
 
@@ -286,7 +287,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
-    for key in ("signals", "multiplexor") if foreign else ():
+    for key in ("signals", "multiplexor", "protection") if foreign else ():
         if form.has(key):
             message = f"the message {name} has no value, and `{key}` no meaning"
             findings.error("RV-0210", form.at_key(key), message, hint="remove it")
@@ -306,8 +307,21 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
     signals = () if foreign else layout_of(name, form, type_, findings)
     length = None if signals is None else size_of(name, form, signals, findings)
-    if signals is None or length is None:
+    if signals is None or length is None or form.lost("protection"):
         return None
+    protection = None
+    if form.protection is not None and not foreign:
+        kept = form.protection
+        events = [
+            event_at(text, kept.item_at("on_error", index), site)
+            for index, text in enumerate(kept.on_error or ())
+        ]
+        if None in events or kept.lost("on_error") or kept.list_damaged("on_error"):
+            return None
+        raised = tuple(pair for pair in events if pair is not None)
+        protection = protection_of(name, kept, length, raised, findings)
+        if protection is None:
+            return None
     return Message(
         name=name,
         origin=form.origin,
@@ -323,6 +337,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         deadline=None if form.deadline is None else Ns(form.deadline),
         fd=form.format == "fd",
         sporadic=source is None and form.sporadic is not False,
+        protection=protection,
     )
 
 

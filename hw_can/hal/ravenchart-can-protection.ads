@@ -229,6 +229,9 @@ is
    subtype Usable is Status range Ok .. Ok_Some_Lost;
    --  Only then the data may be used.
 
+   subtype Fault is Status range Repeated .. Error;
+   --  What a correct sender on a faultless way never causes.
+
    type Receiver is record
       Has_Last : Boolean := False;
       Last     : Counter_Value := 0;

@@ -58,7 +58,10 @@ def _message(system: System, message: Message) -> DbcMessage:
         frame_id=message.identifier,
         name=message.name,
         length=message.length,
-        signals=[_signal(s, selector, receivers) for s in message.signals],
+        signals=[
+            *(_signal(s, selector, receivers) for s in message.signals),
+            *(_header(message, receivers)),
+        ],
         senders=[OUTSIDE if message.source is None else _node(system, message.source)],
         cycle_time=message.period // 1_000_000,
         is_extended_frame=message.extended,
@@ -69,6 +72,22 @@ def _message(system: System, message: Message) -> DbcMessage:
 
 def _node(system: System, end: End) -> str:
     return system.instance(end.instance).node
+
+
+def _header(message: Message, receivers: list[str]) -> list[DbcSignal]:
+    """The fields of the protection."""
+    fields = () if message.protection is None else message.protection.profile.fields
+    return [
+        DbcSignal(
+            name=field.name,
+            start=field.start,
+            length=field.width,
+            minimum=0,
+            maximum=(1 << field.width) - 1,
+            receivers=receivers,
+        )
+        for field in fields
+    ]
 
 
 def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> DbcSignal:
