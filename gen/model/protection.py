@@ -93,14 +93,31 @@ class Protection:
         nibble = sum(one.width for one in self.profile.fields if one.name == NIBBLE)
         return float(2.0 ** -(self.profile.crc_bits + nibble) * self.max_delta / 2**bits)
 
-    @property
-    def signature(self) -> tuple[object, ...]:
-        """What the data identifier comes to in the CRC: two messages need different ones."""
-        if self.name == "e2e_p2":
-            return ("list", self.data_ids)
-        if self.profile.mode == "Both" and self.profile.crc_bits == 8:
-            return ("8 bits", crc_8(self.data_id.to_bytes(2, "little")))
-        return (self.profile.mode, self.profile.crc_bits, self.data_id)
+    def share(self, counter: int) -> tuple[str, int]:
+        """What the data identifier comes to in the CRC of a frame with that counter."""
+        if self.data_ids:
+            return "list", self.data_ids[counter]
+        low, high = self.data_id & 0xFF, self.data_id >> 8
+        if self.profile.crc_bits == 16:
+            return "16 bits", self.data_id
+        read = {
+            "Both": (low, high),
+            "Alternating": ((low, high)[counter % 2],),
+            "Nibble": (low, 0),
+        }
+        return "8 bits", crc_8(bytes(read[self.profile.mode]))
+
+    def passes_for(self, other: Protection) -> bool:
+        """Is there a counter with which a frame of this message is intact as one of the other?
+
+        Both have the same length and the same identifier on the bus: the worst that can be.
+        """
+        if self.profile.mode == other.profile.mode == "Nibble" and (
+            self.data_id >> 8 != other.data_id >> 8
+        ):
+            return False
+        counters = range(min(self.profile.counters, other.profile.counters))
+        return any(self.share(counter) == other.share(counter) for counter in counters)
 
 
 def crc_8(data: bytes) -> int:

@@ -76,18 +76,20 @@ def bus_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
 
 def protected_messages_differ(resolved: Resolved) -> Iterator[Diagnostic]:
     """No protected message has a data identifier that passes for that of another."""
-    system = resolved.system
-    seen: dict[object, Message] = {}
-    for message in system.messages:
-        if message.protection is None:
-            continue
-        other = seen.setdefault(message.protection.signature, message)
-        if other is not message:
+    kept = [m for m in resolved.system.messages if m.protection is not None]
+    for index, message in enumerate(kept):
+        clash = next((other for other in kept[:index] if _passes(message, other)), None)
+        if clash is not None:
             text = f"the CRC of {message.name} cannot tell its data identifier from that of "
-            text += other.name
-            notes = [(other.origin, f"`{other.name}` is declared here")]
+            text += clash.name
+            notes = [(clash.origin, f"`{clash.name}` is declared here")]
             hint = "give one of them another data identifier"
             yield error(PROTECTION, message.origin, text, notes=notes, hint=hint)
+
+
+def _passes(message: Message, other: Message) -> bool:
+    one, two = message.protection, other.protection
+    return one is not None and two is not None and one.passes_for(two)
 
 
 def protection_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
