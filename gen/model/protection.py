@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-ProfileName = Literal[
-    "e2e_p1", "e2e_p1b", "e2e_p1c", "e2e_p2", "e2e_p5", "e2e_p11", "e2e_p11c"
-]
+ProfileName = Literal["e2e_p1", "e2e_p1b", "e2e_p1c", "e2e_p2", "e2e_p5", "e2e_p11", "e2e_p11c"]
 
 COUNTER = "E2E_Counter"
 CHECK = "E2E_CRC"

@@ -21,6 +21,7 @@ from ravenchart.gen.language.names import Findings, Scope
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import BOOLEAN, Ns, Scalar
 from ravenchart.gen.model.component import Direction, Port
+from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
     Bus,
@@ -309,19 +310,9 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     length = None if signals is None else size_of(name, form, signals, findings)
     if signals is None or length is None or form.lost("protection"):
         return None
-    protection = None
-    if form.protection is not None and not foreign:
-        kept = form.protection
-        events = [
-            event_at(text, kept.item_at("on_error", index), site)
-            for index, text in enumerate(kept.on_error or ())
-        ]
-        if None in events or kept.lost("on_error") or kept.list_damaged("on_error"):
-            return None
-        raised = tuple(pair for pair in events if pair is not None)
-        protection = protection_of(name, kept, length, raised, findings)
-        if protection is None:
-            return None
+    protection = _message_protection(name, form, length, site)
+    if (protection is None) != (form.protection is None):
+        return None
     return Message(
         name=name,
         origin=form.origin,
@@ -339,6 +330,20 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         sporadic=source is None and form.sporadic is not False,
         protection=protection,
     )
+
+
+def _message_protection(name: str, form: MessageForm, length: int, site: Site) -> Protection | None:
+    """The protection of a message of so many bytes; None where it has none, or no sound one."""
+    given = form.protection
+    if given is None or given.lost("on_error") or given.list_damaged("on_error"):
+        return None
+    events = [
+        event_at(text, given.item_at("on_error", index), site)
+        for index, text in enumerate(given.on_error or ())
+    ]
+    sound = tuple(pair for pair in events if pair is not None)
+    found = protection_of(name, given, length, sound, site.findings)
+    return found if len(sound) == len(events) else None
 
 
 def _message_period(

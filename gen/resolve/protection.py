@@ -31,8 +31,7 @@ def protection_of(
     if length > profile.longest:
         message = f"{name} has {length} bytes; the CRC of {form.profile} protects "
         message += f"{profile.longest} at most"
-        hint = "use `profile: e2e_p5`" if profile.longest < 64 else None
-        findings.error(PROTECTION, form.at("profile"), message, hint=hint)
+        findings.error(PROTECTION, form.at("profile"), message, hint="use `profile: e2e_p5`")
     if findings.count() > before:
         return None
     return Protection(

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import can
@@ -99,12 +100,12 @@ def gate(tmp_path: Path) -> Callable[[Callable[[RavenchartBus], None]], Observat
 GOOD, WRONG = 5, 900
 
 
-def _first(level: int, counter: int, data_id: int = 0x123) -> bytearray:
+def _first(level: int, counter: int, data_id: int = 0x123) -> bytes:
     """The data of `first_in`: the level from bit 12 on."""
     data = bytearray((level << 12).to_bytes(4, "little"))
     data[1] = (data[1] & 0xF0) | counter
     e2e.p01.e2e_p01_protect(data, data_id, length=4, increment_counter=False)
-    return data
+    return bytes(data)
 
 
 def test_faults_on_the_bus_are_noticed_and_nothing_wrong_is_used(
@@ -120,9 +121,9 @@ def test_faults_on_the_bus_are_noticed_and_nothing_wrong_is_used(
 
         for counter in (0, 1, 2):
             give(_first(GOOD, counter))
-        corrupted = _first(GOOD, 3)
+        corrupted = bytearray(_first(GOOD, 3))
         corrupted[2] ^= 0x20
-        give(corrupted)
+        give(bytes(corrupted))
         give(_first(WRONG, 3, data_id=0x777))  # masquerade
         give(_first(GOOD, 4))  # one was lost
         give(_first(WRONG, 4))  # repetition
@@ -183,7 +184,7 @@ def test_what_is_sent_is_accepted_by_the_independent_implementation(
     for identifier, size in ((0x200, 15), (0x201, 15), (0x202, 16), (0x203, 256), (0x204, 256)):
         found = counters[identifier]
         assert len(found) > 20
-        assert all(b == (a + 1) % size for a, b in zip(found, found[1:], strict=False))
+        assert all(b == (a + 1) % size for a, b in pairwise(found))
 
 
 def test_the_header_is_in_the_database(tmp_path: Path) -> None:
