@@ -21,6 +21,7 @@ from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import Codec
 from ravenchart.paths import ROOT
 from ravenchart.running.process import ControllerProcess
+from ravenchart.running.running import controller, run_controller
 
 P1_MODES = {
     "BOTH": e2e.p01.E2E_P01_DATAID_BOTH,
@@ -195,3 +196,54 @@ def test_the_header_is_in_the_database(tmp_path: Path) -> None:
     values = {"level", "mode", "ready"}
     assert set(codec.fields("first_in")) == {*values, "E2E_CRC", "E2E_Counter"}
     assert set(codec.fields("second_in")) == {*values, "E2E_CRC", "E2E_Counter", "E2E_Data_ID"}
+
+
+def test_the_bench_protects_what_it_sends(tmp_path: Path) -> None:
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    steps.write_program(steps.check(copy / "model.yaml"))
+    codec = Codec.from_file(copy / "generated" / "line.dbc")
+    values: dict[str, int | str] = {"level": 700, "mode": "Stop", "ready": "True"}
+    accepts: dict[str, Callable[[bytes], bool]] = {
+        "first_in": lambda data: intact("PROFILE_1", "BOTH", 0x123, data),
+        "second_in": lambda data: intact("PROFILE_1", "NIBBLE", 0x456, data),
+        "third_in": lambda data: intact("PROFILE_2", "", 0, data),
+        "fourth_in": lambda data: intact("PROFILE_5", "", 0x1234, data),
+        "fifth_in": lambda data: intact("PROFILE_11", "BOTH", 0x2222, data),
+        "first_out": lambda data: intact("PROFILE_1", "ALTERNATING", 0x123, data),
+    }
+    for name, accepted in accepts.items():
+        for counter in range(300):
+            frame = codec.encode(name, values)
+            assert accepted(bytes(frame.data)), (name, counter)
+            found = codec.decode(frame)
+            assert found is not None
+            assert found[1].items() >= values.items()
+
+
+def test_a_scenario_exchanges_protected_messages(tmp_path: Path) -> None:
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    checked = steps.check(copy / "model.yaml")
+    steps.write_program(checked)
+    (program,) = (controller(made) for made in steps.programs_of(checked))
+    scenario = copy / "scenario.yaml"
+    given = "{level: 700, mode: Stop, ready: true}"
+    faces = ("first", "second", "third", "fourth", "fifth")
+    steps_of = (
+        f"  - {{send: {face}_in, with: {given}}}\n" * 3
+        + f"  - {{wait_for: {face}_out.level, is: 700, within: 2 s}}\n"
+        for face in faces
+    )
+    scenario.write_text(f"scenario: Protected\nsteps:\n{''.join(steps_of)}")
+    outcome = run_controller(
+        program.executable,
+        program.trace_json,
+        copy / "generated" / "line.dbc",
+        scenario,
+        None,
+        copy / "report",
+    )
+    assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
+    assert outcome.observation is not None
+    assert outcome.observation.faults["Protection_Error"] == 0
