@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from itertools import product
 from typing import get_args
 
 import e2e
 import pytest
 
+from ravenchart.analysis.present.figures import figures
 from ravenchart.analysis.present.report import render
 from ravenchart.analysis.system.protection import protected, residual_probability
 from ravenchart.analysis.system.timing import analyse
@@ -69,7 +71,11 @@ def test_rates_and_times_of_a_message(system: System) -> None:
 
 
 def test_the_report_has_them(system: System) -> None:
-    text = render(analyse(system))
+    analysis = analyse(system)
+    found = json.loads(json.dumps(figures(analysis)))["protected"]
+    assert [row["message"] for row in found] == [m.name for m in system.messages]
+    assert found[0]["tolerated"] == 40 * MS
+    text = render(analysis)
     assert "<h2>End-to-end protection</h2>" in text
     assert "<td>first_in</td><td>e2e_p1</td>" in text
 
