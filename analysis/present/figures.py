@@ -17,6 +17,7 @@ from ravenchart.analysis.plain.results import (
     latency_figures,
 )
 from ravenchart.analysis.system.commands import costs
+from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import ratio
 
@@ -73,6 +74,18 @@ def figures(analysis: Analysis) -> Json:
             for item in system.objects
         ],
         "commands": [asdict(cost) for cost in costs(analysis)],
+        "protected": [
+            {
+                "message": row.message.name,
+                "profile": row.protection.name,
+                "random": row.random,
+                "residual": row.residual,
+                "residual_per_hour": row.rate,
+                "tolerated": row.tolerated,
+                "stale": [{"port": str(one.port), "found": one.found} for one in row.silences],
+            }
+            for row in protected(analysis)
+        ],
         "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

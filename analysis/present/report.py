@@ -22,6 +22,7 @@ from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.latencies import Hop, Latency
 from ravenchart.analysis.system.network import frame_length
 from ravenchart.analysis.system.observed import Observation
+from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.supervision import watches
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.gen.language.terms import Ns
@@ -243,6 +244,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "executions": executions(analysis, run.observation) if run and run.observation else (),
         "visits": _visits(run),
         "watches": watches(analysis),
+        "protected": protected(analysis),
     }
 
 

@@ -381,7 +381,14 @@ class _Sharing:
         for processor in self.system.processors:
             watched = {slot.owner for slot in processor.slots if slot.work is Work.BUS_WATCH}
             of_buses = (p for bus in self.system.buses if bus.name in watched for p in bus.raises)
-            if raised((*processor.raises, *of_buses)):
+            heard = {s.owner for s in processor.slots if s.work is Work.BUS_RECEIVE}
+            refused = (
+                pair
+                for bus in self.system.buses
+                if bus.name in heard
+                for pair in self.system.refusals(bus)
+            )
+            if raised((*processor.raises, *of_buses, *refused)):
                 yield processor.name
             supervisor = self.supervisor(processor)
             if supervisor is not None and raised(processor.on_silence):

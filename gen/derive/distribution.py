@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.names import problem_of
 from ravenchart.gen.model.commands import Remote, RemoteRead
+from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
 from ravenchart.gen.model.system import (
     Bus,
@@ -164,6 +165,15 @@ def _heard_here(bus: Bus, here: set[str]) -> Bus:
     )
 
 
+def _raised_here(protection: Protection | None, here: set[str]) -> Protection | None:
+    """The protection, with the events of these instances."""
+    if protection is None:
+        return None
+    return replace(
+        protection, on_error=tuple(pair for pair in protection.on_error if pair[0] in here)
+    )
+
+
 def part_of(system: System, node: Node) -> System:
     """What runs on a node, as a system of its own, without tasks, objects and chains."""
     here = {instance.name for instance in system.instances if instance.node == node.name}
@@ -172,6 +182,7 @@ def part_of(system: System, node: Node) -> System:
             message,
             source=message.source if system.sender(message) == node.name else None,
             targets=tuple(end for end in message.targets if end.instance in here),
+            protection=_raised_here(message.protection, here),
         )
         for message in system.messages
         if system.sender(message) == node.name

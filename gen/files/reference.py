@@ -61,6 +61,7 @@ TITLES: Mapping[str, str] = {
     "ConnectionForm": "Connection",
     "MessageForm": "Message",
     "SignalForm": "Signal",
+    "ProtectionForm": "Protection",
     "ProcessorForm": "Processor",
     "ChainForm": "Chain",
     "ShutdownForm": "Shutdown",

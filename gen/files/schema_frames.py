@@ -7,6 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Tag
 from pydantic import Field as PydanticField
 
+from ravenchart.gen.model.protection import ProfileName
+
 from .schema_base import (
     BitRate,
     Constant,
@@ -178,6 +180,46 @@ class SignalForm(Element):
     ) = optional("Values of the multiplexor with which it is in the frame; always unless given.")
 
 
+class ProtectionForm(Element):
+    """End-to-end protection of a message: its header is at byte 0 of the frame."""
+
+    profile: ProfileName = key(
+        "The AUTOSAR E2E profile: `e2e_p1`, `e2e_p1b`, `e2e_p1c` (variants 1A, 1B, 1C), `e2e_p2`, "
+        "`e2e_p5`, `e2e_p11`, `e2e_p11c` (11A, 11C)."
+    )
+    data_id: int | None = optional(
+        "Data identifier, 0 to 0xFFFF; with `e2e_p1c` and `e2e_p11c` to 0x0FFF. Not with `e2e_p2`.",
+        ge=0,
+        le=0xFFFF,
+    )
+    data_ids: list[int] | None = optional(
+        "With `e2e_p2`: 16 data identifiers, 0 to 0xFF, one for each value of the counter.",
+        min_length=16,
+        max_length=16,
+    )
+    max_delta: int = PydanticField(
+        default=1,
+        ge=1,
+        le=254,
+        description="The largest step of the counter that is used: `max_delta` - 1 frames may be "
+        "lost. Less than the largest counter: 13 at most with `e2e_p1*` and `e2e_p11*`, 14 with "
+        "`e2e_p2`, 254 with `e2e_p5`.",
+    )
+    sync: int = PydanticField(
+        default=1,
+        ge=1,
+        le=14,
+        description="Frames in sequence after the first one, and after one out of sequence, until "
+        "a value is used again, 1 to 14.",
+    )
+    on_error: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised on the node of the instance, which receives the message, for "
+        "each frame that is corrupted, of another sender, repeated or out of sequence.",
+        min_length=1,
+        max_length=64,
+    )
+
+
 class MessageForm(Element):
     """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
@@ -229,6 +271,9 @@ class MessageForm(Element):
     )
     multiplexor: Reference | None = optional(
         "The field that tells which of the signals with `when` are in the frame."
+    )
+    protection: ProtectionForm | None = optional(
+        "End-to-end protection: counter and CRC in the frame; none unless given."
     )
     deadline: PositiveSpan | None = optional(
         "From the release of what sends it, or from its arrival, until it is received; the period "

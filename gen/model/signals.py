@@ -8,7 +8,7 @@ bit 7 of the next byte. These are the conventions of CAN databases (DBC).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -164,11 +164,14 @@ def signals_of(type_: Type) -> tuple[Signal, ...]:
     return packed([automatic(*scalar) for scalar in scalars_of(type_)], {})
 
 
-def packed(signals: Iterable[Signal], given: Mapping[str, int]) -> tuple[Signal, ...]:
+def packed(
+    signals: Iterable[Signal], given: Mapping[str, int], held: Set[int] = frozenset()
+) -> tuple[Signal, ...]:
     """The signals at the ``given`` starts, by name, and the others where there is room.
 
     Each of the others, which are Intel signals, comes as low as those before it, the
-    given ones, and its own width allow; signals never in one frame may share bits.
+    given ones, and its own width allow; signals never in one frame may share bits. No signal
+    comes to the bits that are ``held``.
     """
     order = list(signals)
     placed = {s.name: _at(s, given[s.name], s.width) for s in order if s.name in given}
@@ -176,6 +179,7 @@ def packed(signals: Iterable[Signal], given: Mapping[str, int]) -> tuple[Signal,
         if signal.name in placed:
             continue
         taken = {b for other in placed.values() if signal.meets(other) for b in other.bits()}
+        taken |= held
         start = 0
         while clash := taken & set(range(start, start + signal.width)):
             start = max(clash) + 1

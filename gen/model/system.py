@@ -19,6 +19,7 @@ from ravenchart.gen.origins import Origin
 
 from .commands import Binding, Device, Remote
 from .component import Component
+from .protection import Protection
 from .signals import Signal
 from .statechart import Timing
 
@@ -215,6 +216,9 @@ class Message:
     every: int = 0
     """Of a read command between nodes: sent in each so-many-eth execution of the row that writes
     the data item which is its source. 0: of a port or a call."""
+
+    protection: Protection | None = None
+    """From end to end; None: none."""
 
     @property
     def element(self) -> str:
@@ -514,11 +518,16 @@ class System:
             for message in self.messages
         )
 
+    def refusals(self, bus: Bus) -> tuple[tuple[str, str], ...]:
+        """(instance, event) raised where a protected message of a bus is not used."""
+        kept = (m.protection for m in self.messages if m.bus == bus.name and m.protection)
+        return tuple(pair for protection in kept for pair in protection.on_error)
+
     @property
     def raised_outside(self) -> tuple[tuple[str, str], ...]:
         """(instance, event) raised by processors, supervisors, buses and a request to stop."""
         of_processors = (p for processor in self.processors for p in processor.raised_for_it)
-        of_buses = (pair for bus in self.buses for pair in bus.raises)
+        of_buses = (pair for bus in self.buses for pair in (*bus.raises, *self.refusals(bus)))
         return (*of_processors, *of_buses, *self.shutdown.raises)
 
     def home(self, end: End) -> str:

@@ -21,6 +21,7 @@ from ravenchart.gen.language.names import Findings, Scope
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import BOOLEAN, Ns, Scalar
 from ravenchart.gen.model.component import Direction, Port
+from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
     Bus,
@@ -42,6 +43,7 @@ from ravenchart.gen.origins import Origin
 
 from .components import Parts, timing_of
 from .layouts import layout_of, size_of
+from .protection import protection_of
 from .values import constant
 
 
@@ -286,7 +288,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
-    for key in ("signals", "multiplexor") if foreign else ():
+    for key in ("signals", "multiplexor", "protection") if foreign else ():
         if form.has(key):
             message = f"the message {name} has no value, and `{key}` no meaning"
             findings.error("RV-0210", form.at_key(key), message, hint="remove it")
@@ -306,7 +308,10 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
     signals = () if foreign else layout_of(name, form, type_, findings)
     length = None if signals is None else size_of(name, form, signals, findings)
-    if signals is None or length is None:
+    if signals is None or length is None or form.lost("protection"):
+        return None
+    protection = _message_protection(name, form, length, site)
+    if (protection is None) != (form.protection is None):
         return None
     return Message(
         name=name,
@@ -323,7 +328,22 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         deadline=None if form.deadline is None else Ns(form.deadline),
         fd=form.format == "fd",
         sporadic=source is None and form.sporadic is not False,
+        protection=protection,
     )
+
+
+def _message_protection(name: str, form: MessageForm, length: int, site: Site) -> Protection | None:
+    """The protection of a message of so many bytes; None where it has none, or no sound one."""
+    given = form.protection
+    if given is None or given.lost("on_error") or given.list_damaged("on_error"):
+        return None
+    events = [
+        event_at(text, given.item_at("on_error", index), site)
+        for index, text in enumerate(given.on_error or ())
+    ]
+    sound = tuple(pair for pair in events if pair is not None)
+    found = protection_of(name, given, length, sound, site.findings)
+    return found if len(sound) == len(events) else None
 
 
 def _message_period(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
 from ravenchart.gen.language.names import Findings, meant
 from ravenchart.gen.language.terms import EnumerationType, IntegerType, ScalarType, Type
+from ravenchart.gen.model.protection import PROFILES
 from ravenchart.gen.model.signals import (
     FD_SIZES,
     RAW_LIMIT,
@@ -73,7 +74,7 @@ def layout_of(
             signals.append(replace(made, selects=selector is not None and selector.field == field))
     if not sound or (form.multiplexor is not None and selector is None):
         return None
-    laid = packed(signals, starts)
+    laid = packed(signals, starts, maker.header)
     return laid if maker.fits(laid) else None
 
 
@@ -108,6 +109,12 @@ class _Maker:
     name: str
     form: MessageForm
     findings: Findings
+
+    @property
+    def header(self) -> frozenset[int]:
+        """The bits that the protection of the message takes."""
+        given = self.form.protection
+        return frozenset() if given is None else PROFILES[given.profile].header
 
     def wrong(self, key: str, part: str | None, message: str, hint: str | None = None) -> None:
         """An error at a key of a signal, or at the signal itself."""
@@ -227,6 +234,14 @@ class _Maker:
             message = f"`{first.name}` and `{second.name}` share bit {shared} of {self.name}"
             hint = "give one of them another `start`"
             self.findings.error(ROOM, self.form.entry_at("signals", named), message, hint=hint)
+        for signal in signals:
+            if held := self.header & set(signal.bits()):
+                message = f"`{signal.name}` of {self.name} takes bit {min(held)}, which is of the "
+                message += "header of its protection"
+                at = self.form.entry_at("signals", keys.get(signal.name.lower(), signal.name))
+                after = max(self.header) + 1
+                hint = f"the header ends before bit {after}: give another `start`, or leave it out"
+                self.findings.error(ROOM, at, message, hint=hint)
         if self.form.signals is None:
             return True  # `payloads_fit` says what is too long
         room = 8 * self.form.bytes if self.form.bytes is not None else None

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.model.system import Bus, Slot, System, Work
+from ravenchart.gen.model.system import Bus, Message, Slot, System, Work
+from ravenchart.gen.resolve.protection import PROTECTION
 from ravenchart.gen.resolve.system import Resolved
 
 FAULTS = "RV-0618"
@@ -73,4 +74,44 @@ def bus_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
                 yield error(FAULTS, bus.origin, message, hint=hint)
 
 
-BUS_RULES = (buses_are_watched, bus_events_can_come)
+def protected_messages_differ(resolved: Resolved) -> Iterator[Diagnostic]:
+    """No protected message has a data identifier that passes for that of another."""
+    kept = [m for m in resolved.system.messages if m.protection is not None]
+    for index, message in enumerate(kept):
+        clash = next((other for other in kept[:index] if _passes(message, other)), None)
+        if clash is not None:
+            text = f"the CRC of {message.name} cannot tell its data identifier from that of "
+            text += clash.name
+            notes = [(clash.origin, f"`{clash.name}` is declared here")]
+            hint = "give one of them another data identifier"
+            yield error(PROTECTION, message.origin, text, notes=notes, hint=hint)
+
+
+def _passes(message: Message, other: Message) -> bool:
+    one, two = message.protection, other.protection
+    return one is not None and two is not None and one.passes_for(two)
+
+
+def protection_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The events of a protected message are of nodes that receive it."""
+    system = resolved.system
+    if not {"messages", "instances"} <= resolved.sound_sections:
+        return
+    for message in system.messages:
+        homes = {system.home(end) for end in message.targets}
+        for instance, event in () if message.protection is None else message.protection.on_error:
+            home = system.instance(instance).node
+            if home not in homes:
+                text = f"{message.name} names {instance}.{event}, and {instance} is on {home}, "
+                text += f"which does not receive {message.name}"
+                where = " or ".join(sorted(homes)) or "a node that receives it"
+                hint = f"name an event of an instance on {where}"
+                yield error(PROTECTION, message.origin, text, hint=hint)
+
+
+BUS_RULES = (
+    buses_are_watched,
+    bus_events_can_come,
+    protected_messages_differ,
+    protection_events_can_come,
+)

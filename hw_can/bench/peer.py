@@ -20,6 +20,8 @@ import cantools
 from cantools.database import Database
 from cantools.database.errors import Error as CodecFault
 
+from .protection import HEADER, sender_of
+
 OUTSIDE = "Outside"
 """In a database, the sender of what no node of the model sends."""
 
@@ -39,6 +41,9 @@ class Codec:
         self._database = database
         self._names = {(m.frame_id, m.is_extended_frame): m.name for m in database.messages}
         self._switched = _switches(database)
+        found = ((m.name, m.dbc) for m in database.messages)
+        senders = ((name, sender_of(dbc.attributes)) for name, dbc in found if dbc is not None)
+        self._senders = {name: sender for name, sender in senders if sender is not None}
 
     @staticmethod
     def from_file(path: Path) -> Codec:
@@ -60,15 +65,22 @@ class Codec:
         return tuple(s.name for s in self._message(name).signals)
 
     def encode(self, name: str, values: Mapping[str, Value]) -> can.Message:
-        """The frame; BenchError when a field is missing, unknown or out of range."""
+        """The frame; BenchError when a field is missing, unknown or out of range.
+
+        A protected message gets its header, unless a field of it is given.
+        """
         message = self._message(name)
         unknown = sorted(set(values) - {s.name for s in message.signals})
         if unknown:
             raise BenchError(f"{name} has no field {unknown[0]}")
+        sender = None if HEADER & set(values) else self._senders.get(name)
+        blank = {} if sender is None else {s.name: 0 for s in message.signals if s.name in HEADER}
         try:
-            data = message.encode(dict(values), strict=True)
+            data = message.encode(blank | dict(values), strict=True)
         except (CodecFault, KeyError, ValueError) as fault:
             raise BenchError(f"{name} cannot be sent: {fault}") from None
+        if sender is not None:
+            data = sender.protect(data)
         return can.Message(
             arbitration_id=message.frame_id,
             is_extended_id=message.is_extended_frame,

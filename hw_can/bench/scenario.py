@@ -308,7 +308,13 @@ class Fault(_Counted):
     """A fault that the controller counted."""
 
     fault: Literal[
-        "Overrun", "Queue_Overflow", "Stale_Input", "Can_Error_Passive", "Can_Bus_Off", "Silence"
+        "Overrun",
+        "Queue_Overflow",
+        "Stale_Input",
+        "Can_Error_Passive",
+        "Can_Bus_Off",
+        "Silence",
+        "Protection_Error",
     ]
 
 

@@ -61,6 +61,16 @@ is
    with Global => null;
    --  Is it a data frame of this family with so many bytes?
 
+   function Byte
+     (F : Any_Frame; Index : Fd_Frames.Fd_Index) return Interfaces.Unsigned_8
+   is (if F.Family = Flexible
+       then Fd_Frames.Byte (F.Fd, Index)
+       elsif Index in Byte_Index
+       then Byte (F.Plain, Index)
+       else 0)
+   with Global => null;
+   --  One byte of the data; 0 beyond the length.
+
    function Payload (F : Any_Frame) return Interfaces.Unsigned_64
    is (if F.Family = Classic then Payload (F.Plain) else 0)
    with Global => null;

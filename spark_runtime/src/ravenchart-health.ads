@@ -15,7 +15,8 @@ is
       Stale_Input,
       Can_Error_Passive,
       Can_Bus_Off,
-      Silence);
+      Silence,
+      Protection_Error);
    --  The faults the runtime and the HAL can notice. The controller counts
    --  those of CAN itself (Read_Faults), and a report has those counts.
 

@@ -21,6 +21,7 @@ MAINS = (
     "test_wire",
     "test_fault_confinement",
     "test_fault_notices",
+    "test_protection",
     "test_bus",
     "test_frame_ends",
     "test_processors",

@@ -7,6 +7,7 @@ a tenth of its number.
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from decimal import Decimal
 
 from cantools.database import Database
@@ -34,10 +35,40 @@ def emit_dbc(system: System, bus: Bus) -> str:
     messages = [_message(system, m) for m in own]
     nodes = [Node(name=n.name, comment=None) for n in system.nodes]
     nodes.append(Node(name=OUTSIDE, comment=None))
-    specifics = _flexible(bus) if any(m.fd for m in own) else None
+    specifics = _specifics(bus, own)
     database = Database(messages=messages, nodes=nodes, version="", dbc_specifics=specifics)
     text = str(database.as_dbc_string(sort_signals=None))
     return text.replace("\r\n", "\n").rstrip("\n") + "\n"
+
+
+PROFILE = DbcAttributeDefinition[str]("E2EProfile", "", "BO_", "STRING")
+DATA_IDS = DbcAttributeDefinition[str]("E2EDataIDs", "", "BO_", "STRING")
+"""Of a protected message: its profile, and its data identifiers as hexadecimal numbers."""
+
+
+def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
+    """The attributes that the messages need."""
+    made = _flexible(bus) if any(m.fd for m in messages) else None
+    if any(m.protection for m in messages):
+        made = made or DbcSpecifics()
+        made.attribute_definitions.update({one.name: one for one in (PROFILE, DATA_IDS)})
+    return made
+
+
+def _protected(message: Message) -> DbcSpecifics | None:
+    """The attributes of a protected message."""
+    own = message.protection
+    if own is None:
+        return None
+    ids = " ".join(f"{one:X}" for one in own.data_ids or (own.data_id,))
+    return DbcSpecifics(
+        attributes=OrderedDict(
+            {
+                PROFILE.name: DbcAttribute(own.name, PROFILE),
+                DATA_IDS.name: DbcAttribute(ids, DATA_IDS),
+            }
+        )
+    )
 
 
 def _flexible(bus: Bus) -> DbcSpecifics:
@@ -58,17 +89,37 @@ def _message(system: System, message: Message) -> DbcMessage:
         frame_id=message.identifier,
         name=message.name,
         length=message.length,
-        signals=[_signal(s, selector, receivers) for s in message.signals],
+        signals=[
+            *(_signal(s, selector, receivers) for s in message.signals),
+            *(_header(message, receivers)),
+        ],
         senders=[OUTSIDE if message.source is None else _node(system, message.source)],
         cycle_time=message.period // 1_000_000,
         is_extended_frame=message.extended,
         is_fd=message.fd,
+        dbc_specifics=_protected(message),
         sort_signals=None,
     )
 
 
 def _node(system: System, end: End) -> str:
     return system.instance(end.instance).node
+
+
+def _header(message: Message, receivers: list[str]) -> list[DbcSignal]:
+    """The fields of the protection."""
+    fields = () if message.protection is None else message.protection.profile.fields
+    return [
+        DbcSignal(
+            name=field.name,
+            start=field.start,
+            length=field.width,
+            minimum=0,
+            maximum=(1 << field.width) - 1,
+            receivers=receivers,
+        )
+        for field in fields
+    ]
 
 
 def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> DbcSignal:

@@ -44,7 +44,15 @@ from ravenchart.gen.model.system import Bus, End, Message, System, Task, Work
 
 from .codecs import codec_name, words_of
 from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
-from .watch import emit_watch
+from .protection import (
+    PROTECTION,
+    checked,
+    protecting,
+    receiver_of,
+    setting_of,
+    states_of_senders,
+)
+from .watch import emit_watch, offer
 
 DRIVER_STACK = 65_536
 """Bytes of stack for each task of a CAN driver on a host."""
@@ -114,6 +122,9 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
         )
         items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in received]
+    kept = [m for m in (*sent, *received) if m.protection is not None]
+    for message in dict.fromkeys(kept):
+        items += setting_of(message)
     if not all(m.fd for m in sent):
         items.append(UseType("Interfaces.Unsigned_64"))
     if any(m.fd for m in sent):
@@ -132,11 +143,14 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         withs |= {ANY, "Interfaces"}
     if any(m.fd for m in sent):
         withs |= {FD}
+    if kept:
+        withs |= {PROTECTION}
     units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
     if sent:
         made = (_frame_body(system, bus, m) for m in sent)
         handed = (_send_body(system, m) for m in sent)
-        bodies = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
+        pairs = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
+        bodies = (*states_of_senders(sent), *pairs)
         context = {f"{root}.Health_Counts", "Ravenchart.Health"}
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
@@ -252,10 +266,11 @@ def _send_body(system: System, message: Message) -> Subprogram:
         _send_spec(system, message).params,
         declarations=(
             UseType("Ravenchart.Can.Send_Status"),
-            Object("Frame", f"{ANY}.Any_Frame", frame, constant=True),
+            Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.protection is None),
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
+            *protecting(message),
             #  and not the frame of another message of the same type
             Pragma("Assert", (is_framed(message, Ref("Frame")),)),
             Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
@@ -312,9 +327,13 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         good = Chain("and then", (Ref("Valid"), carried))
         known = Pragma("Assert", (is_framed(message, Ref("Frame")),))
         deliver = (known, *note(system, "Arrived", message.name, "message"), *puts)
-        rows.append((matches, (unpack, If(((good, deliver),)))))
+        taken: tuple[Stmt, ...] = (unpack, If(((good, deliver),)))
+        rows.append((matches, checked(message, taken, _refused(system, message))))
+    if any(m.protection for m in received):
+        declarations.append(Object("Status", f"{PROTECTION}.Status"))
     body: tuple[Decl, ...] = (
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
+        *(state for m in received for state in receiver_of(m)),
         Subprogram(
             "Wait",
             declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
@@ -331,10 +350,29 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}
+    kept = [m.protection for m in received if m.protection is not None]
+    if kept:
+        context |= {PROTECTION, "Ravenchart.Health", f"{root}.Health_Counts"}
+    owners = {instance for protection in kept for instance, _ in protection.on_error}
+    context |= {f"{root}.{ada_case(i)}" for i in owners}
+    context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
     return [
         Unit(header, (f"{root}.Elements",), Package(name, spec, (SPARK,))),
         Unit(header, tuple(sorted(context)), Package(name, body, (SPARK,), is_body=True)),
     ]
+
+
+def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
+    """What comes of a frame that is not used: it is counted, and raises its events."""
+    if message.protection is None:
+        return ()
+    kind = Ref("Ravenchart.Health.Protection_Error")
+    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
+    return (
+        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
+        *note(system, "Fault", message.name, "message", position),
+        *(offer(system, instance, event) for instance, event in message.protection.on_error),
+    )
 
 
 def _data(message: Message) -> Expr:

@@ -99,7 +99,7 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
                 "bus",
                 Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind)),
             )
-        told += tuple(_offer(system, instance, event) for instance, event in events)
+        told += tuple(offer(system, instance, event) for instance, event in events)
         if told:
             steps.append(If(((Ref(f"Found.{field}"), told),)))
     if looks:
@@ -120,7 +120,8 @@ def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
     return tuple(items)
 
 
-def _offer(system: System, instance: str, event: str) -> Stmt:
+def offer(system: System, instance: str, event: str) -> Stmt:
+    """Raise an event of an instance."""
     root = root_package(system)
     value = event_value(system.instance(instance).component, event, prefix=f"{root}.")
     return Do(f"{root}.{ada_case(instance)}.Offer", arguments(value))

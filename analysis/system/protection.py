@@ -1,0 +1,112 @@
+"""What the end-to-end protection of each message comes to, in numbers.
+
+The residual error rate is that of IEC 61784-3 for a black channel: nothing but the protection
+itself counts, not the CRC of CAN. docs/protection.md has the formulas and their assumptions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.protection import Protection
+from ravenchart.gen.model.system import End, Message, System
+
+from .timing import Analysis
+
+BIT_ERROR_PROBABILITY = 0.01
+"""That of the black channel."""
+HOUR = 3_600_000_000_000
+"""In ns."""
+
+
+@dataclass(frozen=True, slots=True)
+class Silence:
+    """A port that receives the message, and how long after the last good frame it is stale.
+
+    From when that frame was due to be sent; None: no `max_age`, or no bound.
+    """
+
+    port: End
+    found: Ns | None
+
+
+@dataclass(frozen=True, slots=True)
+class Protected:
+    """A protected message."""
+
+    message: Message
+    protection: Protection
+    random: float
+    """Probability that a frame of random bits is used."""
+    residual: float
+    """Probability that corruption of a frame is not found."""
+    rate: float
+    """Corrupted frames that are not found, in an hour."""
+    tolerated: Ns
+    """Time over which frames may be lost, and the next one is used."""
+    silences: tuple[Silence, ...]
+
+
+def residual_probability(check_bits: int, found_bits: int, length: int, bit_error: float) -> float:
+    """The probability that errors in ``length`` bits are not found.
+
+    2 ** -check_bits of the errors of more than ``found_bits`` bits; those of fewer all are.
+    """
+    few = sum(
+        comb(length, wrong) * bit_error**wrong * (1 - bit_error) ** (length - wrong)
+        for wrong in range(found_bits + 1)
+    )
+    return float(2.0**-check_bits * max(0.0, 1.0 - few))
+
+
+def protected(analysis: Analysis) -> tuple[Protected, ...]:
+    """Each protected message."""
+    found: list[Protected] = []
+    for message in analysis.system.messages:
+        own = message.protection
+        if own is None:
+            continue
+        bits = 8 * message.length
+        profile = own.profile
+        residual = residual_probability(
+            profile.crc_bits, profile.found_bits, bits, BIT_ERROR_PROBABILITY
+        )
+        found.append(
+            Protected(
+                message,
+                own,
+                own.residual,
+                residual,
+                residual * HOUR / message.period,
+                Ns(own.max_delta * message.period),
+                tuple(
+                    Silence(end, _stale_after(analysis, message, end)) for end in message.targets
+                ),
+            )
+        )
+    return tuple(found)
+
+
+def _stale_after(analysis: Analysis, message: Message, end: End) -> Ns | None:
+    """Delivery, then executions of the port region until the age passes, one more, and R of it."""
+    system: System = analysis.system
+    component = system.instance(end.instance).component
+    port = next(p for p in component.ports if p.name == end.port)
+    home = system.home(end)
+    delivered = next(
+        (
+            analysis.deliveries[one.element].bound
+            for one in system.receptions(message)
+            if one.node == home and one.element in analysis.deliveries
+        ),
+        None,
+    )
+    response = analysis.found.from_event(system.processor_of(f"{end.instance}.ports").name)
+    if component.port_region is None or port.max_age is None:
+        return None
+    if delivered is None or response is None:
+        return None
+    period = component.port_region.period
+    return Ns(delivered + (port.max_age // period + 2) * period + response)

@@ -1,0 +1,250 @@
+"""End-to-end protection against an independent implementation, and on a bus with faults."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+
+import can
+import e2e
+import pytest
+
+from ravenchart.analysis.system.observed import Observation, read_map, read_trace
+from ravenchart.building import checking, generation, programs
+from ravenchart.hw_can.bench.bus_client import RavenchartBus
+from ravenchart.hw_can.bench.peer import Codec
+from ravenchart.paths import ROOT
+from ravenchart.running import server as bus
+from ravenchart.running.process import ControllerProcess
+from ravenchart.running.runs import controller, run_controller
+from ravenchart.tools import toolchain
+
+P1_MODES = {
+    "BOTH": e2e.p01.E2E_P01_DATAID_BOTH,
+    "ALTERNATING": e2e.p01.E2E_P01_DATAID_ALT,
+    "NIBBLE": e2e.p01.E2E_P01_DATAID_NIBBLE,
+}
+P11_MODES = {"BOTH": e2e.p11.E2E_P11_DATAID_BOTH, "NIBBLE": e2e.p11.E2E_P11_DATAID_NIBBLE}
+IDS = bytes.fromhex("01d32a976c45b80fe1725dc439a68bf0")
+"""As in test_protection.adb."""
+
+
+def intact(profile: str, mode: str, data_id: int, data: bytes) -> bool:
+    """Does the independent implementation accept the frame?"""
+    kept, size = bytearray(data), len(data)
+    if profile == "PROFILE_1":
+        return e2e.p01.e2e_p01_check(kept, data_id, data_id_mode=P1_MODES[mode], length=size)
+    if profile == "PROFILE_11":
+        return e2e.p11.e2e_p11_check(kept, data_id, data_id_mode=P11_MODES[mode], length=size)
+    if profile == "PROFILE_2":
+        return e2e.p02.e2e_p02_check(kept, IDS, length=size)
+    return e2e.p05.e2e_p05_check(kept, data_id, length=size)
+
+
+def _built(mode: str) -> Path:
+    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "test_protection.adb"]
+    scenario = {"MODE": mode, "CAN_DRIVER": "loopback"}
+    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", scenario)
+    return ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "test_protection"
+
+
+def test_an_independent_implementation_accepts_every_protected_frame() -> None:
+    done = subprocess.run([_built("release"), "print"], capture_output=True, text=True, timeout=60)
+    lines = [line.split() for line in done.stdout.splitlines()]
+    assert len(lines) == 10 * 300
+    for profile, mode, data_id, text in lines:
+        data = bytes.fromhex(text)
+        assert intact(profile, mode, int(data_id), data), text
+        spoilt = data[:-1] + bytes([data[-1] ^ 1])
+        assert not intact(profile, mode, int(data_id), spoilt), text
+
+
+@pytest.mark.skipif("RAVENCHART_LONG_TESTS" not in os.environ, reason="long: make test-long")
+def test_of_100_000_faults_of_each_kind_none_is_used() -> None:
+    done = subprocess.run([_built("release"), "100000"], capture_output=True, text=True)
+    assert (done.returncode, "not ok" in done.stdout) == (0, False), done.stdout
+
+
+@pytest.fixture
+def gate(tmp_path: Path) -> Callable[[Callable[[RavenchartBus], None]], Observation]:
+    """Runs the feature model on a bus with a bench that does something; what was seen."""
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    checked = checking.check(copy / "model.yaml")
+    generation.write_program(checked)
+    program = programs.programs_of(checked)[0].build(driver="bus")
+
+    def run(play: Callable[[RavenchartBus], None]) -> Observation:
+        trace = copy / "trace.txt"
+        with bus.running("port=0", "bitrate=500000", "data_bitrate=2000000") as (_, channel):
+            port = channel.rpartition(":")[2]
+            names = {"RAVENCHART_BUS_PORT": port, "RAVENCHART_BUS_NAME": "board"}
+            process = ControllerProcess(program, trace, 0, **names)
+            try:
+                process.wait_until_joined()
+                with RavenchartBus(channel, fd=True) as bench:
+                    play(bench)
+                    time.sleep(0.2)
+            finally:
+                ended = process.stop(0.0)
+        assert ended.exit_code == 0
+        known = read_map((copy / "generated" / "trace.json").read_text())
+        return read_trace(trace.read_text().splitlines(), known)
+
+    return run
+
+
+GOOD, WRONG = 5, 900
+
+
+def _first(level: int, counter: int, data_id: int = 0x123) -> bytes:
+    """The data of `first_in`: the level from bit 12 on."""
+    data = bytearray((level << 12).to_bytes(4, "little"))
+    data[1] = (data[1] & 0xF0) | counter
+    e2e.p01.e2e_p01_protect(data, data_id, length=4, increment_counter=False)
+    return bytes(data)
+
+
+def test_faults_on_the_bus_are_noticed_and_nothing_wrong_is_used(
+    gate: Callable[[Callable[[RavenchartBus], None]], Observation],
+) -> None:
+    answers: list[can.Message] = []
+
+    def play(bench: RavenchartBus) -> None:
+        def give(data: bytes) -> None:
+            frame = can.Message(arbitration_id=0x100, is_extended_id=False, data=data)
+            bench.send(frame, timeout=5)
+            time.sleep(0.03)
+
+        for counter in (0, 1, 2):
+            give(_first(GOOD, counter))
+        corrupted = bytearray(_first(GOOD, 3))
+        corrupted[2] ^= 0x20
+        give(bytes(corrupted))
+        give(_first(WRONG, 3, data_id=0x777))  # masquerade
+        give(_first(GOOD, 4))  # one was lost
+        give(_first(WRONG, 4))  # repetition
+        give(_first(WRONG, 13))  # insertion
+        give(_first(WRONG, 5)[:3])  # too short
+        give(bytes(4))  # not protected at all
+        give(_first(GOOD, 14))
+        while (frame := bench.recv(timeout=0.05)) is not None and len(answers) < 400:
+            answers.append(frame)
+
+    seen = gate(play)
+    #  of the eleven frames the first is the initial one, and four are used
+    assert len(list(seen.of("arrived", "first_in"))) == 4
+    assert seen.faults["Protection_Error"] == 6
+    assert [r.text for r in seen.of("transition", "gate.Trust")] == ["doubt", "leave"]
+    assert [v.state for v in seen.visits("gate.Trust")] == ["Trusted", "Doubted", "Alone"]
+    levels = {
+        int.from_bytes(answer.data, "little") >> 12 & 0x3FF
+        for answer in answers
+        if answer.arbitration_id == 0x200
+    }
+    assert GOOD in levels
+    assert WRONG not in levels
+
+
+def test_what_is_sent_is_accepted_by_the_independent_implementation(
+    gate: Callable[[Callable[[RavenchartBus], None]], Observation],
+) -> None:
+    answers: list[can.Message] = []
+
+    def play(bench: RavenchartBus) -> None:
+        end = time.monotonic() + 1.0
+        while time.monotonic() < end:
+            frame = bench.recv(timeout=0.05)
+            if frame is not None:
+                answers.append(frame)
+
+    gate(play)
+    backwards = bytes([240, 139, 166, 57, 196, 93, 114, 225, 15, 184, 69, 108, 151, 42, 211, 1])
+    counters: dict[int, list[int]] = {}
+    for frame in answers:
+        data, size = bytes(frame.data), len(frame.data)
+        match frame.arbitration_id:
+            case 0x200:
+                assert intact("PROFILE_1", "ALTERNATING", 0x123, data)
+            case 0x201:
+                assert intact("PROFILE_11", "NIBBLE", 0x457, data)
+            case 0x202:
+                assert e2e.p02.e2e_p02_check(bytearray(data), backwards, length=size)
+            case 0x203:
+                assert size == 64
+                assert intact("PROFILE_5", "", 0x4321, data)
+            case 0x204:
+                assert intact("PROFILE_5", "", 0x4322, data)
+        at = 2 if frame.arbitration_id in (0x203, 0x204) else 1
+        counter = data[at] if at == 2 else data[at] & 15
+        counters.setdefault(frame.arbitration_id, []).append(counter)
+    for identifier, size in ((0x200, 15), (0x201, 15), (0x202, 16), (0x203, 256), (0x204, 256)):
+        found = counters[identifier]
+        assert len(found) > 20
+        assert all(b == (a + 1) % size for a, b in pairwise(found))
+
+
+def test_the_header_is_in_the_database(tmp_path: Path) -> None:
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    generation.write_program(checking.check(copy / "model.yaml"))
+    codec = Codec.from_file(copy / "generated" / "line.dbc")
+    values = {"level", "mode", "ready"}
+    assert set(codec.fields("first_in")) == {*values, "E2E_CRC", "E2E_Counter"}
+    assert set(codec.fields("second_in")) == {*values, "E2E_CRC", "E2E_Counter", "E2E_Data_ID"}
+
+
+def test_the_bench_protects_what_it_sends(tmp_path: Path) -> None:
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    generation.write_program(checking.check(copy / "model.yaml"))
+    codec = Codec.from_file(copy / "generated" / "line.dbc")
+    values: dict[str, int | str] = {"level": 700, "mode": "Stop", "ready": "True"}
+    accepts: dict[str, Callable[[bytes], bool]] = {
+        "first_in": lambda data: intact("PROFILE_1", "BOTH", 0x123, data),
+        "second_in": lambda data: intact("PROFILE_1", "NIBBLE", 0x456, data),
+        "third_in": lambda data: intact("PROFILE_2", "", 0, data),
+        "fourth_in": lambda data: intact("PROFILE_5", "", 0x1234, data),
+        "fifth_in": lambda data: intact("PROFILE_11", "BOTH", 0x2222, data),
+        "first_out": lambda data: intact("PROFILE_1", "ALTERNATING", 0x123, data),
+    }
+    for name, accepted in accepts.items():
+        for counter in range(300):
+            frame = codec.encode(name, values)
+            assert accepted(bytes(frame.data)), (name, counter)
+            found = codec.decode(frame)
+            assert found is not None
+            assert found[1].items() >= values.items()
+
+
+def test_a_scenario_exchanges_protected_messages(tmp_path: Path) -> None:
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    checked = checking.check(copy / "model.yaml")
+    generation.write_program(checked)
+    (program,) = (controller(made) for made in programs.programs_of(checked))
+    scenario = copy / "scenario.yaml"
+    given = "{level: 700, mode: Stop, ready: true}"
+    faces = ("first", "second", "third", "fourth", "fifth")
+    steps_of = (
+        f"  - {{send: {face}_in, with: {given}}}\n" * 3
+        + f"  - {{wait_for: {face}_out.level, is: 700, within: 2 s}}\n"
+        for face in faces
+    )
+    scenario.write_text(f"scenario: Protected\nsteps:\n{''.join(steps_of)}")
+    outcome = run_controller(
+        program.executable,
+        program.trace_json,
+        copy / "generated" / "line.dbc",
+        scenario,
+        None,
+        copy / "report",
+    )
+    assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
+    assert outcome.observation is not None
+    assert outcome.observation.faults["Protection_Error"] == 0
