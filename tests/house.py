@@ -76,7 +76,7 @@ def record_names(example: str) -> tuple[str, ...]:
 
 
 def _bus() -> Target:
-    folder, obj = ROOT / "hw_can" / "bus", ROOT / "obj"
+    folder, obj = ROOT / "hw_can" / "server", ROOT / "obj"
     task = proving.Task(
         folder / "can_bus.gpr",
         {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
@@ -163,7 +163,7 @@ def check(_names: Sequence[str]) -> bool:
             for made in programs.programs_of(checked):
                 made.build(mode)
             print(f"{example}: builds without a warning ({mode})", flush=True)
-    others = (ROOT / "hw_can" / "bus" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")
+    others = (ROOT / "hw_can" / "server" / "can_bus.gpr", ROOT / "tests" / "ada" / "tests.gpr")
     for mode in ("checks", "release"):
         for project in others:
             options = ["-p", "-q", "-j0", "-P", project.name]

@@ -21,7 +21,7 @@ from ravenchart.tools import toolchain
 from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {
-    "loopback": ("loopback",),
+    "loopback": ("drivers/loopback",),
     "slcan": ("drivers/slcan", "drivers/tcp"),
     "bus": ("drivers/bus", "drivers/tcp"),
     "socketcan": ("drivers/socketcan",),

@@ -13,7 +13,7 @@ from ravenchart.tools import children, toolchain
 
 from . import bus_log
 
-PROJECT = ROOT / "hw_can" / "bus" / "can_bus.gpr"
+PROJECT = ROOT / "hw_can" / "server" / "can_bus.gpr"
 SECOND = 10**9
 """Of the simulated bus, in its own ticks: a bit must be a number of them."""
 

@@ -50,7 +50,7 @@ MODELS = sorted(
 """The models in one file."""
 
 SOURCES = (
-    "spark_runtime/src", "spark_runtime/native", "hw_can/hal", "hw_can/loopback",
+    "spark_runtime/src", "spark_runtime/native", "hw_can/hal", "hw_can/drivers/loopback",
     "hw_can/simulator",
 )  # fmt: skip
 SWITCHES = (

@@ -17,7 +17,7 @@ COMMON = (
     *("hw_can/hal", "hw_can/protocol", "hw_can/simulator", "tests/ada"),
 )
 MAINS = {
-    "hw_can/loopback": (
+    "hw_can/drivers/loopback": (
         "test_store",
         "test_calls",
         "test_regions",
