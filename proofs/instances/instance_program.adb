@@ -4,6 +4,8 @@
 with System;
 with Ada.Real_Time;
 with Instance_Bus;
+with Instance_Protection;
+pragma Unreferenced (Instance_Protection);
 with Instance_Simulator;
 pragma Unreferenced (Instance_Simulator);
 with Instance_Store;
