@@ -3,8 +3,8 @@
 --
 --  The first argument is how many faults of each kind are injected, 50 unless
 --  given; from 1_000 on the error patterns have three bits where the profile
---  finds as many, else two. With "print" as the argument: protected frames of every
---  setting, a line each, for a comparison with another implementation.
+--  finds as many, else two. With "print" as the argument: protected frames of
+--  every setting, a line each, for a comparison with another implementation.
 
 with Ada.Command_Line;
 with Ada.Text_IO;
