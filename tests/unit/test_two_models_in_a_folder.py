@@ -30,9 +30,9 @@ def test_each_main_file_has_its_own_folder_of_generated_files(tmp_path: Path) ->
     assert homes == [tmp_path / n for n in ("generated", "generated-slow", "generated-third")]
     assert _files(homes[1]).keys() == before.keys()
     assert _files(homes[1]) != before
-    programs = [programs.programs_of(one)[0] for one in (usual, other, third)]
-    assert len({one.home("slcan") for one in programs}) == 3
-    assert [one.project.parent for one in programs] == homes
+    made = [programs.programs_of(one)[0] for one in (usual, other, third)]
+    assert len({one.home("slcan") for one in made}) == 3
+    assert [one.project.parent for one in made] == homes
 
 
 def test_a_second_main_file_builds_beside_the_first(tmp_path: Path) -> None:
