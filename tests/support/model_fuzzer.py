@@ -1,4 +1,4 @@
-"""Models broken or bent at random: what `check` accepts, the compiler accepts without a warning.
+"""Models broken or bent at random: what `generate` accepts compiles without a warning.
 
 A seed picks a model of the checkout and one to four changes of it: another expression, number,
 unit or name, an entry that goes or comes twice. The compiler looks at the meaning of every
@@ -197,6 +197,7 @@ def tried(seed: int) -> Outcome:
         model.write_text(text, encoding="utf-8")
         try:
             checked = checking.check(model, deadlines=False, patience=PATIENCE)
+            generation.without_clashes(checked)
             files = generate(checked.system, generation.claims(checked))
         except Refused as refused:
             return Outcome(seed, "refused", str(refused))

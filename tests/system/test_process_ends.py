@@ -80,7 +80,7 @@ def test_a_bus_that_is_ended_ends_its_server(
 
 PARENT = """
 import sys, time
-from ravenchart import children
+from ravenchart.tools import children
 child = children.popen(["sh", "-c", "sleep 61 & setsid -w sleep 62 & trap '' TERM; sleep 63"])
 time.sleep(60)
 """
@@ -100,8 +100,8 @@ def test_children_of_children_end_with_a_killed_parent() -> None:
 
 WORKERS = """
 import time
-from gen.parallel import made_by_all
-from ravenchart import children
+from ravenchart.gen.parallel import made_by_all
+from ravenchart.tools import children
 made_by_all(lambda number: time.sleep(60), 4, lambda: time.sleep(60))
 """
 

@@ -99,9 +99,10 @@ def test_output_that_nobody_reads_is_no_error_with_words() -> None:
 
 BROKEN = """
 import sys
-from ravenchart import start, steps
+from ravenchart import start
+from ravenchart.building import checking
 def fails(*a, **k): raise IndexError("no such thing")
-steps.check = fails
+checking.check = fails
 raise SystemExit(start.main(["check", "model.yaml"]))
 """
 
