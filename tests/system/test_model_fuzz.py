@@ -1,4 +1,4 @@
-"""Models bent at random: `generate` refuses them, or the compiler takes their program without a word.
+"""Models bent at random: `generate` refuses them, or their program compiles without a warning.
 
 50 models; 2,000 with `make test-long`. Each seed makes the same model again:
 ``python -m tests.support.model_fuzzer SEED`` prints it and what is wrong with it.
