@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,6 @@ from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import (
     first_versions,
     generate,
-    source_folders,
     user_units,
 )
 from ravenchart.gen.model.claims import Claims
@@ -102,8 +102,9 @@ def write_program(checked: Checked) -> Written:
         if (folder / gone).parent != folder:
             with suppress(OSError):  # it is not empty, or was never there
                 (folder / gone).parent.rmdir()
-    first = write_first_versions(checked)
-    return Written(folder, len(files), changed, edited, first, _untouched(checked))
+    texts = first_versions(checked.system)
+    first = _write_absent(checked.folder, texts)
+    return Written(folder, len(files), changed, edited, first, _untouched(checked, texts))
 
 
 def _manifest(folder: Path) -> dict[str, str]:
@@ -132,19 +133,20 @@ def _digest(data: bytes) -> str:
 
 def write_first_versions(checked: Checked) -> tuple[Path, ...]:
     """Write what is the user's and not there yet; the files that were written."""
-    written = []
-    for place in source_folders(checked.system):
-        (checked.folder / place).mkdir(parents=True, exist_ok=True)
-    for name, text in first_versions(checked.system).items():
-        if not (checked.folder / name).exists():
-            replace_file(checked.folder / name, text)
-            written.append(checked.folder / name)
-    return tuple(written)
+    return _write_absent(checked.folder, first_versions(checked.system))
 
 
-def _untouched(checked: Checked) -> tuple[Path, ...]:
+def _write_absent(folder: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
+    """Write the texts whose files are not there; the files that were written."""
+    absent = [(folder / name, text) for name, text in texts.items() if not (folder / name).exists()]
+    for path, text in absent:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        replace_file(path, text)
+    return tuple(path for path, _ in absent)
+
+
+def _untouched(checked: Checked, texts: Mapping[str, str]) -> tuple[Path, ...]:
     """The units of the user that still do nothing: they are as first written."""
-    texts = first_versions(checked.system)
     units = ((checked.folder / name, texts[name]) for name in user_units(checked.system))
     return tuple(unit for unit, text in units if unit.read_bytes() == text.encode("utf-8"))
 
