@@ -105,8 +105,8 @@ def steps(python: str, programs: Path) -> tuple[Step, ...]:
         "socketcan",
         "--channel",
     )
-    driver = (python, "-P", "-m", "tests.hardware.driver_test")
-    fact = (python, "-P", "-m", "tests.hardware.fact_test")
+    driver = (python, "-P", "-m", "tests.hardware.driver")
+    fact = (python, "-P", "-m", "tests.hardware.fact")
     socketcan, ctucanfd = (
         programs / f"tests-{MODE}-{name}" / "bin" for name in ("socketcan", "ctucanfd")
     )

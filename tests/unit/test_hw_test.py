@@ -17,7 +17,7 @@ from ravenchart.tools import toolchain
 from tests.hardware import __main__ as hw_test
 from tests.hardware.__main__ import Step, Total, load_order, missing, script, steps, total
 from tests.hardware.driver_cases import Driver, cases
-from tests.hardware.fact_test import facts, junit
+from tests.hardware.fact import facts, junit
 
 DEPENDENCIES = """\
 kernel/drivers/net/can/sja1000/kvaser_pci.ko: kernel/sja1000.ko kernel/can-dev.ko

@@ -1,6 +1,6 @@
 """A test program in Ada, whose facts become JUnit XML.
 
-Run as ``python -P -m tests.hardware.fact_test [--junit FILE] PROGRAM [WORD ...]``. The program
+Run as ``python -P -m tests.hardware.fact [--junit FILE] PROGRAM [WORD ...]``. The program
 prints "ok <fact>" or "not ok <fact>" lines, as those of tests/ada do.
 """
 
@@ -55,7 +55,7 @@ def junit(name: str, found: tuple[Fact, ...]) -> str:
 
 def main() -> int:
     """0 when every fact holds, 1 otherwise, 2 when the program cannot be run."""
-    parser = argparse.ArgumentParser(prog="fact_test")
+    parser = argparse.ArgumentParser(prog="fact")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write JUnit XML there")
     parser.add_argument("command", nargs="+", metavar="PROGRAM")
     options = parser.parse_args()
@@ -66,7 +66,7 @@ def main() -> int:
             text=True, errors="replace", check=False,
         )  # fmt: skip
     except OSError as problem:
-        print(f"fact_test: error: {problem}", file=sys.stderr)
+        print(f"fact: error: {problem}", file=sys.stderr)
         return 2
     print(done.stdout, end="")
     found = facts(done.stdout, done.returncode)

@@ -1,6 +1,6 @@
 """A driver, in a program that echoes, tried by python-can on an interface of Linux.
 
-Run as ``python -P -m tests.hardware.driver_test PROGRAM INTERFACE``, where PROGRAM is
+Run as ``python -P -m tests.hardware.driver PROGRAM INTERFACE``, where PROGRAM is
 tests/ada/can_echo.adb, built with ``CAN_DRIVER=socketcan``. With ``--near``, python-can is on
 another interface of the same bus. As root, for the interface is taken down and up again. With
 ``--driver ctucanfd`` INTERFACE is what the program finds in RAVENCHART_CTUCANFD.
@@ -39,7 +39,7 @@ def tried(
 
 def main() -> int:
     """0 when nothing failed and something passed, 1 otherwise, 2 when nothing could be run."""
-    parser = argparse.ArgumentParser(prog="driver_test")
+    parser = argparse.ArgumentParser(prog="driver")
     parser.add_argument("program", type=Path, metavar="PROGRAM")
     parser.add_argument("channel", metavar="INTERFACE")
     parser.add_argument("--near", metavar="INTERFACE", help="of python-can (default: the same)")
@@ -57,7 +57,7 @@ def main() -> int:
             name=options.driver,
         )
     except (BenchError, OSError) as problem:
-        print(f"driver_test: error: {problem}", file=sys.stderr)
+        print(f"driver: error: {problem}", file=sys.stderr)
         return 2
     show(result)
     if options.junit is not None:
