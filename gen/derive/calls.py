@@ -75,6 +75,16 @@ def device_types(system: System) -> tuple[DeviceType, ...]:
     return tuple(dict.fromkeys(device.type for device in system.devices if device.type))
 
 
+def started(system: System) -> tuple[Device, ...]:
+    """The devices with operations at start or end, in model order."""
+    return tuple(d for d in system.devices if d.type is not None and d.type.lifecycle.given)
+
+
+def units_of(system: System, kind: DeviceType) -> tuple[Device, ...]:
+    """The devices of a type that are called, in model order."""
+    return tuple(device for device in system.devices if device.type == kind)
+
+
 def published_by(binding: Binding) -> str | None:
     """The data item of the provider that a read command reads; None where it does not."""
     if not isinstance(binding.provider, Server):

@@ -314,12 +314,21 @@ class _Sharing:
             yield self.made(f"{instance.name}.{item}", [*writers, *users])
 
     def devices(self) -> Iterable[SharedObject]:
-        """The devices that several tasks call: inside one, a driver works its longest."""
+        """The devices that several tasks call: inside one, a driver works its longest.
+
+        The main program starts a device and makes it safe; so does a supervisor in its place.
+        """
+        supervisors = [f"{n.name}.{SUPERVISOR}" for n in self.system.nodes if n.supervision]
         for device in self.system.devices:
+            if device.type is None:
+                continue
             users = [self.system.processor_of(row).name for row in callers(self.system, device)]
-            if device.type is not None and len(set(users)) > 1:
+            life = device.type.lifecycle
+            if life.given:
+                users += [MAIN, *(supervisors if life.make_safe is not None else ())]
+            if len(set(users)) > 1:
                 made = self.made(device.name, users)
-                longest = max(one.wcet for one in device.provides)
+                longest = max(*(one.wcet for one in device.provides), life.make_safe or Ns(0))
                 yield replace(made, section=max(made.section, longest))
 
     def writers(self, instance: str, port: str) -> Iterable[str]:

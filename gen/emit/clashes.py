@@ -9,6 +9,7 @@ unit. The elements that gave the name are reported.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -25,6 +26,9 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 from .program import Made, program, simulated_units
+
+OF_DEVICE_TYPE = re.compile("_(states|units|registers)$")
+"""Endings of the units that belong to a device type."""
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})
 """Words that no GNAT project can have as its name, beside those of Ada."""
@@ -76,6 +80,10 @@ def _elements(system: System) -> Iterator[_Element]:
     for device_type in device_types(system):
         for one in device_type.provides:
             yield _Element("command", one.name, one.command.origin, device_type.name)
+        for parameter in device_type.parameters:
+            yield _Element("parameter", parameter.name, parameter.origin, device_type.name)
+        for register in device_type.registers:
+            yield _Element("register", register.name, register.origin, device_type.name)
         yield _Element("device type", device_type.name, device_type.origin)
     yield from (_Element("device", d.name, d.origin) for d in system.devices)
     yield from (_Element("instance", i.name, i.origin) for i in system.instances)
@@ -114,7 +122,7 @@ def _culprits(system: System, text: str, unit: str) -> list[_Element]:
     parts = unit.lower().split(".")
     kinds = {i.name.lower(): i.component.name.lower() for i in system.instances}
     kinds |= {d.name.lower(): d.type.name.lower() for d in system.devices if d.type is not None}
-    owners = {kinds.get(part, part.removesuffix("_states")) for part in parts}
+    owners = {kinds.get(part, OF_DEVICE_TYPE.sub("", part)) for part in parts}
     apt = [e for e in near if e.owner.lower() in owners or not e.owner]
     apt = apt or near
     longest = max((len(e.name) for e in apt), default=0)

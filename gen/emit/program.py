@@ -18,6 +18,13 @@ from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.certificate.package import emit_certificate
 from ravenchart.gen.emit.charts.declared import emit_region
 from ravenchart.gen.emit.commands.devices import emit_devices, simulated_driver
+from ravenchart.gen.emit.commands.registers import (
+    HARDWARE,
+    hardware_bodies,
+    registers_package,
+    simulated_registers,
+    types_with_registers,
+)
 from ravenchart.gen.emit.components.first_bodies import first_bodies
 from ravenchart.gen.emit.components.packages import (
     emit_activities,
@@ -240,7 +247,12 @@ def _program_files(part: System, claims: Claims, whole: System) -> dict[str, str
     root = ada_case(part.name)
     files = _printed(program(part, claims, whole), root)
     up = "../" * (1 + folder_of(part, whole).count("/"))
-    files[f"{root.lower()}.gpr"] = project_text(part, source_folders(part), up)
+    maker = _Maker(part)
+    bodies = maker.made([*hardware_bodies(part, maker.header)])
+    for name, text in _printed(bodies, root).items():
+        files[f"{HARDWARE}/{name}"] = text
+    folders = source_folders(part), simulation_folders(part)
+    files[f"{root.lower()}.gpr"] = project_text(part, *folders, up)
     files["trace.json"] = trace_json(part)
     return files
 
@@ -256,7 +268,7 @@ def first_versions(system: System) -> dict[str, str]:
     Each compiles and is proved as it stands.
     """
     units = {name: print_unit(unit) for name, unit in _users(system)}
-    return {**units, **simulated_drivers(system)}
+    return {**units, **simulated_drivers(system), **simulated_access(system)}
 
 
 def _users(system: System) -> Iterator[tuple[str, Unit]]:
@@ -274,9 +286,29 @@ def _users(system: System) -> Iterator[tuple[str, Unit]]:
 
 
 def source_folders(system: System) -> tuple[str, ...]:
-    """Where the sources are that are not generated, below the model's folder."""
+    """Where the sources are that are not generated, below the model's folder.
+
+    Those of registers are not among them: see `simulation_folders`.
+    """
     files = (*user_units(system), *simulated_drivers(system))
     return tuple(dict.fromkeys(name.rpartition("/")[0] for name in files))
+
+
+def simulation_folders(system: System) -> tuple[str, ...]:
+    """Where simulated registers are, below the model's folder, and what they have in common."""
+    files = tuple(simulated_access(system))
+    folders = dict.fromkeys(name.rpartition("/")[0] for name in files)
+    return ("simulated", *folders) if folders else ()
+
+
+def simulated_access(system: System) -> dict[str, str]:
+    """File name below the model's folder to text: first versions of simulated registers."""
+    header = SIMULATED.format(system=system.name)
+    return {
+        f"simulated/{registers_package(kind).lower()}/{unit.file_name}": print_unit(unit)
+        for kind in types_with_registers(system)
+        for unit in (simulated_registers(system, kind, header),)
+    }
 
 
 def simulated_drivers(system: System) -> dict[str, str]:

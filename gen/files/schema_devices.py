@@ -7,7 +7,17 @@ from typing import Annotated, Literal
 from pydantic import Field as PydanticField
 from pydantic import Tag
 
-from .schema_base import Element, OwnedReference, PositiveSpan, Reference, key, optional, shaped
+from .schema_base import (
+    Constant,
+    Element,
+    Name,
+    OwnedReference,
+    PositiveSpan,
+    Reference,
+    key,
+    optional,
+    shaped,
+)
 
 
 class CommandForm(Element):
@@ -74,6 +84,23 @@ class ProvidedForm(Element):
     )
 
 
+class DeviceParameterForm(Element):
+    """A constant of a device, which its driver knows at compile time."""
+
+    type: Reference = key("A scalar type.")
+    default: Constant | None = optional("Value for devices that set none; without it all must.")
+
+
+class RegisterForm(Element):
+    """A register of a device: a word at an offset from the device's address."""
+
+    offset: int = key("Bytes from the address of the device; a multiple of its own size.", ge=0)
+    width: Literal[8, 16, 32] = PydanticField(default=32, description="Its bits: 8, 16 or 32.")
+    access: Literal["read", "write", "read_write"] = key(
+        "What the driver may do with it: `read`, `write` or `read_write`."
+    )
+
+
 class DeviceTypeForm(Element):
     """A type of device: a driver without a task of its own, called directly."""
 
@@ -84,7 +111,27 @@ class DeviceTypeForm(Element):
         "a first version is written.",
     )
     provides: dict[Reference, PositiveSpan] = key(
-        "Its commands, each with its worst-case execution time.", min_length=1
+        "Its commands, each with its worst-case execution time; an event of it is asked for "
+        "by whoever hears it.",
+        min_length=1,
+    )
+    parameters: dict[Name, DeviceParameterForm] | None = optional(
+        "Constants that each device may set."
+    )
+    registers: dict[Name, RegisterForm] | None = optional(
+        "Its registers, which its driver reads and writes; needs `body: user`."
+    )
+    initialise: PositiveSpan | None = optional(
+        "Worst-case execution time of the driver's `Initialise`, called once before the first "
+        "release; without the key there is none."
+    )
+    self_test: PositiveSpan | None = optional(
+        "Worst-case execution time of the driver's `Self_Test`, called once behind `Initialise`; "
+        "where it fails, the controller does not start."
+    )
+    make_safe: PositiveSpan | None = optional(
+        "Worst-case execution time of the driver's `Make_Safe`, called when the controller ends, "
+        "also by a failure; from then on the device executes no command that acts."
     )
 
 
@@ -92,6 +139,13 @@ class DeviceForm(Element):
     """A device, or several that are used as one."""
 
     type: Reference | None = optional("Its type: one piece of equipment.")
+    address: int | None = optional(
+        "Address of its first register in bytes, a multiple of 4; without it the registers are "
+        "simulated and nothing else.",
+        ge=0,
+        lt=2**64,
+    )
+    parameters: dict[Reference, Constant] | None = optional("Values of the type's parameters.")
     array: list[Reference] | None = optional(
         "Devices of one kind as one: a command goes to all, and axes are counted on.", min_length=2
     )

@@ -45,6 +45,7 @@ CHILDREN = {
     "trace": "the trace",
     "hosts": "the package of the host's services",
     "main": "the main program",
+    "device_lifecycle": "the package that starts and ends devices",
     "types": "the package of the model's types",
 }
 """Child packages that every system has, by lower-case name."""

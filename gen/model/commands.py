@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from ravenchart.gen.language.terms import Ns, Type, Value, named
+from ravenchart.gen.language.terms import Ns, Scalar, ScalarType, Type, Value, named
 from ravenchart.gen.origins import Origin
 
 
@@ -152,6 +152,69 @@ class DriverCommand:
 
 
 @dataclass(frozen=True, slots=True)
+class DeviceParameter:
+    """A constant of each device of a type."""
+
+    name: str
+    origin: Origin
+    type: ScalarType
+    default: Scalar | None
+
+
+class Access(Enum):
+    """What a driver may do with a register."""
+
+    READ = "read"
+    WRITE = "write"
+    READ_WRITE = "read_write"
+
+    @property
+    def reads(self) -> bool:
+        """Whether it may be read."""
+        return self is not Access.WRITE
+
+    @property
+    def writes(self) -> bool:
+        """Whether it may be written."""
+        return self is not Access.READ
+
+
+@dataclass(frozen=True, slots=True)
+class Register:
+    """A register of a device: ``width`` bits, ``offset`` bytes behind the device's address."""
+
+    name: str
+    origin: Origin
+    offset: int
+    width: int
+    access: Access
+
+    @property
+    def end(self) -> int:
+        """The first byte behind it."""
+        return self.offset + self.width // 8
+
+
+@dataclass(frozen=True, slots=True)
+class Lifecycle:
+    """Worst-case execution times of a driver's operations at start and end; None: it has none."""
+
+    initialise: Ns | None = None
+    self_test: Ns | None = None
+    make_safe: Ns | None = None
+
+    @property
+    def start(self) -> Ns:
+        """What a device takes before the first release."""
+        return Ns((self.initialise or 0) + (self.self_test or 0))
+
+    @property
+    def given(self) -> bool:
+        """Whether there is any."""
+        return any(one is not None for one in (self.initialise, self.self_test, self.make_safe))
+
+
+@dataclass(frozen=True, slots=True)
 class DeviceType:
     """A type of device: one driver."""
 
@@ -160,6 +223,20 @@ class DeviceType:
     axes: int
     simulated: bool
     provides: tuple[DriverCommand, ...]
+    parameters: tuple[DeviceParameter, ...] = ()
+    registers: tuple[Register, ...] = ()
+    """Those that the driver uses: a simulated one uses none."""
+    lifecycle: Lifecycle = Lifecycle()
+
+    @property
+    def span(self) -> int:
+        """The bytes from the address of a device to the end of its last register."""
+        return max((one.end for one in self.registers), default=0)
+
+    @property
+    def tells_apart(self) -> bool:
+        """Whether its driver is told which device it works for."""
+        return bool(self.parameters or self.registers)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +250,9 @@ class Device:
     members: tuple[Device, ...]
     provides: tuple[DriverCommand, ...]
     axes: int
+    address: int | None = None
+    """Of its registers, in bytes; None: they are simulated and nothing else."""
+    values: tuple[tuple[DeviceParameter, Scalar], ...] = ()
 
     def leaves(self) -> tuple[Device, ...]:
         """The pieces of equipment in it."""

@@ -25,6 +25,7 @@ from ravenchart.gen.model.commands import (
 from ravenchart.gen.model.system import Instance
 from ravenchart.gen.origins import Origin
 
+from .equipment import address_of, apart, lifecycle_of, parameters_of, registers_of, values_of
 from .interfaces import at_axes
 
 
@@ -76,9 +77,21 @@ def device_type_of(
         elif command is not None:
             made = DriverCommand(command, *at_axes(command, form.axes, types), Ns(wcet))
             found.declare(command.name, at, made, findings)
-    if len(found.sound()) < len(form.provides) or form.damaged:
+    parameters, registers = parameters_of(form, types, findings), registers_of(form, findings)
+    lost = form.damaged or parameters is None or registers is None
+    if len(found.sound()) < len(form.provides) or lost:
         return None
-    return DeviceType(name, form.origin, form.axes, form.body == "simulated", found.sound())
+    simulated = form.body == "simulated"
+    return DeviceType(
+        name,
+        form.origin,
+        form.axes,
+        simulated,
+        found.sound(),
+        parameters or (),
+        () if simulated else registers or (),
+        lifecycle_of(form),
+    )
 
 
 @dataclass(slots=True)
@@ -100,6 +113,7 @@ class Devices:
         """Every device."""
         for name in self.forms.names():
             self._make(name)
+        apart((one for one in self.scope.sound() if isinstance(one, Device)), self.findings)
         return self.scope
 
     def provider(self, text: str, origin: Origin) -> Provider | None:
@@ -160,7 +174,16 @@ class Devices:
             kind = self.kinds.look_up(form.type, form.at("type"), self.findings)
             if kind is None:
                 return None
-            return Device(name, form.origin, kind, (), kind.provides, kind.axes)
+            values = values_of(name, form, kind, self.findings)
+            if not address_of(name, form, kind, self.findings) or values is None:
+                return None
+            address = form.address if kind.registers else None
+            return Device(name, form.origin, kind, (), kind.provides, kind.axes, address, values)
+        for key in ("address", "parameters"):
+            if form.has(key):
+                message = f"`{key}` has no meaning for {name}, which is made of other devices"
+                hint = "give it to the devices that have a `type`"
+                self.findings.error("RV-1210", form.at_key(key), message, hint=hint)
         key = "array" if form.has("array") else "facade"
         members = self._members(form, key)
         if members is None:

@@ -6,7 +6,7 @@ that its uses are not reported as well.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -14,7 +14,7 @@ from ravenchart.gen.derive.distribution import Carrier, placed
 from ravenchart.gen.derive.identifiers import identified
 from ravenchart.gen.derive.remote import calling
 from ravenchart.gen.files.schema import ModelFile
-from ravenchart.gen.files.schema_devices import DeviceForm
+from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
 from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
 from ravenchart.gen.model.commands import Binding, DeviceType
@@ -152,8 +152,9 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
 def _check_units(model: Merged, system: str, findings: Findings) -> None:
     """Names that become child units of the system must differ from each other and from others."""
     taken = {
-        f"{name}_states".lower(): ("state of the device type", name, form.origin)
+        f"{name}_{ending}".lower(): (f"{what} of the device type", name, form.origin)
         for name, form in model.entries("device_types")
+        for ending, what in _parts_of_driver(form)
     }
     for section, kind in (
         ("components", "component"),
@@ -181,6 +182,15 @@ def _check_units(model: Merged, system: str, findings: Findings) -> None:
                 notes = [(known[2], f"the {known[0]} is here")]
                 hint = "both become units of the generated program: rename one"
                 findings.error("RV-0304", form.origin, message, notes=notes, hint=hint)
+
+
+def _parts_of_driver(form: DeviceTypeForm) -> Iterator[tuple[str, str]]:
+    """Ending and meaning of each unit that a device type has beside its driver."""
+    yield "states", "state"
+    if form.parameters or form.registers:
+        yield "units", "list of devices"
+    if form.registers:
+        yield "registers", "register access"
 
 
 @dataclass(slots=True)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.calls import callers
+from ravenchart.gen.derive.calls import callers, started
 from ravenchart.gen.derive.remote import is_across, obstacle
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.quantities import shown
-from ravenchart.gen.model.commands import Remote
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.commands import Device, Remote
+from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.system import Resolved
 
@@ -23,6 +25,16 @@ SILENCE = "RV-0712"
 
 UNHEARD = "RV-0713"
 """An event of the silence of a processor for which only that processor waits."""
+
+START = "RV-1218"
+"""Devices that take too long to start."""
+
+LONGEST_START = Ns(100_000_000)
+"""The time in ns that all devices of a node together have for `initialise` and `self_test`.
+
+The first release is 200 ms behind the elaboration of the program; half of it is left for the
+activation of tasks.
+"""
 
 BUFFERS = 8
 """Transmit buffers that the drivers with buffers by priority fill."""
@@ -125,6 +137,28 @@ def supervision_has_one_core(resolved: Resolved) -> Iterator[Diagnostic]:
             yield error(SILENCE, node.origin, text, hint=hint)
 
 
+def devices_start_in_time(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The devices of a node are initialised and tested before the first release."""
+    system = resolved.system
+    for node in system.nodes:
+        own = [device for device in started(system) if _home(system, device) == node.name]
+        time = sum(device.type.lifecycle.start for device in own if device.type is not None)
+        if time > LONGEST_START:
+            text = (
+                f"the devices of {node.name} take {shown(time)} for `initialise` and `self_test`; "
+                f"the limit is {shown(LONGEST_START)}"
+            )
+            notes = [(device.origin, f"{device.name} is one of them") for device in own]
+            hint = "shorten them, or let a component do the rest by commands"
+            yield error(START, node.origin, text, notes=notes, hint=hint)
+
+
+def _home(system: System, device: Device) -> str:
+    """The node whose rows call a device."""
+    row = callers(system, device)[0]
+    return system.instance(row.partition(".")[0]).node
+
+
 def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
     """By priority, each message that a node sends has a transmit buffer for itself."""
     system = resolved.system
@@ -160,4 +194,5 @@ NODE_RULES = (
     raised_events_are_near,
     silence_is_seen,
     supervision_has_one_core,
+    devices_start_in_time,
 )

@@ -92,7 +92,7 @@ def write_program(checked: Checked) -> Written:
         (folder / name).replace(folder / f"{name}{EDITED}")
     changed = 0
     for name, text in files.items():
-        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         changed += replace_file(folder / name, text)
     digests = {name: _digest(text.encode("utf-8")) for name, text in sorted(files.items())}
     listed = "".join(f"{digest}  {name}\n" for name, digest in digests.items())
@@ -152,9 +152,9 @@ def _untouched(checked: Checked, texts: Mapping[str, str]) -> tuple[Path, ...]:
 
 
 def _is_inside(name: str) -> bool:
-    """Whether a generated file can have that name: one of generated/, or of a node's folder."""
+    """Whether a generated file can have that name: in generated/, or one or two folders below."""
     parts = Path(name).parts
-    return len(parts) in (1, 2) and ".." not in parts and not Path(name).is_absolute()
+    return len(parts) in (1, 2, 3) and ".." not in parts and not Path(name).is_absolute()
 
 
 def replace_file(path: Path, text: str) -> bool:

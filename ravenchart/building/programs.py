@@ -10,10 +10,13 @@ from pathlib import Path
 
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.completion import programs
+from ravenchart.gen.emit.commands.lifecycle import FAILURES, RUNTIME_FOLDER, has_lifecycle
+from ravenchart.gen.emit.commands.registers import HARDWARE, types_with_registers
 from ravenchart.gen.emit.program import (
     folder_of,
     source_folders,
 )
+from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
 from ravenchart.tools import toolchain
@@ -31,6 +34,8 @@ DRIVER_FOLDERS = {
 
 
 DRIVERS = tuple(DRIVER_FOLDERS)
+REGISTERS = ("simulated", HARDWARE)
+"""What the registers of devices can be: see the project file of a program."""
 RUNTIME_FOLDERS = (
     "spark_runtime/src",
     "spark_runtime/native",
@@ -76,19 +81,34 @@ class Program:
         """The scenario variables of a build: mode, CAN driver, and where objects go."""
         return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(self.home(driver))}
 
-    def build(self, mode: str = "checks", driver: str | None = None) -> Path:
+    def build(
+        self, mode: str = "checks", driver: str | None = None, registers: str = "simulated"
+    ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words.
 
-        Refused where ``driver`` cannot do what the model wants.
+        Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
+        hardware where a device has no address.
         """
         chosen = driver or default_driver(self.checked)
         check_driver(self.checked, chosen)
-        variables = self.scenario(mode, chosen)
+        if registers == HARDWARE:
+            self._check_addresses()
+        variables = {**self.scenario(mode, chosen), "RAVENCHART_REGISTERS": registers}
         options = ["-p", "-q", "-j0", "-P", self.project.name]
         warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
         if warnings.strip():
             print(warnings.rstrip(), file=sys.stderr)
         return self.home(chosen) / f"{self.checked.stem}_main"
+
+    def _check_addresses(self) -> None:
+        """Refused where a device with registers has no address."""
+        for device in self.part.devices:
+            if device.type is not None and device.type.registers and device.address is None:
+                raise Refused(
+                    f"{device.origin}: error: the device {device.name} has no address, so its "
+                    f"registers are simulated\n{device.origin}: hint: give it `address: ...`, or "
+                    "build without `--registers hardware`"
+                )
 
     def proved_units(self) -> tuple[str, ...]:
         """The files that are proved, where bodies of components of other programs lie beside them.
@@ -107,23 +127,38 @@ class Program:
         }
         return tuple(sorted((bodies | specs) - others)) if others else ()
 
+    @property
+    def part(self) -> System:
+        """What of the system it is."""
+        return next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
+
+    def outside_spark(self) -> dict[str, str]:
+        """What of the runtime is outside SPARK among its sources, with the reason."""
+        return {FAILURES: "ASM-019"} if has_lifecycle(self.part) else {}
+
     def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> Task:
         """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""
         own = self.home(driver) / "checks" / "gnatprove"
         runtime = work() / "obj" / f"checks-{driver}" / "gnatprove"
+        read = (self.generated, *self._user_folders(), *runtime_folders(driver))
+        scenario = self.scenario("checks", driver)
+        if has_lifecycle(self.part):
+            read = (*read, ROOT / RUNTIME_FOLDER)
+        if types_with_registers(self.part):
+            read = (*read, self.generated / HARDWARE)
+            scenario["RAVENCHART_REGISTERS"] = HARDWARE
         return Task(
             self.project,
-            self.scenario("checks", driver),
+            scenario,
             (own, runtime) if whole else (own,),
-            (self.generated, *self._user_folders(), *runtime_folders(driver)),
+            read,
             warnings=warnings,
             whole=whole,
             units=self.proved_units(),
         )
 
     def _user_folders(self) -> tuple[Path, ...]:
-        part = next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
-        return tuple(self.checked.folder / place for place in source_folders(part))
+        return tuple(self.checked.folder / place for place in source_folders(self.part))
 
 
 def programs_of(checked: Checked) -> tuple[Program, ...]:

@@ -18,6 +18,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--mode", choices=("checks", "release"), default="checks",
         help="checks: every contract is executed; release: -O2, proof stands for checks",
     )  # fmt: skip
+    sub.add_argument(
+        "--registers", choices=programs.REGISTERS, default="simulated",
+        help="simulated: the bodies in simulated/; hardware: at the addresses of the devices",
+    )  # fmt: skip
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -25,5 +29,5 @@ def execute(options: argparse.Namespace) -> int:
     checked = common.checked(options)
     common.tell_written(generation.write_program(checked))
     for made in programs.programs_of(checked):
-        print(f"built {made.build(options.mode, options.driver)}")
+        print(f"built {made.build(options.mode, options.driver, options.registers)}")
     return OK

@@ -23,13 +23,15 @@ from ravenchart.building.programs import build_home
 from ravenchart.failures import OK, Refused, ToolFailed
 from ravenchart.gen.derive.distribution import as_one
 from ravenchart.gen.diagnostics import Diagnostic, error, render, render_all, warning
+from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
 from ravenchart.gen.emit.nodes.simulation import numbers
 from ravenchart.gen.emit.nodes.simulation import stimuli as stimuli_of_system
-from ravenchart.gen.emit.program import simulation, source_folders
+from ravenchart.gen.emit.program import simulation, simulation_folders, source_folders
 from ravenchart.gen.files.load import LARGEST, read_file
 from ravenchart.gen.files.located import lines_of
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
+from ravenchart.paths import ROOT
 from ravenchart.tools import children, toolchain
 
 from . import common
@@ -98,7 +100,10 @@ def build_simulation(system: System, folder: Path, home: Path) -> Path:
     for name, text in files.items():
         replace_file(source / name, text)
     project = next(name for name in files if name.endswith(".gpr"))
-    places = [str((folder / place).resolve()) for place in source_folders(system)]
+    written = (*source_folders(system), *simulation_folders(system))
+    places = [str((folder / place).resolve()) for place in written]
+    if has_lifecycle(system):
+        places.append(str(ROOT / RUNTIME_FOLDER))
     given = {"RAVENCHART_USER": ",".join(places)} if places else {}
     toolchain.run("gprbuild", ["-p", "-q", "-j0", "-P", project], source, given)
     return home / project.removesuffix(".gpr")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from ravenchart.gen.derive.calls import called, callers, device_types
 from ravenchart.gen.emit.ada.naming import (
     ada_case,
@@ -11,7 +13,9 @@ from ravenchart.gen.emit.ada.naming import (
     type_name,
 )
 from ravenchart.gen.emit.ada.syntax import (
+    FALSE,
     SPARK,
+    TRUE,
     Aggregate,
     Arg,
     Aspect,
@@ -21,10 +25,12 @@ from ravenchart.gen.emit.ada.syntax import (
     Decl,
     Do,
     Expr,
+    If,
     Object,
     Package,
     Param,
     PlainType,
+    Pragma,
     Protected,
     Ref,
     Stmt,
@@ -32,11 +38,22 @@ from ravenchart.gen.emit.ada.syntax import (
     Unit,
     UseType,
     arguments,
+    number,
 )
 from ravenchart.gen.emit.ada.syntax import RecordType as AdaRecord
 from ravenchart.gen.language.terms import RecordType, Type
-from ravenchart.gen.model.commands import Device, DeviceType, DriverCommand
+from ravenchart.gen.model.commands import CommandKind, Device, DeviceType, DriverCommand
 from ravenchart.gen.model.system import System
+
+from .lifecycle import emit_lifecycle, lifecycle_bodies, lifecycle_specs
+from .registers import (
+    chosen,
+    emit_units,
+    registers_package,
+    registers_state,
+    told_apart,
+    units_package,
+)
 
 INLINE = Aspect("Inline_Always")
 """A direct call costs what a call of the driver costs."""
@@ -44,13 +61,16 @@ INLINE = Aspect("Inline_Always")
 
 def emit_devices(system: System, header: str) -> tuple[Unit, ...]:
     """The specs of the drivers, then the devices, pieces before what is made of them."""
-    units = [_driver(system, kind, header) for kind in device_types(system)]
+    units: list[Unit] = []
+    for kind in device_types(system):
+        units += (*emit_units(system, kind, header), _driver(system, kind, header))
     for device in system.devices:
         units += (
             _array(system, device, header)
             if device.type is None
             else _piece(system, device, device.type, header)
         )
+    units += emit_lifecycle(system, header)
     return tuple(units)
 
 
@@ -83,33 +103,63 @@ def _passed(command: DriverCommand) -> tuple[Arg, ...]:
 def _driver(system: System, kind: DeviceType, header: str) -> Unit:
     """The spec of a driver; its body is the user's, or a simulated one."""
     items: list[Decl] = []
-    for command in kind.provides:
-        own = Param("Device", "in out", _state(kind))
-        params = (own, *_params(system, command))
-        null = (Aspect("Global", Ref("null")),)
-        items.append(Subprogram(ada_case(command.name), params, aspects=null))
-        items.append(Comment(f"[{kind.name}.{command.name}] budget {command.wcet:_} ns"))
-    name = f"{root_package(system)}.{ada_case(kind.name)}"
-    return Unit(header, (states_package(system, kind),), Package(name, tuple(items), (SPARK,)))
+    used = Ref(f"(In_Out => {registers_state(kind)})") if kind.registers else Ref("null")
+    uses = (Aspect("Global", used),)
+    for operation, what, wcet in _operations(system, kind):
+        items.append(Subprogram(operation.name, operation.params, aspects=uses))
+        items.append(Comment(f"[{kind.name}{what}] budget {wcet:_} ns"))
+    root = root_package(system)
+    withs = {states_package(system, kind)}
+    withs |= {f"{root}.{units_package(kind)}"} if kind.tells_apart else set()
+    withs |= {f"{root}.{registers_package(kind)}"} if kind.registers else set()
+    name = f"{root}.{ada_case(kind.name)}"
+    return Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))
+
+
+def _operations(system: System, kind: DeviceType) -> Iterator[tuple[Subprogram, str, int]]:
+    """Each procedure of a driver without its body, what it is in the model, and its time."""
+    own: tuple[Param, ...] = (*told_apart(kind), Param("Device", "in out", _state(kind)))
+    life = kind.lifecycle
+    passed = Param("Passed", "out", "Boolean")
+    for name, wcet in (("Initialise", life.initialise), ("Self_Test", life.self_test)):
+        if wcet is not None:
+            yield Subprogram(name, (*own, passed)), "", wcet
+    if life.make_safe is not None:
+        yield Subprogram("Make_Safe", own), "", life.make_safe
+    for one in kind.provides:
+        params = (*own, *_params(system, one))
+        yield Subprogram(ada_case(one.name), params), f".{one.name}", one.wcet
 
 
 def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Unit, Unit]:
     """What a simulated device remembers, and a body that gives it back: a starting point."""
     kept = [Component("Calls", "Call_Count", Ref("0"))]
     bodies: list[Decl] = []
-    for command in kind.provides:
-        name = ada_case(command.name)
+    given = {ada_case(one.name): one for one in kind.provides}
+    for operation, what, _ in _operations(system, kind):
+        name = operation.name
         steps: list[Stmt] = [Assign("Device.Calls", Ref("Device.Calls + 1"))]
-        for of_type, slot in ((command.argument, name), (command.reply, f"{name}_Reply")):
-            if of_type is not None:
-                start = default_value(system, of_type)
-                kept.append(Component(slot, type_name(system, of_type), start))
-        if command.argument is not None:
-            steps.append(Assign(f"Device.{name}", Ref("Argument")))
-        if command.reply is not None:
-            steps.append(Assign("Reply", Ref(f"Device.{name}_Reply")))
-        params = (Param("Device", "in out", _state(kind)), *_params(system, command))
-        bodies.append(Subprogram(name, params, body=tuple(steps)))
+        if not what:
+            steps += [Assign("Passed", TRUE)] if name != "Make_Safe" else []
+        else:
+            command = given[name]
+            for of_type, slot in ((command.argument, name), (command.reply, f"{name}_Reply")):
+                if of_type is not None:
+                    start = default_value(system, of_type)
+                    kept.append(Component(slot, type_name(system, of_type), start))
+            if command.argument is not None:
+                steps.append(Assign(f"Device.{name}", Ref("Argument")))
+            if command.reply is not None:
+                steps.append(Assign("Reply", Ref(f"Device.{name}_Reply")))
+        declarations, touched = _first_access(kind)
+        bodies.append(
+            Subprogram(
+                name,
+                operation.params,
+                declarations=declarations,
+                body=(*touched, *steps),
+            )
+        )
     items: tuple[Decl, ...] = (
         PlainType("Call_Count", "mod 2 ** 32"),
         Comment("Arguments as they were given last, and replies as they will be given."),
@@ -119,7 +169,23 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
     name = f"{root_package(system)}.{ada_case(kind.name)}"
     uses = UseType(f"{ada_case(kind.name)}_States.Call_Count")
     body = Package(name, (uses, *bodies), (SPARK,), is_body=True)
-    return Unit(header, (), spec), Unit(header, (), body)
+    withs = ("Interfaces",) if any(r.access.reads for r in kind.registers) else ()
+    return Unit(header, (), spec), Unit(header, withs, body)
+
+
+def _first_access(kind: DeviceType) -> tuple[tuple[Decl, ...], tuple[Stmt, ...]]:
+    """One access to a register, by which a first version keeps its contract."""
+    if not kind.registers:
+        return ((Pragma("Unreferenced", (Ref("Unit"),)),) if kind.tells_apart else ()), ()
+    one = next((r for r in kind.registers if r.access.reads), kind.registers[0])
+    name = ada_case(one.name)
+    if not one.access.reads:
+        write = f"{registers_package(kind)}.Write_{name}"
+        return (), (Do(write, arguments(Ref("Unit"), number(0))),)
+    seen = Object("Unused_Word", f"Interfaces.Unsigned_{one.width}")
+    return (seen,), (
+        Do(f"{registers_package(kind)}.Read_{name}", arguments(Ref("Unit"), Ref(seen.name))),
+    )
 
 
 # --- Pieces of equipment -----------------------------------------------------------
@@ -128,33 +194,32 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
 def _piece(system: System, device: Device, kind: DeviceType, header: str) -> list[Unit]:
     """A device with what it remembers; in a protected object where several tasks call it."""
     name = f"{root_package(system)}.{ada_case(device.name)}"
-    commands = called(system, device)
     driver = ada_case(kind.name)
-    own = Comment(f"[{device.name}] called by {', '.join(callers(system, device))}")
+    to_driver = (*chosen(kind, device), Arg(None, Ref("Own")))
     works = [
-        Subprogram(
-            ada_case(one.name),
-            _params(system, one),
-            body=(Do(f"{driver}.{ada_case(one.name)}", (Arg(None, Ref("Own")), *_passed(one))),),
-        )
-        for one in commands
+        *lifecycle_bodies(device, driver, to_driver),
+        *(_work(system, kind, one, to_driver) for one in called(system, device)),
     ]
-    items: list[Decl] = [own]
+    items: list[Decl] = [Comment(f"[{device.name}] called by {', '.join(callers(system, device))}")]
     withs = [f"{root_package(system)}.{driver}", states_package(system, kind)]
+    if kind.tells_apart:
+        withs.append(f"{root_package(system)}.{units_package(kind)}")
     if system.has_object(device.name):
         withs.append("System")
         ceiling = Aspect("Priority", priority(system.object(device.name).ceiling))
         specs = tuple(Subprogram(w.name, w.params) for w in works)
-        kept = (Object("Own", _state(kind)),)
+        kept: tuple[Object, ...] = (Object("Own", _state(kind)),)
+        if kind.lifecycle.given:
+            kept += (Object("Is_Ready", "Boolean", FALSE),)
         items.append(Protected("Guard", specs, kept, (ceiling,)))
         items.append(Protected("Guard", tuple(works)))
         items += [
             Subprogram(
-                ada_case(one.name),
-                _params(system, one),
-                body=(Do(f"Guard.{ada_case(one.name)}", _passed(one)),),
+                one.name,
+                one.params,
+                body=(Do(f"Guard.{one.name}", tuple(Arg(None, Ref(p.name)) for p in one.params)),),
             )
-            for one in commands
+            for one in works
         ]
     else:
         items.append(Object("Own", _state(kind)))
@@ -163,8 +228,21 @@ def _piece(system: System, device: Device, kind: DeviceType, header: str) -> lis
     return [_spec(system, device, name, header), Unit(header, tuple(sorted(withs)), body)]
 
 
+def _work(
+    system: System, kind: DeviceType, command: DriverCommand, own: tuple[Arg, ...]
+) -> Subprogram:
+    """A command of a device: of one that is not ready, only what reads is executed."""
+    does = Do(f"{ada_case(kind.name)}.{ada_case(command.name)}", (*own, *_passed(command)))
+    steps: tuple[Stmt, ...] = (does,)
+    if kind.lifecycle.given and command.command.kind is not CommandKind.READ:
+        steps = (If(((Ref("Is_Ready"), steps),)),)
+        if command.reply is not None:
+            steps = (Assign("Reply", default_value(system, command.reply)), *steps)
+    return Subprogram(ada_case(command.name), _params(system, command), body=steps)
+
+
 def _spec(system: System, device: Device, name: str, header: str) -> Unit:
-    items: list[Decl] = []
+    items: list[Decl] = [*lifecycle_specs(device)]
     for one in called(system, device):
         items.append(Subprogram(ada_case(one.name), _params(system, one), aspects=(INLINE,)))
         items.append(Comment(f"[{device.name}.{one.name}] budget {one.wcet:_} ns"))
@@ -189,13 +267,13 @@ def _to_all(system: System, device: Device, command: DriverCommand) -> Subprogra
     calls: list[Stmt] = []
     gathered: list[Arg] = []
     first = 1
-    for number, member in enumerate(device.members, 1):
+    for place, member in enumerate(device.members, 1):
         one = member.command(command.name)
         args: list[Arg] = []
         if one.argument is not None:
             args.append(Arg(None, _cut(one, first, member.axes)))
         if one.reply is not None:
-            part = f"Part_{number}"
+            part = f"Part_{place}"
             declarations.append(Object(part, type_name(system, one.reply)))
             args.append(Arg(None, Ref(part)))
             gathered += _fields(part, one.reply, first, member.axes)

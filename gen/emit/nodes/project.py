@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
+from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.model.system import System
 
 _TEXT = """\
@@ -17,8 +19,7 @@ project {name} is
    Build := external ("RAVENCHART_BUILD", "{up}build");
    --  Where objects and the program go.
 
-   for Source_Dirs use{sources};
-   for Object_Dir use Build & "/" & Ravenchart.Mode;
+{sources}   for Object_Dir use Build & "/" & Ravenchart.Mode;
    for Exec_Dir use Build;
    for Create_Missing_Dirs use "True";
    for Main use ("{main}.adb");
@@ -35,20 +36,46 @@ end {name};
 """
 
 
-def project_text(system: System, folders: Sequence[str], up: str) -> str:
+_CHOSEN = """\
+   type Register_Kind is ("simulated", "hardware");
+   Registers : Register_Kind :=
+     external ("RAVENCHART_REGISTERS", "simulated");
+   --  What drivers reach: simulated registers, or those at the addresses of
+   --  the model.
+
+   Folders :=
+     {folders};
+   case Registers is
+      when "simulated" =>
+         Folders := Folders &
+           {simulated};
+      when "hardware" =>
+         Folders := Folders & ("{hardware}");
+   end case;
+
+   for Source_Dirs use Folders;
+"""
+
+
+def project_text(system: System, folders: Sequence[str], simulated: Sequence[str], up: str) -> str:
     """The project file; it finds the runtime through GPR_PROJECT_PATH.
 
     ``folders`` have the sources that are not generated, below the model's folder, to which
-    ``up`` leads.
+    ``up`` leads; ``simulated`` those of simulated registers.
     """
-    gap = ", " if len(folders) < 2 else ",\n      "
-    sources = gap.join(('"."', *(f'"{up}{folder}"' for folder in folders)))
-    start = " " if len(folders) < 2 else "\n     "
     name = ada_case(system.name)
     main = f"{name.lower()}_main"
-    return _TEXT.format(
-        model=system.name, name=name, main=main, up=up, sources=f"{start}({sources})"
-    )
+    own = ['"."', *(f'"{up}{folder}"' for folder in folders)]
+    if has_lifecycle(system):
+        own.append(f'Ravenchart\'Project_Dir & "{RUNTIME_FOLDER}"')
+    gap = ", " if len(own) < 3 else ",\n      "
+    start = " " if len(own) < 3 else "\n     "
+    sources = f"   for Source_Dirs use{start}({gap.join(own)});\n"
+    if simulated:
+        others = ",\n            ".join(f'"{up}{folder}"' for folder in simulated)
+        joined = ",\n      ".join(own)
+        sources = _CHOSEN.format(folders=f"({joined})", simulated=f"({others})", hardware=HARDWARE)
+    return _TEXT.format(model=system.name, name=name, main=main, up=up, sources=sources)
 
 
 _SIMULATION = """\

@@ -16,6 +16,7 @@ from ravenchart.gen.emit.ada.syntax import (
     Loop,
     Object,
     Package,
+    Prefix,
     Ref,
     Say,
     Stmt,
@@ -29,6 +30,8 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE
+from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
+from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import element_constant, row_number, traced
 from ravenchart.gen.model.system import Processor, System
@@ -176,15 +179,19 @@ def emit_main(system: System, header: str) -> Unit:
         for i, e in system.shutdown.raises
     ]
     steps = -(-system.shutdown.grace // POLL_NS)
+    begins = has_lifecycle(system)
+    started = (do(f"{root}.{LIFECYCLE}.Start_All", Ref("Started")),) if begins else ()
+    ended = Chain("or else", (Ref("Stop"), Prefix("not", Ref("Started"))))
     body: list[Stmt] = [
         Do("Ravenchart.Hosts.Start"),
         do("Ravenchart.Hosts.Put_Model", Ref(f"{root}.{CERTIFICATE}.Model_Digest")),
+        *started,
         Loop(
             "",
             (
                 *drain,
                 Assign("Stop", Ref("Ravenchart.Hosts.Stop_Requested")),
-                If(((Ref("Stop"), (Say("exit"),)),)),
+                If(((ended if begins else Ref("Stop"), (Say("exit"),)),)),
                 *wait,
             ),
         ),
@@ -196,10 +203,11 @@ def emit_main(system: System, header: str) -> Unit:
         *safe_state(system),
         *drain,
         Do(f"{root}.Reports.Put_All"),
-        Do("Ravenchart.Hosts.Finish", arguments(Success=TRUE)),
+        Do("Ravenchart.Hosts.Finish", arguments(Success=Ref("Started") if begins else TRUE)),
     ]
     withs = {"Ada.Real_Time", "Ravenchart.Hosts", "System", f"{root}.Reports"}
     withs.add(f"{root}.{CERTIFICATE}")
+    withs |= {f"{root}.{LIFECYCLE}"} if begins else set()
     withs |= {f"{root}.{ada_case(i)}" for i, _ in system.shutdown.raises}
     withs |= {
         f"{root}.{ada_case(system.instance(i).component.name)}" for i, _ in system.shutdown.raises
@@ -220,6 +228,7 @@ def emit_main(system: System, header: str) -> Unit:
                 ),
                 Object("Next", "Ada.Real_Time.Time", Ref("Ada.Real_Time.Clock")),
                 Object("Stop", "Boolean"),
+                *((Object("Started", "Boolean"),) if begins else ()),
             ),
             body=tuple(body),
         ),

@@ -25,7 +25,9 @@ from ravenchart.gen.emit.ada.syntax import (
     Object,
     Param,
     PlainType,
+    Prefix,
     Ref,
+    Say,
     Stmt,
     Subprogram,
     Unit,
@@ -36,6 +38,8 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
+from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
@@ -91,6 +95,7 @@ def emit_simulation(system: System, header: str) -> Unit:
     withs = {f"{root}.{ada_case(i.name)}" for i in system.instances}
     withs |= {f"{root}.{ada_case(i.component.name)}" for i in system.instances}
     withs |= {"Ravenchart.Simulated_Runs", "Ravenchart.Steps"}
+    withs |= {f"{root}.{LIFECYCLE}"} if has_lifecycle(system) else set()
     releases: list[tuple[str, tuple[Stmt, ...]]] = []
     for position, processor in enumerate(order, 1):
         rows: list[Stmt] = []
@@ -147,10 +152,20 @@ def emit_simulation(system: System, header: str) -> Unit:
                     ),
                     kind="procedure",
                 ),
+                *((Object("Started", "Boolean"),) if has_lifecycle(system) else ()),
             ),
-            body=(Do("Run"),),
+            body=(*_start(system), Do("Run")),
         ),
     )
+
+
+def _start(system: System) -> tuple[Stmt, ...]:
+    """Start all devices, where there are such as need it."""
+    if not has_lifecycle(system):
+        return ()
+    failed = Say('raise Program_Error with "a device has not started"')
+    start = do(f"{root_package(system)}.{LIFECYCLE}.Start_All", Ref("Started"))
+    return start, If(((Prefix("not", Ref("Started")), (failed,)),))
 
 
 def _instants(times: list[int]) -> Expr:

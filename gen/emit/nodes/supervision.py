@@ -29,6 +29,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.certificate.certified import agrees, fact
+from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
 from ravenchart.gen.emit.tables.trace_calls import note, traced
 from ravenchart.gen.model.system import SUPERVISOR, Node, Processor, Supervision, System
 
@@ -44,13 +45,15 @@ def supervised(system: System) -> tuple[tuple[Node, Supervision], ...]:
     return tuple((n, n.supervision) for n in system.nodes if n.supervision is not None)
 
 
-def safe_state(_system: System) -> tuple[Stmt, ...]:
+def safe_state(system: System) -> tuple[Stmt, ...]:
     """What makes a node safe when its program ends: behind the grace, before the report.
 
     The main program executes it on every way to its end: a request to stop, a task that has
-    ended, a silent processor. It is the one place for what devices need then.
+    ended, a silent processor. Where it does not come that far, the supervisor does the same.
     """
-    return ()
+    if not ends_devices(system):
+        return ()
+    return (Do(f"{root_package(system)}.{UNIT}.Make_All_Safe"),)
 
 
 def emit_supervision(system: System, header: str) -> list[Unit]:
@@ -86,7 +89,7 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Look=Ref("Look"),
         On_Silence=Ref("On_Silence"),
         Feed_Watchdog=Ref("Ravenchart.Failures.Feed_Watchdog"),
-        Give_Up=Ref("Ravenchart.Failures.Give_Up"),
+        Give_Up=Ref("Give_Up" if ends_devices(system) else "Ravenchart.Failures.Give_Up"),
     )
     spec: tuple[Decl, ...] = (
         Comment(f"[{node.name}] the processors, the most urgent first"),
@@ -95,6 +98,7 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Comment("Has a release not completed by its deadline and the margin?"),
         Subprogram("On_Silence", (Param("Item", "in", "Watched"),)),
         Comment("It has not: count it, raise its events, and shut down."),
+        *_given_up(system),
         Comment(f"[{element}]"),
         Instance("Supervisor", "Ravenchart.Supervisors", args),
         UseType("Ravenchart.Nanoseconds"),
@@ -118,9 +122,13 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
             ),
         ),
     )
+    if ends_devices(system):
+        ends = (*safe_state(system), Do("Ravenchart.Failures.Give_Up"))
+        body += (Subprogram("Give_Up", body=ends),)
+    devices = {f"{root}.{UNIT}"} if ends_devices(system) else set()
     raised = [i for p in watched for i, _ in p.on_silence]
     context = {f"{root}.Health_Counts", "Ravenchart.Health", "Ravenchart.Liveness"}
-    context |= {f"{root}.Timing_Certificate"}
+    context |= {f"{root}.Timing_Certificate", *devices}
     context |= {processor_package(system, p) for p in watched}
     context |= {f"{root}.{ada_case(i)}" for i in raised}
     context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in raised}
@@ -140,6 +148,12 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
             Package(name, body, (SPARK,), is_body=True),
         ),
     ]
+
+
+def _given_up(system: System) -> tuple[Decl, ...]:
+    """The spec of what ends the program in place of the main program, where devices need it."""
+    text = "The main program has not ended the controller: make its devices safe, and end it."
+    return (Subprogram("Give_Up"), Comment(text)) if ends_devices(system) else ()
 
 
 def _look(system: System, processor: Processor) -> tuple[Stmt, ...]:

@@ -1,0 +1,32 @@
+with GNAT.IO;
+
+package body Ravenchart.Device_Failures
+  with SPARK_Mode => Off
+is
+
+   ----------
+   -- Note --
+   ----------
+
+   procedure Note (Device : String) is
+   begin
+      GNAT.IO.Put_Line
+        (GNAT.IO.Standard_Error,
+         "error: the device " & Device
+         & " has failed its initialisation or self-test: the controller does"
+         & " not start");
+   end Note;
+
+   ---------------
+   -- Note_Late --
+   ---------------
+
+   procedure Note_Late is
+   begin
+      GNAT.IO.Put_Line
+        (GNAT.IO.Standard_Error,
+         "error: the devices were not ready by the first release: the"
+         & " controller does not start");
+   end Note_Late;
+
+end Ravenchart.Device_Failures;
