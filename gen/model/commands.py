@@ -235,8 +235,8 @@ class DeviceType:
 
     @property
     def tells_apart(self) -> bool:
-        """Whether its driver is told which device it works for."""
-        return bool(self.parameters or self.registers)
+        """Whether its driver is told which device it works for; a simulated one is not."""
+        return not self.simulated and bool(self.parameters or self.registers)
 
 
 @dataclass(frozen=True, slots=True)

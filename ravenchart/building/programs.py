@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.completion import programs
-from ravenchart.gen.emit.commands.lifecycle import FAILURES, RUNTIME_FOLDER, has_lifecycle
+from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
 from ravenchart.gen.emit.commands.registers import HARDWARE, types_with_registers
 from ravenchart.gen.emit.program import (
     folder_of,
@@ -111,11 +111,12 @@ class Program:
                 )
 
     def proved_units(self) -> tuple[str, ...]:
-        """The files that are proved, where bodies of components of other programs lie beside them.
+        """The files that are proved, where others lie beside them: bodies of components of other
+        programs, or what reports that a device has failed.
 
         Empty where there are none of these: then all are. A build takes only what it needs.
         """
-        folders = (self.generated, *self._user_folders())
+        folders = (self.generated, self.generated / HARDWARE, *self._user_folders())
         files = {p.name: p for home in folders for p in home.glob("*.ad[sb]")}
         bodies = {name for name in files if name.endswith(".adb")}
         specs = {name for name in files.keys() - bodies if f"{name[:-1]}b" not in bodies}
@@ -125,16 +126,13 @@ class Program:
             if f"{name[:-1]}s" not in files
             and re.search(r"^package body", files[name].read_text(encoding="utf-8"), re.M)
         }
-        return tuple(sorted((bodies | specs) - others)) if others else ()
+        chosen = others or has_lifecycle(self.part)
+        return tuple(sorted((bodies | specs) - others)) if chosen else ()
 
     @property
     def part(self) -> System:
         """What of the system it is."""
         return next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
-
-    def outside_spark(self) -> dict[str, str]:
-        """What of the runtime is outside SPARK among its sources, with the reason."""
-        return {FAILURES: "ASM-019"} if has_lifecycle(self.part) else {}
 
     def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> Task:
         """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""

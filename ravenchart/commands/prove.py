@@ -46,7 +46,6 @@ def execute(options: argparse.Namespace) -> int:
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean
-        reasons = {**one.outside_spark(), **reasons}
         outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
             options.record.write_text(proving.record_text(proof), encoding="utf-8")

@@ -2,14 +2,24 @@
 --  edit: change the model and generate again. Names in brackets are the
 --  model's elements; trace.json says where they stand.
 
+with Surgical_Robot.Force_Sensor_Registers;
 with Surgical_Robot.Force_Sensor_States;
+with Surgical_Robot.Force_Sensor_Units;
 
 package Surgical_Robot.Force_Sensor
 with SPARK_Mode
 is
+   procedure Self_Test
+     (Unit   : Force_Sensor_Units.Unit;
+      Device : in out Force_Sensor_States.State;
+      Passed : out Boolean)
+   with Global => (In_Out => Force_Sensor_Registers.Registers);
+   --  [Force_Sensor] budget 10_000 ns
+
    procedure Get_Force
-     (Device : in out Force_Sensor_States.State;
+     (Unit   : Force_Sensor_Units.Unit;
+      Device : in out Force_Sensor_States.State;
       Reply  : out Surgical_Robot.Force)
-   with Global => null;
+   with Global => (In_Out => Force_Sensor_Registers.Registers);
    --  [Force_Sensor.Get_Force] budget 6_000 ns
 end Surgical_Robot.Force_Sensor;

@@ -5,6 +5,12 @@
 package Surgical_Robot.Left
 with SPARK_Mode
 is
+   procedure Start (Passed : out Boolean);
+   --  [Left] before the first release; budget 20_000 ns
+
+   procedure Make_Safe;
+   --  [Left] at the end; budget 10_000 ns
+
    procedure Get_Position (Reply : out Surgical_Robot.Angle_X2)
    with Inline_Always;
    --  [Left.Get_Position] budget 12_000 ns

@@ -5,6 +5,7 @@
 with Ravenchart.Health;
 with Ravenchart.Liveness;
 with Ravenchart.Traces;
+with Surgical_Robot.Device_Lifecycle;
 with Surgical_Robot.Elements;
 with Surgical_Robot.Health_Counts;
 with Surgical_Robot.Servo_Loop;
@@ -60,4 +61,10 @@ is
             Ravenchart.Failures.Note_Silence ("supervision");
       end case;
    end On_Silence;
+
+   procedure Give_Up is
+   begin
+      Surgical_Robot.Device_Lifecycle.Make_All_Safe;
+      Ravenchart.Failures.Give_Up;
+   end Give_Up;
 end Surgical_Robot.Liveness_Supervision;

@@ -22,6 +22,10 @@ is
    procedure On_Silence (Item : Watched);
    --  It has not: count it, raise its events, and shut down.
 
+   procedure Give_Up;
+   --  The main program has not ended the controller: make its devices safe,
+   --  and end it.
+
    --  [board.supervisor]
    package Supervisor is new Ravenchart.Supervisors
      (Processor_Id => Watched,
@@ -34,7 +38,7 @@ is
       Look => Look,
       On_Silence => On_Silence,
       Feed_Watchdog => Ravenchart.Failures.Feed_Watchdog,
-      Give_Up => Ravenchart.Failures.Give_Up);
+      Give_Up => Give_Up);
 
    use type Ravenchart.Nanoseconds;
 

@@ -4,20 +4,74 @@
 
 with Surgical_Robot.Io_Board;
 with Surgical_Robot.Io_Board_States;
+with Surgical_Robot.Io_Board_Units;
+with System;
 
 package body Surgical_Robot.Right
 with SPARK_Mode
 is
    --  [Right] called by servo_1.Control, servo_1.Differ
-   Own : Io_Board_States.State;
+   protected Guard
+   with Priority => System.Default_Priority + 3
+   is
+      procedure Start (Passed : out Boolean);
+
+      procedure Make_Safe;
+
+      procedure Get_Position (Reply : out Surgical_Robot.Angle_X2);
+
+      procedure Set_Current (Argument : Surgical_Robot.Current_X2);
+   private
+      Own : Io_Board_States.State;
+      Is_Ready : Boolean := False;
+   end Guard;
+
+   protected body Guard is
+      procedure Start (Passed : out Boolean) is
+      begin
+         Io_Board.Initialise (Io_Board_Units.Right_Unit, Own, Passed);
+         if Passed then
+            Io_Board.Self_Test (Io_Board_Units.Right_Unit, Own, Passed);
+         end if;
+         Is_Ready := Passed;
+      end Start;
+
+      procedure Make_Safe is
+      begin
+         Io_Board.Make_Safe (Io_Board_Units.Right_Unit, Own);
+         Is_Ready := False;
+      end Make_Safe;
+
+      procedure Get_Position (Reply : out Surgical_Robot.Angle_X2) is
+      begin
+         Io_Board.Get_Position (Io_Board_Units.Right_Unit, Own, Reply);
+      end Get_Position;
+
+      procedure Set_Current (Argument : Surgical_Robot.Current_X2) is
+      begin
+         if Is_Ready then
+            Io_Board.Set_Current (Io_Board_Units.Right_Unit, Own, Argument);
+         end if;
+      end Set_Current;
+   end Guard;
+
+   procedure Start (Passed : out Boolean) is
+   begin
+      Guard.Start (Passed);
+   end Start;
+
+   procedure Make_Safe is
+   begin
+      Guard.Make_Safe;
+   end Make_Safe;
 
    procedure Get_Position (Reply : out Surgical_Robot.Angle_X2) is
    begin
-      Io_Board.Get_Position (Own, Reply);
+      Guard.Get_Position (Reply);
    end Get_Position;
 
    procedure Set_Current (Argument : Surgical_Robot.Current_X2) is
    begin
-      Io_Board.Set_Current (Own, Argument);
+      Guard.Set_Current (Argument);
    end Set_Current;
 end Surgical_Robot.Right;

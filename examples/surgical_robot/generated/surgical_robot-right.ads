@@ -5,6 +5,12 @@
 package Surgical_Robot.Right
 with SPARK_Mode
 is
+   procedure Start (Passed : out Boolean);
+   --  [Right] before the first release; budget 20_000 ns
+
+   procedure Make_Safe;
+   --  [Right] at the end; budget 10_000 ns
+
    procedure Get_Position (Reply : out Surgical_Robot.Angle_X2)
    with Inline_Always;
    --  [Right.Get_Position] budget 12_000 ns

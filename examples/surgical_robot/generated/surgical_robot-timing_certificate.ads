@@ -9,7 +9,7 @@ with SPARK_Mode, Pure
 is
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
-     "c5cd0524a4c784d349b9fcb72c5f67f4c568f6e5cdd10754b905beaa5a250755";
+     "8bf1ab29e71b497721543e8f3ffb4055768327844559b10b6f43be7bb9e7e356";
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
@@ -20,16 +20,18 @@ is
    --  more, W is too short; where it is less, a term is missing.
    --  The claimed responses: each is some other's lateness, or its own
    --  bound.
-   Servo_Loop_R : constant := 345_000;
-   Supervision_R : constant := 665_000;
-   Board_Supervisor_R : constant := 75_000;
+   Servo_Loop_R : constant := 352_000;
+   Supervision_R : constant := 672_000;
+   Board_Supervisor_R : constant := 82_000;
 
    --  [board] what the platform takes, each at its longest
    Board_Context_Switch : constant := 10_000;
    Board_Critical_Section : constant := 5_000;
+   Left_Section : constant := 12_000;
+   Right_Section : constant := 12_000;
+   Wrist_Section : constant := 6_000;
 
-   --  [servo_loop] released every T. B: supervision may be inside
-   --  servo_1.Seen.
+   --  [servo_loop] released every T. B: main may be inside Left.
    Servo_Loop_Priority : constant := System.Default_Priority + 2;
    Servo_1_Take_Orders_Budget : constant := 50_000;
    Servo_1_Differ_Budget : constant := 54_000;
@@ -74,9 +76,9 @@ is
      + Servo_1_Differ_Budget
      + Servo_1_Control_Budget
      + 2 * Board_Context_Switch;
-   Servo_Loop_B : constant := Board_Critical_Section;
+   Servo_Loop_B : constant := Left_Section;
 
-   --  [supervision] released every T. B: main may be inside health.
+   --  [supervision] released every T. B: main may be inside Left.
    Supervision_Priority : constant := System.Default_Priority + 1;
    Supervisor_1_Task_Of_Arm_Budget : constant := 300_000;
    Supervision_T : constant := 20_000_000;
@@ -97,10 +99,10 @@ is
    Supervision_A : constant := Supervision_J + (Supervision_T - 1);
    Supervision_C : constant :=
      Supervisor_1_Task_Of_Arm_Budget + 2 * Board_Context_Switch;
-   Supervision_B : constant := Board_Critical_Section;
+   Supervision_B : constant := Left_Section;
 
    --  [board.supervisor] released every T. B: servo_loop may be inside
-   --  servo_loop.monitor.
+   --  Left.
    Board_Supervisor_Priority : constant := System.Default_Priority + 3;
    Board_Supervisor_Budget : constant := 50_000;
    Board_Supervisor_T : constant := 5_000_000;
@@ -110,7 +112,7 @@ is
      Board_Supervisor_J + (Board_Supervisor_T - 1);
    Board_Supervisor_C : constant :=
      Board_Supervisor_Budget + 2 * Board_Context_Switch;
-   Board_Supervisor_B : constant := Board_Critical_Section;
+   Board_Supervisor_B : constant := Left_Section;
 
    pragma Compile_Time_Error
      ((Servo_Loop_Priority + 1) > Board_Supervisor_Priority,

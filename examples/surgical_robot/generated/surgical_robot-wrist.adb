@@ -4,15 +4,47 @@
 
 with Surgical_Robot.Force_Sensor;
 with Surgical_Robot.Force_Sensor_States;
+with Surgical_Robot.Force_Sensor_Units;
+with System;
 
 package body Surgical_Robot.Wrist
 with SPARK_Mode
 is
    --  [Wrist] called by servo_1.Control
-   Own : Force_Sensor_States.State;
+   protected Guard
+   with Priority => System.Default_Priority + 2
+   is
+      procedure Start (Passed : out Boolean);
+
+      procedure Get_Force (Reply : out Surgical_Robot.Force);
+   private
+      Own : Force_Sensor_States.State;
+      Is_Ready : Boolean := False;
+   end Guard;
+
+   protected body Guard is
+      procedure Start (Passed : out Boolean) is
+      begin
+         Force_Sensor.Self_Test
+           (Force_Sensor_Units.Wrist_Unit,
+            Own,
+            Passed);
+         Is_Ready := Passed;
+      end Start;
+
+      procedure Get_Force (Reply : out Surgical_Robot.Force) is
+      begin
+         Force_Sensor.Get_Force (Force_Sensor_Units.Wrist_Unit, Own, Reply);
+      end Get_Force;
+   end Guard;
+
+   procedure Start (Passed : out Boolean) is
+   begin
+      Guard.Start (Passed);
+   end Start;
 
    procedure Get_Force (Reply : out Surgical_Robot.Force) is
    begin
-      Force_Sensor.Get_Force (Own, Reply);
+      Guard.Get_Force (Reply);
    end Get_Force;
 end Surgical_Robot.Wrist;

@@ -5,6 +5,9 @@
 package Surgical_Robot.Wrist
 with SPARK_Mode
 is
+   procedure Start (Passed : out Boolean);
+   --  [Wrist] before the first release; budget 10_000 ns
+
    procedure Get_Force (Reply : out Surgical_Robot.Force)
    with Inline_Always;
    --  [Wrist.Get_Force] budget 6_000 ns

@@ -22,6 +22,7 @@ is
    subtype Speed is Unit_Mrad_Per_S range -4_000 .. 4_000;
    subtype Current is Unit_MA range -2_000 .. 2_000;
    subtype Force is Unit_MN range -5_000 .. 5_000;
+   subtype Resolution is Ravenchart.Number range 1 .. 100;
 
    type Angle_X2 is record
       Axis_1 : Surgical_Robot.Angle;

@@ -4,6 +4,7 @@
 
 with Ada.Real_Time;
 with Ravenchart.Hosts;
+with Surgical_Robot.Device_Lifecycle;
 with Surgical_Robot.Reports;
 with Surgical_Robot.Timing_Certificate;
 with System;
@@ -16,20 +17,23 @@ is
      Ada.Real_Time.Milliseconds (5);
    Next : Ada.Real_Time.Time := Ada.Real_Time.Clock;
    Stop : Boolean;
+   Started : Boolean;
 begin
    Ravenchart.Hosts.Start;
    Ravenchart.Hosts.Put_Model
      (Surgical_Robot.Timing_Certificate.Model_Digest);
+   Surgical_Robot.Device_Lifecycle.Start_All (Started);
    loop
       Surgical_Robot.Reports.Drain_Trace;
       Stop := Ravenchart.Hosts.Stop_Requested;
-      if Stop then
+      if Stop or else not Started then
          exit;
       end if;
       Next := Next + Step;
       delay until Next;
    end loop;
+   Surgical_Robot.Device_Lifecycle.Make_All_Safe;
    Surgical_Robot.Reports.Drain_Trace;
    Surgical_Robot.Reports.Put_All;
-   Ravenchart.Hosts.Finish (Success => True);
+   Ravenchart.Hosts.Finish (Success => Started);
 end Surgical_Robot_Main;

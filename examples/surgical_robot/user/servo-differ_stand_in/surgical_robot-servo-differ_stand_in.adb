@@ -9,8 +9,34 @@ is
    Fastest    : constant := 4_000;  --  mrad/s
 
    function Rate (Now, Past : Angle) return Speed
-   with Global => null;
+   with
+     Global => null,
+     Post   =>
+       (if abs (Ravenchart.Number (Now) - Ravenchart.Number (Past))
+          <= Fastest / Per_Second
+        then Ravenchart.Number (Rate'Result)
+          = (Ravenchart.Number (Now) - Ravenchart.Number (Past))
+            * Per_Second);
    --  How fast a joint came from Past to Now, within one execution.
+
+   subtype Microradians is Ravenchart.Number range -3_000_000 .. 3_000_000;
+
+   function Seen (Place : Microradians) return Angle
+   is (Angle ((Place - Place mod 1_000) / 1_000))
+   with Ghost, Global => null;
+   --  What an encoder tells of where a joint is: whole mrad, rounded down.
+
+   procedure Lemma_Resolution (Now, Past : Microradians)
+   with
+     Ghost,
+     Global => null,
+     Pre    => abs (Now - Past) <= (Fastest / Per_Second - 1) * 1_000,
+     Post   =>
+       abs (Ravenchart.Number (Rate (Seen (Now), Seen (Past))) * 5
+            - (Now - Past)) < 1_000;
+   --  In an execution of 5 ms a joint moves by 5 microradians for each mrad/s.
+   --  So what is estimated differs from the mean velocity by less than 200
+   --  mrad/s: one mrad, the resolution of the encoder, in 5 ms.
 
    function Rate (Now, Past : Angle) return Speed is
       Moved : constant Ravenchart.Number :=
@@ -22,6 +48,8 @@ is
              (-Fastest,
               Ravenchart.Number'Min (Fastest, Moved * Per_Second)));
    end Rate;
+
+   procedure Lemma_Resolution (Now, Past : Microradians) is null;
 
    procedure Differ
      (Get_Position : Angle_X4;

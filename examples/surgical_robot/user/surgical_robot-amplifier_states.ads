@@ -1,0 +1,7 @@
+--  The driver of an amplifier remembers nothing.
+
+package Surgical_Robot.Amplifier_States
+with SPARK_Mode
+is
+   type State is null record;
+end Surgical_Robot.Amplifier_States;

@@ -1,0 +1,7 @@
+--  The driver of the drives remembers nothing: they have a servo loop.
+
+package Surgical_Robot.Drive_States
+with SPARK_Mode
+is
+   type State is null record;
+end Surgical_Robot.Drive_States;

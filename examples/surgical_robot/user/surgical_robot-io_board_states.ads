@@ -1,0 +1,7 @@
+--  The driver of an I/O board remembers nothing: all is in its registers.
+
+package Surgical_Robot.Io_Board_States
+with SPARK_Mode
+is
+   type State is null record;
+end Surgical_Robot.Io_Board_States;

@@ -1,0 +1,7 @@
+--  The driver of a tachometer remembers nothing.
+
+package Surgical_Robot.Tachometer_States
+with SPARK_Mode
+is
+   type State is null record;
+end Surgical_Robot.Tachometer_States;

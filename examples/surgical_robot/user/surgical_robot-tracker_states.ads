@@ -1,0 +1,7 @@
+--  The driver of the tracker remembers nothing.
+
+package Surgical_Robot.Tracker_States
+with SPARK_Mode
+is
+   type State is null record;
+end Surgical_Robot.Tracker_States;

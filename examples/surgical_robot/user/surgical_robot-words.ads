@@ -1,0 +1,44 @@
+--  Numbers as registers hold them.
+
+with Interfaces;
+
+package Surgical_Robot.Words
+with SPARK_Mode
+is
+   use type Interfaces.Unsigned_32;
+   use type Ravenchart.Number;
+
+   subtype Word is Interfaces.Unsigned_32;
+
+   subtype Long is Ravenchart.Number range -2**31 .. 2**31 - 1;
+   --  What 32 bits hold in two's complement.
+
+   function Signed (Value : Word) return Long
+   is (if Value < 2**31
+       then Ravenchart.Number (Value)
+       else Ravenchart.Number (Value) - 2**32)
+   with Global => null;
+   --  Value read as two's complement.
+
+   function Raw (Value : Long) return Word
+   is (if Value >= 0 then Word (Value) else Word (Value + 2**32))
+   with Global => null;
+   --  Value in two's complement.
+
+   function Clamped
+     (Value, Limit : Ravenchart.Number) return Ravenchart.Number
+   is (Ravenchart.Number'Max (-Limit, Ravenchart.Number'Min (Limit, Value)))
+   with
+     Global => null,
+     Pre    => Limit in 0 .. 2**31,
+     Post   => Clamped'Result in -Limit .. Limit;
+   --  Value, or the end of -Limit .. Limit that is next to it.
+
+   Middle : constant := 2_048;
+   --  Of a digital-to-analogue converter: no current.
+
+   function Converted (Value : Current) return Word
+   is (Word (Middle + Ravenchart.Number (Value)))
+   with Global => null;
+   --  What such a converter makes a current of, in mA.
+end Surgical_Robot.Words;
