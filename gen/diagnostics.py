@@ -33,6 +33,7 @@ GROUPS: Mapping[str, str] = {
     "10": "Simulation",
     "11": "Behaviour",
     "12": "Commands and devices",
+    "13": "Scenarios",
 }
 
 CODES: Mapping[str, str] = {

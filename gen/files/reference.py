@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ravenchart.gen.diagnostics import CODES, GROUPS
+from ravenchart.gen import explanations
 
 from .schema import ModelFile
 
@@ -226,22 +226,6 @@ def _link(reference_: str) -> str:
     return f"[{title.lower()}](#{anchor})"
 
 
-def errors() -> str:
-    """The page of all error codes."""
-    lines = [
-        "# Errors and warnings",
-        "",
-        "Written by `make docs` from the table in gen/diagnostics.py; do not edit.",
-        "Codes are stable: none is given a second meaning.",
-    ]
-    for group, title in GROUPS.items():
-        lines += ["", f"## RV-{group}xx: {title}", "", "| code | meaning |", "| --- | --- |"]
-        lines += [
-            f"| {code} | {meaning} |" for code, meaning in CODES.items() if code[3:5] == group
-        ]
-    return "\n".join(lines) + "\n"
-
-
 def json_schema() -> str:
     """The JSON Schema of a model's files, for editors."""
     return json.dumps(schema(), indent=2, ensure_ascii=False) + "\n"
@@ -249,7 +233,7 @@ def json_schema() -> str:
 
 def pages() -> dict[str, str]:
     """File name to text of each page."""
-    return {SCHEMA: json_schema(), REFERENCE: reference(), ERRORS: errors()}
+    return {SCHEMA: json_schema(), REFERENCE: reference(), ERRORS: explanations.page()}
 
 
 def write(directory: Path, made: Iterable[tuple[str, str]]) -> None:

@@ -1,17 +1,22 @@
-"""`ravenchart explain`: what a code of an error or warning means."""
+"""`ravenchart explain`: what a code of an error or warning means, and how to correct it."""
 
 from __future__ import annotations
 
 import argparse
 import difflib
+import sys
 
 from ravenchart.failures import OK, Refused
-from ravenchart.gen.diagnostics import CODES, GROUPS
+from ravenchart.gen import explanations
+from ravenchart.gen.diagnostics import CODES
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     sub.add_argument("code", metavar="CODE", help="as it stands in a message: RV-0305")
+    shown = sub.add_mutually_exclusive_group()
+    shown.add_argument("--wrong", action="store_true", help="print the wrong model alone")
+    shown.add_argument("--corrected", action="store_true", help="print the corrected model alone")
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -23,5 +28,11 @@ def execute(options: argparse.Namespace) -> int:
         near = difflib.get_close_matches(code, CODES, 3)
         hint = f"; there are {', '.join(near)}" if near else ""
         raise Refused(f"ravenchart: error: no message has the code {options.code}{hint}")
-    print(f"{code}  {GROUPS[code[3:5]]}\n{CODES[code]}")
+    if not options.wrong and not options.corrected:
+        sys.stdout.write(explanations.text(code))
+        return OK
+    found = explanations.explanations().get(code)
+    if found is None:
+        raise Refused(f"ravenchart: error: {code} has no example model yet")
+    sys.stdout.write(found.wrong if options.wrong else found.corrected)
     return OK

@@ -131,3 +131,10 @@ def test_doctor_tells_where_it_is_and_the_version_is_one(away: Path) -> None:
     version = _called(away, "--version").split()[1]
     assert f'version = "{version}"' in (ROOT / "alire.toml").read_text()
     assert f'version = "{version}"' in (ROOT / "pyproject.toml").read_text()
+
+
+def test_an_installation_explains_codes_with_their_models(away: Path) -> None:
+    assert "+          lost: {from: Run, to: Safe, on: Lost}" in _called(away, "explain", "RV-0305")
+    wrong = _called(away, "explain", "RV-0305", "--wrong")
+    (away / "work" / "wrong.yaml").write_text(wrong, encoding="utf-8")
+    assert "[RV-0305]" in _called(away, "check", "wrong.yaml", status=1)

@@ -9,7 +9,12 @@ import pytest
 
 from ravenchart.paths import ROOT
 
-PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "proofs/assumptions.md")
+DOOR = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md")
+PAGES = (
+    *(ROOT / name for name in DOOR),
+    *sorted((ROOT / "docs").glob("*.md")),
+    ROOT / "proofs/assumptions.md",
+)
 SOURCE = re.compile(
     r"`((?:gen|analysis|behaviour|hw_can|ravenchart|spark_runtime|tests|proofs|scripts)"
     r"/[\w./-]+\.(?:py|toml|ad[bs]|gpr|sh|md))`"

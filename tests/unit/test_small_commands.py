@@ -10,6 +10,7 @@ from ravenchart import paths
 from ravenchart.command_line import COMMANDS, main
 from ravenchart.commands.new import project
 from ravenchart.gen.diagnostics import CODES
+from ravenchart.gen.explanations import explanations
 
 
 def test_a_folder_that_is_there_is_not_touched(
@@ -45,12 +46,22 @@ def test_a_code_is_explained_as_it_stands_in_a_message(
     given: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["explain", given]) == 0
-    assert capsys.readouterr().out.endswith(f"{CODES['RV-0305']}\n")
+    assert f"\n{CODES['RV-0305']}\n" in capsys.readouterr().out
 
 
 def test_an_unknown_code_is_told_with_what_is_like_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "RV-0395"]) == 1
     assert "no message has the code RV-0395; there are " in capsys.readouterr().err
+
+
+def test_the_models_of_a_code_are_printed_whole(capsys: pytest.CaptureFixture[str]) -> None:
+    found = explanations()["RV-0305"]
+    assert main(["explain", "RV-0305", "--wrong"]) == 0
+    assert capsys.readouterr().out == found.wrong
+    assert main(["explain", "RV-0305", "--corrected"]) == 0
+    assert capsys.readouterr().out == found.corrected
+    assert main(["explain", "RV-1303", "--wrong"]) == 1
+    assert "RV-1303 has no example model yet" in capsys.readouterr().err
 
 
 def test_clean_deletes_what_was_built_of_one_model_alone(
