@@ -92,7 +92,7 @@ def imported(
     beyond their frame are left out, too. ``bus``: only the messages of that bus of the database.
     """
     given = given or Periods()
-    database = _database(path, lenient=lenient)
+    database = read(path, lenient=lenient)
     buses = list(dict.fromkeys(m.bus_name for m in database.messages if m.bus_name))
     if bus is not None and bus not in buses:
         hint = meant(bus, buses) if buses else "it has no buses: leave `--bus` out"
@@ -119,7 +119,8 @@ def imported(
     return Imported(writer.text(path.name), problems)
 
 
-def _database(path: Path, *, lenient: bool) -> Database:
+def read(path: Path, *, lenient: bool) -> Database:
+    """A database of any of the formats. Refused when cantools cannot read it."""
     ending = path.suffix.lower()
     form = ending.removeprefix(".") if ending in FORMATS else "dbc"
     try:
