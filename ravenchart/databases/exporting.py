@@ -49,13 +49,16 @@ def exported(system: System, bus: Bus, original: Path | None, *, lenient: bool =
     found = Exported("")
     messages: list[DbcMessage] = []
     kept: set[DbcMessage] = set()
-    for message in (m for m in system.messages if m.bus == bus.name):
+    for message in (m for m in system.frames if m.bus == bus.name):
         like = _original(message, names)
         if like is not None and _as_imported(message, like):
             kept.add(like)
             if message.period != (like.cycle_time or 0) * MILLISECOND:
                 like.cycle_time = message.period // MILLISECOND
             messages.append(like)
+            continue
+        if message.is_foreign:
+            found.notes.append(f"{message.name} is left out: others send it to others")
             continue
         messages.append(made.get_message_by_name(message.name))
         why = "has another layout or identifier" if message.name in names.values() else "is not"

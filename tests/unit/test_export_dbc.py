@@ -28,6 +28,9 @@ BO_ 2 floats: 8 other
 BO_ 2147483907 A_Message_Of_A_Long_Name_In_It: 8 ecu
  SG_ A_Signal_Of_A_Long_Name_In_It : 0|64@1+ (1,0) [0|0] "" other
 BO_ 4 bare: 3 ecu
+BO_ 5 alone: 3 other
+BO_ 6 theirs: 8 other
+ SG_ z : 0|8@1+ (2,0) [0|0] "" other
 CM_ "All of it";
 CM_ BU_ ecu "The node";
 CM_ BO_ 2 "Two numbers";
