@@ -38,6 +38,7 @@ COMMANDS = {
         "importing",
         "print the messages of a CAN database as types, ports and messages of a model",
     ),
+    "export-dbc": ("export_dbc", "print the CAN database of a bus of the model"),
     "simulate": ("simulate", "run the model in virtual time, step by step"),
     "explain": ("explain", "explain the code of an error or warning"),
     "clean": ("clean", "delete build results"),

@@ -18,6 +18,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     seen = sub.add_mutually_exclusive_group(required=True)
     seen.add_argument("--node", help="the node of the database that the model is of")
     seen.add_argument("--all", action="store_true", help="a node that receives every message")
+    sub.add_argument("--bus", help="import only the messages of this bus of the database")
     sub.add_argument(
         "--period", metavar="TIME",
         help="least time between frames of a message whose database has no cycle time: `100 ms`",
@@ -35,7 +36,9 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status."""
     given = database.periods(options.period, options.periods)
-    found = database.imported(options.database, options.node, given, lenient=options.lenient)
+    found = database.imported(
+        options.database, options.node, given, lenient=options.lenient, bus=options.bus
+    )
     print(found.text, end="")
     for problem in found.problems:
         print(problem, file=sys.stderr)

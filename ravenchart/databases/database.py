@@ -19,15 +19,19 @@ from cantools.database.errors import Error as DatabaseFault
 from ravenchart.failures import Refused
 from ravenchart.gen.language.names import meant
 from ravenchart.gen.language.quantities import duration
+from ravenchart.gen.model.signals import FD_SIZES
 from ravenchart.gen.resolve.layouts import SIGNED_BITS
 
+from .fields import Field, Fields, fields_of, raw_fields
 from .names import HIDDEN, Names
-from .signals import Unsayable, Words, check_room, parts_of, words_of
+from .signals import Unsayable, Words
 
 FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
 """Databases by the ending of their files; a file with another one is read as DBC."""
 CLASSIC = 8
 """Bytes of a classic frame at most."""
+SHOWN = 16
+"""Names of raw values that a line of the text tells at most."""
 MONITOR = "monitor"
 """The node that receives every message."""
 
@@ -74,16 +78,26 @@ def periods(default: str | None, path: Path | None) -> Periods:
 
 
 def imported(
-    path: Path, node: str | None, given: Periods | None = None, *, lenient: bool = False
+    path: Path,
+    node: str | None,
+    given: Periods | None = None,
+    *,
+    lenient: bool = False,
+    bus: str | None = None,
 ) -> Imported:
     """The messages of a database as seen from one of its nodes. Refused when it cannot be read.
 
-    None: seen by a node that receives all of them. A signal that cannot be said is left out of
-    what the node receives; what it sends is left out as a whole, for its bytes would be others.
-    ``lenient``: signals that share bits or reach beyond their frame are left out, too.
+    None: seen by a node that receives all of them. A signal that cannot be said is left out; what
+    the node sends has constants for its bits. ``lenient``: signals that share bits or reach
+    beyond their frame are left out, too. ``bus``: only the messages of that bus of the database.
     """
     given = given or Periods()
-    database = _database(path, lenient=lenient)
+    database = read(path, lenient=lenient)
+    buses = list(dict.fromkeys(m.bus_name for m in database.messages if m.bus_name))
+    if bus is not None and bus not in buses:
+        hint = meant(bus, buses) if buses else "it has no buses: leave `--bus` out"
+        raise Refused(f"{path}: error: no bus is called {bus}" + (f": {hint}" if hint else ""))
+    messages = [m for m in database.messages if bus is None or m.bus_name == bus]
     names = [one.name for one in database.nodes]
     if node is not None and node not in names:
         hint = meant(node, names) if names else "it has no nodes: use `--all`"
@@ -93,9 +107,10 @@ def imported(
         hint = meant(unknown[0], [m.name for m in database.messages])
         told = f"no message is called {unknown[0]}" + (f": {hint}" if hint else "")
         raise Refused(f"{path}: error: {told}")
-    writer = _Writer(node, given, Names(m.name for m in database.messages))
+    names = Names.of_each([m.name for m in messages])
+    writer = _Writer(node, given, dict(zip(messages, names, strict=True)))
     problems: list[str] = []
-    for message in database.messages:
+    for message in messages:
         try:
             writer.add(message)
         except Unsayable as problem:
@@ -104,7 +119,8 @@ def imported(
     return Imported(writer.text(path.name), problems)
 
 
-def _database(path: Path, *, lenient: bool) -> Database:
+def read(path: Path, *, lenient: bool) -> Database:
+    """A database of any of the formats. Refused when cantools cannot read it."""
     ending = path.suffix.lower()
     form = ending.removeprefix(".") if ending in FORMATS else "dbc"
     try:
@@ -124,8 +140,8 @@ class _Writer:
 
     node: str | None
     periods: Periods
-    names: Names
-    """Of the messages."""
+    names: Mapping[Message, str]
+    """Of the messages, in the model."""
     known: dict[str, str] = field(default_factory=dict)
     """Definition to name of the types, in the order in which they are needed."""
     type_names: Names = field(default_factory=Names)
@@ -138,6 +154,9 @@ class _Writer:
     """What is otherwise than in the database: where, and how."""
     left_out: list[str] = field(default_factory=list)
     """Signals that are not in the model, each with its message and the reason."""
+
+    identifiers: dict[tuple[int, bool], str] = field(default_factory=dict)
+    """Of the messages, and whether they are extended, with their names."""
 
     def __post_init__(self) -> None:
         """No type has a name that it would hide."""
@@ -165,7 +184,7 @@ class _Writer:
             f"# From {source}, as seen by {seen}. Add what the ports do, `{self.instance}:` under",
             "# `instances:`, and a bus called `bus`.",
             *self._table(),
-            "types:",
+            "types:" if self.known or self.records else "types: {}",
             *(f"  {name}: {definition}" for definition, name in self.known.items()),
             *self.records,
             "components:",
@@ -197,20 +216,27 @@ class _Writer:
             raise Unsayable(
                 "it has no cycle time, which a message from outside needs; `--period` gives one"
             )
+        self._claim(message)
         lines = self._head(message)
         if not sends and not takes:
             self.messages += [*lines, f"    period: {period}"]
             return
-        signals = self._signals(message, whole=sends)
-        if not signals:
-            if sends:
-                raise Unsayable("it has no signals, and a port has a value")
+        found = fields_of(message, taken=self.type_names.taken, sends=sends)
+        self.left_out += [
+            f"{message.name}.{signal.name} is left out: {why}" for signal, why in found.left_out
+        ]
+        if sends and not found.fields:
+            found.fields = raw_fields(message)
+        if not found.fields:
+            if period is None:
+                raise Unsayable("its frame has no data, and a port has a value")
             self.changes.append((message.name, "is on the bus alone: no port has its value"))
             self.messages += [*lines, f"    period: {period}"]
             return
-        name = self.names.of(message.name)
-        own = self._named(message, signals)
-        fields = ", ".join(f"{own[s]}: {self._type(message, s, w)}" for s, w in signals.items())
+        name = self.names[message]
+        own = self._named(message, found)
+        typed = ((own[f.signal], self._type(message, f.signal, f.words)) for f in found.fields)
+        fields = ", ".join(f"{field}: {of}" for field, of in typed)
         record = self.type_names.new(f"{name}_Data", self.literals)
         self.records.append(f"  {record}: {{fields: {{{fields}}}}}")
         way = "out" if sends else "in"
@@ -218,17 +244,29 @@ class _Writer:
         self.ports.append(f"      {name}: {{{way}: {record}}}{often}")
         end = f"{self.instance}.{name}"
         lines += [f"    from: {end}"] if sends else [f"    to: {end}", f"    period: {period}"]
-        selector = _selector(message)
-        if selector is not None:
-            lines.append(f"    multiplexor: {own[selector]}")
+        if found.selector is not None:
+            lines.append(f"    multiplexor: {own[found.selector.signal]}")
         lines.append("    signals:")
-        for signal, words in signals.items():
-            pages = _pages(signal, None if selector is None else signals[selector])
-            lines.append(f"      {own[signal]}: {{{', '.join([*words.keys, *pages])}}}")
+        for one in found.fields:
+            keys = [*one.words.keys, *_pages(one, found.selector)]
+            lines.append(f"      {own[one.signal]}: {{{', '.join(keys)}}}")
         self.messages += lines
 
+    def _claim(self, message: Message) -> None:
+        """The message's identifier, which no other one has; else `Unsayable`."""
+        if message.length > FD_SIZES[-1]:
+            raise Unsayable(
+                f"it has {message.length} bytes, and a frame has {FD_SIZES[-1]} at most"
+            )
+        key = (message.frame_id, message.is_extended_frame)
+        other = self.identifiers.get(key)
+        self.identifiers.setdefault(key, message.name)
+        if other is not None:
+            hint = "; `--bus` imports one bus" if message.bus_name else ""
+            raise Unsayable(f"{other} has its identifier {message.frame_id:#x}{hint}")
+
     def _head(self, message: Message) -> list[str]:
-        name = self.names.of(message.name)
+        name = self.names[message]
         if name != message.name:
             self.changes.append((message.name, f"is named {name}"))
         lines = [f"  {name}:", "    bus: bus", f"    id: {message.frame_id:#x}"]
@@ -236,22 +274,30 @@ class _Writer:
         if message.length > CLASSIC and not message.is_fd:
             self.changes.append((message.name, f"is a CAN FD frame: it has {message.length} bytes"))
         lines += ["    format: fd"] if message.is_fd or message.length > CLASSIC else []
-        return [*lines, f"    bytes: {message.length}"]
+        size = next(one for one in (0, *FD_SIZES) if one >= message.length)
+        if size != message.length:
+            told = f"has {size} bytes: there is no frame of {message.length}"
+            self.changes.append((message.name, told))
+        return [*lines, f"    bytes: {size}"]
 
-    def _named(self, message: Message, signals: Mapping[Signal, Words]) -> dict[Signal, str]:
+    def _named(self, message: Message, found: Fields) -> dict[Signal, str]:
         """The names of the signals; notes what is changed in them."""
-        names = Names(signal.name for signal in signals)
-        for signal, words in signals.items():
-            where, name = f"{message.name}.{signal.name}", names.of(signal.name)
+        names = Names.of_each([one.signal.name for one in found.fields])
+        for one, name in zip(found.fields, names, strict=True):
+            signal, words = one.signal, one.words
+            where = f"{message.name}.{signal.name}"
             if name != signal.name:
                 self.changes.append((where, f"is named {name}"))
-            if signal not in message.signals:
-                self.changes.append((where, f"is half of a signal of more than {SIGNED_BITS} bits"))
+            if one.told is not None:
+                self.changes.append((where, one.told))
+            elif signal not in message.signals:
+                self.changes.append((where, f"is part of a signal of more than {SIGNED_BITS} bits"))
             if words.raw is not None:
-                self.changes.append((where, f"counts raw values: {words.raw}{_formula(signal)}"))
+                how = f"counts raw values: {words.raw}{_formula(signal)}{_values(signal)}"
+                self.changes.append((where, how))
             for old, new in words.renamed:
                 self.changes.append((where, f"its value `{old}` is named {new}"))
-        return {signal: names.of(signal.name) for signal in signals}
+        return {one.signal: name for one, name in zip(found.fields, names, strict=True)}
 
     def _type(self, message: Message, signal: Signal, words: Words) -> str:
         """The name of the type, which is added where there is none like it."""
@@ -262,44 +308,16 @@ class _Writer:
             definition = f"{{values: [{', '.join(words.literals)}]}}"
             self.literals |= {name.lower() for name in words.literals}
         if definition not in self.known:
-            wanted = f"{self.names.of(message.name)}_{signal.name}"
+            wanted = f"{self.names[message]}_{signal.name}"
             self.known[definition] = self.type_names.new(wanted, self.literals)
         return self.known[definition]
 
-    def _signals(self, message: Message, *, whole: bool) -> dict[Signal, Words]:
-        """What can be said of the signals; all of them when ``whole``, or `Unsayable`."""
-        found: dict[Signal, Words] = {}
-        left_out: list[str] = []
-        several = [s.name for s in message.signals if s.is_multiplexer]
-        selector = _selector(message)
-        for signal in (part for one in message.signals for part in parts_of(one)):
-            try:
-                if len(several) > 1 and signal.multiplexer_ids:
-                    raise Unsayable(f"there are several multiplexors, {', '.join(several)}")
-                check_room(message, signal, list(found))
-                found[signal] = words_of(signal, taken=self.type_names.taken)
-                if selector in found:
-                    _pages(signal, found[selector])
-            except Unsayable as problem:
-                if whole or signal is selector:
-                    raise Unsayable(f"its signal {signal.name}: {problem}") from None
-                found.pop(signal, None)
-                left_out.append(f"{message.name}.{signal.name} is left out: {problem}")
-        self.left_out += left_out
-        return found
 
-
-def _selector(message: Message) -> Signal | None:
-    """The multiplexor, where there is one alone."""
-    selectors = [s for s in message.signals if s.is_multiplexer]
-    return selectors[0] if len(selectors) == 1 else None
-
-
-def _pages(signal: Signal, selector: Words | None) -> list[str]:
+def _pages(one: Field, selector: Field | None) -> list[str]:
     """The key that says with which values of the multiplexor a signal is there."""
-    if selector is None or not signal.multiplexer_ids:
+    if selector is None or not one.pages:
         return []
-    return [f"when: [{', '.join(selector.literal(page) for page in signal.multiplexer_ids)}]"]
+    return [f"when: [{', '.join(selector.words.literal(page) for page in sorted(one.pages))}]"]
 
 
 def _formula(signal: Signal) -> str:
@@ -309,6 +327,15 @@ def _formula(signal: Signal) -> str:
     scale, offset = signal.conversion.scale, signal.conversion.offset
     unit = f" {signal.unit}" if signal.unit else ""
     return f" (value = {scale:g} * raw + {offset:g}{unit})"
+
+
+def _values(signal: Signal) -> str:
+    """The names of some of its raw values."""
+    choices = sorted((signal.conversion.choices or {}).items())
+    if not choices:
+        return ""
+    more = f", and {len(choices) - SHOWN} more" if len(choices) > SHOWN else ""
+    return "; " + ", ".join(f"{code} {name}" for code, name in choices[:SHOWN]) + more
 
 
 def _cycle(message: Message) -> str | None:

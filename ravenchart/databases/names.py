@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Sequence, Set
 
 from ravenchart.gen.language.names import CHILDREN, HIDING, LONG_NAME, PREDEFINED_TYPES, RESERVED
 
@@ -35,6 +35,15 @@ class Names:
             end = f"_{number}"
             found = plain[: LONG_NAME - len(end)].rstrip("_") + end
         self._taken.add(found.lower())
+        return found
+
+    @staticmethod
+    def of_each(names: Sequence[str]) -> list[str]:
+        """Each of the names of a scope in the model, in their order, also where two are alike."""
+        scope, given, found = Names(dict.fromkeys(names)), set[str](), list[str]()
+        for name in names:
+            found.append(scope.new(name) if name in given else scope.of(name))
+            given.add(name)
         return found
 
     @property

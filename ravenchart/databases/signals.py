@@ -7,17 +7,19 @@ words for, such as one of a negative scale, is imported as its raw counts, and t
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence, Set
+from collections.abc import Set
 from dataclasses import dataclass
 from decimal import Decimal
 
-from cantools.database.can import Message, Signal
+from cantools.database.can import Signal
 
 from ravenchart.gen.model.signals import RAW_LIMIT, ByteOrder, positions
 from ravenchart.gen.resolve.layouts import SIGNED_BITS
 
 from .names import HIDDEN, Names
 
+LITERALS = 256
+"""Values of an enumeration with codes at most."""
 LONGEST_UNIT = 20
 """Characters of a unit at most."""
 
@@ -41,6 +43,14 @@ class Words:
     """Why it counts raw values, if it does."""
     renamed: tuple[tuple[str, str], ...] = ()
     """Literals that have another name than in the database."""
+    limits: tuple[int, int] = (0, 0)
+    """Of an integer: its least and its greatest value."""
+
+    def has(self, code: int) -> bool:
+        """Has a raw value a place in the model? Of an integer without an offset."""
+        if self.literals is None:
+            return self.limits[0] <= code <= self.limits[1]
+        return code in self.codes
 
     def literal(self, code: int) -> str:
         """How a model writes a raw value."""
@@ -49,8 +59,6 @@ class Words:
         return ("False", "True")[code] if not self.literals else self.literals[self._at(code)]
 
     def _at(self, code: int) -> int:
-        if code not in self.codes:
-            raise Unsayable(f"its multiplexor has no value {code}")
         return self.codes.index(code)
 
 
@@ -62,7 +70,7 @@ def words_of(signal: Signal, *, taken: Set[str] = frozenset()) -> Words:
     try:
         return _exact_words(signal, taken)
     except Unsayable as reason:
-        return _raw_words(signal, str(reason))
+        return raw_words(signal, str(reason))
 
 
 def _layout(signal: Signal) -> tuple[str, ...]:
@@ -76,11 +84,22 @@ def _is_signed(signal: Signal) -> bool:
     return signal.is_signed and not signal.conversion.is_float
 
 
-def _raw_words(signal: Signal, reason: str) -> Words:
+def raw_words(signal: Signal, reason: str) -> Words:
+    """Its raw value, whatever it stands for; `Unsayable` where that has too many bits."""
     low, high = _by_width(signal)
     if max(-low, high) >= RAW_LIMIT:
         raise Unsayable(f"it has more than {SIGNED_BITS} bits")
-    return Words(None, (), f"{{range: [{low}, {high}]}}", _layout(signal), reason)
+    definition = f"{{range: [{low}, {high}]}}"
+    return Words(None, (), definition, _layout(signal), reason, limits=(low, high))
+
+
+def unsigned_words(signal: Signal, reason: str) -> Words:
+    """Its raw value as a number from 0 on, although it is signed."""
+    high = (1 << signal.length) - 1
+    if high >= RAW_LIMIT:
+        raise Unsayable(f"it has more than {SIGNED_BITS} bits")
+    keys = tuple(key for key in _layout(signal) if not key.startswith("signed"))
+    return Words(None, (), f"{{range: [0, {high}]}}", keys, reason, limits=(0, high))
 
 
 def _exact_words(signal: Signal, taken: Set[str]) -> Words:
@@ -92,7 +111,8 @@ def _exact_words(signal: Signal, taken: Set[str]) -> Words:
     low, high = _raw_range(signal, scale, offset)
     choices = dict(sorted((signal.conversion.choices or {}).items()))
     if choices:
-        if scale != 1 or offset != 0 or (min(choices), max(choices)) != (low, high):
+        ends = (min(choices), max(choices))
+        if scale != 1 or offset != 0 or ends != (low, high) or len(choices) > LITERALS:
             raise Unsayable("some of its values have names, and others have none")
         texts = [str(name) for name in choices.values()]
         if dict(zip(choices, texts, strict=True)) == {0: "False", 1: "True"}:
@@ -118,7 +138,7 @@ def _exact_words(signal: Signal, taken: Set[str]) -> Words:
         raise Unsayable(f"its unit `{unit}` is not one of at most {LONGEST_UNIT} characters")
     shown = f', unit: "{unit}"' if unit else ""
     keys = (*_layout(signal), f"offset: {int(counts)}")
-    return Words(None, (), f"{{range: [{low}, {high}]{shown}}}", keys)
+    return Words(None, (), f"{{range: [{low}, {high}]{shown}}}", keys, limits=(low, high))
 
 
 def _exact(value: float | int) -> Decimal:
@@ -148,51 +168,36 @@ def _raw_range(signal: Signal, scale: Decimal, offset: Decimal) -> tuple[int, in
 
 
 HALF = 32
-"""Bits of the less significant part of a signal that is too wide."""
+"""Bits of a piece of a signal that is too wide."""
 
 
 def parts_of(signal: Signal) -> tuple[Signal, ...]:
-    """The signal itself, or its two halves where it has more bits than a model's number."""
-    if signal.length <= SIGNED_BITS or signal.is_multiplexer:
+    """The signal itself, or pieces of it where it has more bits than a model's number.
+
+    Two pieces are `_High` and `_Low`; more are numbered from the least significant one on.
+    """
+    if signal.length <= SIGNED_BITS:
         return (signal,)
-    bits = _bits(signal)
-    if signal.byte_order == "little_endian":
-        starts = {"High": bits[HALF], "Low": bits[0]}
-    else:
-        starts = {"High": bits[-1], "Low": bits[HALF - 1]}
-    widths = {"High": signal.length - HALF, "Low": HALF}
-    return tuple(
+    bits = bits_of(signal)
+    pieces = [bits[low : low + HALF] for low in range(0, len(bits), HALF)]
+    names = ["Low", "High"] if len(pieces) == 2 else [str(n) for n in range(len(pieces))]
+    intel = signal.byte_order == "little_endian"
+    made = [
         Signal(
-            f"{signal.name}_{half}",
-            start,
-            widths[half],
+            f"{signal.name}_{name}",
+            piece[0] if intel else piece[-1],
+            len(piece),
             byte_order=signal.byte_order,
             multiplexer_ids=signal.multiplexer_ids,
             multiplexer_signal=signal.multiplexer_signal,
         )
-        for half, start in starts.items()
-    )
+        for name, piece in zip(names, pieces, strict=True)
+    ]
+    return tuple(reversed(made))
 
 
-def check_room(message: Message, signal: Signal, others: Sequence[Signal]) -> None:
-    """`Unsayable` when a signal is beyond the frame, or shares bits with one of ``others``."""
-    own = frozenset(_bits(signal))
-    paged = any(one.is_multiplexer for one in message.signals)
-    if max(own) >= 8 * message.length:
-        raise Unsayable(f"it reaches beyond the {message.length} bytes of its frame")
-    for other in others:
-        if own & frozenset(_bits(other)) and not (paged and _are_apart(signal, other)):
-            raise Unsayable(f"it shares bits with {other.name}")
-
-
-def _bits(signal: Signal) -> tuple[int, ...]:
+def bits_of(signal: Signal) -> tuple[int, ...]:
     """Its bits in the frame, the least significant first."""
     intel = signal.byte_order == "little_endian"
     order = ByteOrder.INTEL if intel else ByteOrder.MOTOROLA
     return positions(signal.start, signal.length, order)
-
-
-def _are_apart(one: Signal, other: Signal) -> bool:
-    """Are they on different pages, so that no frame has both?"""
-    pages, others = set(one.multiplexer_ids or ()), set(other.multiplexer_ids or ())
-    return bool(pages and others) and not pages & others

@@ -35,9 +35,10 @@ def whole(text: str, node: str) -> str:
     rows = [f"{node}.ports"] if len(outs) < len(component["ports"]) else []
     if rows:
         component["port_region"] = {"period": "20 ms", "wcet": "10 us"}
-    if outs:
+    if outs or not rows:
+        sends = {"sends": outs} if outs else {}
         component["activities"] = {
-            "work": {"period": "20 ms", "wcet": "10 us", "body": "user", "sends": outs}
+            "work": {"period": "20 ms", "wcet": "10 us", "body": "user", **sends}
         }
         rows.append(f"{node}.work")
     model |= {
@@ -54,15 +55,16 @@ def whole(text: str, node: str) -> str:
         },
         "processors": {
             "work": {"node": node, "stack": "16 KiB", "activities": rows},
-            "reception": {
-                "node": node,
-                "released_by": "bus",
-                "period": "1 ms",
-                "stack": "16 KiB",
-                "activities": ["bus.receive"],
-            },
         },
     }
+    if len(outs) < len(component["ports"]):
+        model["processors"]["reception"] = {
+            "node": node,
+            "released_by": "bus",
+            "period": "1 ms",
+            "stack": "16 KiB",
+            "activities": ["bus.receive"],
+        }
     return yaml.safe_dump(model, sort_keys=False).replace("'0x", "0x")
 
 
@@ -134,7 +136,11 @@ def test_a_value_counts_the_scale_of_its_signal(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("message", "told"),
     [
-        ("BO_ 1 odd: 8 ecu", "it has no signals"),
+        ("BO_ 1 odd: 0 ecu", "its frame has no data"),
+        (
+            'BO_ 1 first: 8 ecu\n SG_ x : 0|8@1+ (1,0) [0|9] "" other\nBO_ 1 odd: 8 ecu',
+            "first has its identifier 0x1",
+        ),
         ('BO_ 1 odd: 8 other\n SG_ x : 0|8@1+ (1,0) [0|9] "" ecu', "no cycle time"),
     ],
 )
@@ -146,7 +152,8 @@ def test_what_a_model_cannot_say_is_told_and_left_out(
     out = capsys.readouterr()
     assert f"{path}: error: odd is left out: " in out.err
     assert told in out.err
-    assert list(yaml.safe_load(out.out)["messages"]) == ["fine"]
+    assert "odd" not in yaml.safe_load(out.out)["messages"]
+    assert "fine" in yaml.safe_load(out.out)["messages"]
 
 
 SILENT = 'BO_ 1 odd: 8 other\n SG_ x : 0|8@1+ (1,0) [0|9] "" ecu'
@@ -383,16 +390,7 @@ def test_names_of_single_values_are_told(tmp_path: Path) -> None:
     found = imported(database(tmp_path, text), "ecu")
     assert found.problems == []
     assert "counts raw values: some of its values have names, and others have none" in found.text
-
-
-def test_several_multiplexors_are_told(tmp_path: Path) -> None:
-    text = (
-        'BO_ 1 odd: 8 ecu\n SG_ a M : 0|8@1+ (1,0) [0|9] "" other\n'
-        ' SG_ b m1M : 8|8@1+ (1,0) [0|9] "" other\n SG_ c m1 : 16|8@1+ (1,0) [0|9] "" other\n'
-        "SG_MUL_VAL_ 1 b a 1-1;\nSG_MUL_VAL_ 1 c b 1-1;"
-    )
-    (problem,) = imported(database(tmp_path, text), "ecu").problems
-    assert "several multiplexors, a, b" in problem
+    assert "(value = 1 * raw + 0); 255 Absent\n" in found.text
 
 
 def test_a_node_that_is_not_there_is_told_with_those_that_are(tmp_path: Path) -> None:
