@@ -281,8 +281,9 @@ def _users(system: System) -> Iterator[tuple[str, Unit]]:
             yield f"{folder}/{unit.file_name}", unit
     for kind in device_types(system):
         if not kind.simulated:
+            folder = f"user/{kind.name}".lower() if _has_own_folder(kind) else "user"
             for unit in simulated_driver(system, kind, header):
-                yield f"user/{unit.file_name}", unit
+                yield f"{folder}/{unit.file_name}", unit
 
 
 def source_folders(system: System) -> tuple[str, ...]:
@@ -291,7 +292,15 @@ def source_folders(system: System) -> tuple[str, ...]:
     Those of registers are not among them: see `simulation_folders`.
     """
     files = (*user_units(system), *simulated_drivers(system))
-    return tuple(dict.fromkeys(name.rpartition("/")[0] for name in files))
+    folders = dict.fromkeys(name.rpartition("/")[0] for name in files)
+    #  what drivers have in common
+    shared = ("user",) if any(_has_own_folder(k) for k in device_types(system)) else ()
+    return tuple(dict.fromkeys((*shared, *folders)))
+
+
+def _has_own_folder(kind: DeviceType) -> bool:
+    """Whether the user's driver has a folder: there a simulated one can take its place."""
+    return not kind.simulated and (kind.tells_apart or kind.lifecycle.given)
 
 
 def simulation_folders(system: System) -> tuple[str, ...]:

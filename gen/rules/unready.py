@@ -14,3 +14,8 @@ def unready(system: System) -> Iterator[Diagnostic]:
         if node.cores > 1:
             text = f"{node.name} has {node.cores} cores: several are analysed, not generated yet"
             yield error(UNREADY, node.origin, text, hint="put all processors on one core")
+    for bus in system.buses:
+        if not any(message.bus == bus.name for message in system.messages):
+            text = f"the model sends and receives nothing on {bus.name}"
+            hint = "give a component a port, and a message `from` or `to` it, or remove the bus"
+            yield error(UNREADY, bus.origin, text, hint=hint)

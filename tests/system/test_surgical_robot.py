@@ -189,5 +189,7 @@ def test_a_drive_over_can_replaces_the_servo_by_a_line(
 def test_generated_files_are_those_in_the_repository() -> None:
     checked = checking.check(HERE / "model.yaml")
     made = generate(checked.system, generation.claims(checked))
-    there = {p.name: p.read_text() for p in (HERE / "generated").iterdir()}
+    home = HERE / "generated"
+    files = (p for p in home.rglob("*") if p.is_file())
+    there = {p.relative_to(home).as_posix(): p.read_text() for p in files}
     assert made == {name: text for name, text in there.items() if name != generation.MANIFEST}

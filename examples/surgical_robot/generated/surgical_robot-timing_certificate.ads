@@ -9,7 +9,7 @@ with SPARK_Mode, Pure
 is
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
-     "8bf1ab29e71b497721543e8f3ffb4055768327844559b10b6f43be7bb9e7e356";
+     "4b6268ebf871c98933e2b91a45a475c638ecbf5957aa3c147d299e53ef8434a2";
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with

@@ -3,7 +3,7 @@ with System;
 package body Surgical_Robot.Arm
 with SPARK_Mode => Off
 is
-   Lightness : constant := 25;
+   Lightness : constant := 8;
    --  Microradians in an execution for each milliampere.
    Stride    : constant := 6_000;
    --  Microradians that a drive goes on with each look at it.

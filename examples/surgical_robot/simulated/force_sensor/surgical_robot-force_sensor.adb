@@ -6,6 +6,13 @@ with SPARK_Mode
 is
    use type Force_Sensor_States.Call_Count;
 
+   procedure Self_Test
+     (Device : in out Force_Sensor_States.State; Passed : out Boolean) is
+   begin
+      Device.Calls := Device.Calls + 1;
+      Passed := True;
+   end Self_Test;
+
    procedure Get_Force
      (Device : in out Force_Sensor_States.State;
       Reply  : out Surgical_Robot.Force) is

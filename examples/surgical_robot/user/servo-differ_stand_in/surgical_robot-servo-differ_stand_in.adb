@@ -49,6 +49,8 @@ is
               Ravenchart.Number'Min (Fastest, Moved * Per_Second)));
    end Rate;
 
+   pragma Unreferenced (Lemma_Resolution);
+
    procedure Lemma_Resolution (Now, Past : Microradians) is null;
 
    procedure Differ

@@ -8,26 +8,32 @@ is
    Per_Second : constant := 200;  --  executions
    Farthest   : constant := 3_000;  --  mrad
 
-   function Next (From : Angle; By : Speed) return Angle
+   procedure Go_On (Place : in out Angle; Rest : in out Speed; By : Speed)
    with Global => null;
-   --  Where a joint is after one more execution.
+   --  Where a joint is after one more execution, in whole mrad; Rest is what
+   --  it has moved beyond that, in parts of which Per_Second are a mrad.
 
-   function Next (From : Angle; By : Speed) return Angle is
-      To : constant Ravenchart.Number :=
-        Ravenchart.Number (From) + Ravenchart.Number (By) / Per_Second;
+   procedure Go_On (Place : in out Angle; Rest : in out Speed; By : Speed) is
+      Moved : constant Ravenchart.Number :=
+        Ravenchart.Number (By) + Ravenchart.Number (Rest);
+      To    : constant Ravenchart.Number :=
+        Ravenchart.Number (Place) + Moved / Per_Second;
    begin
-      return
+      Place :=
         Angle
           (Ravenchart.Number'Max
              (-Farthest, Ravenchart.Number'Min (Farthest, To)));
-   end Next;
+      Rest := Speed (Moved rem Per_Second);
+   end Go_On;
 
-   procedure Follow (Get_Velocity : Speed_X4; Followed : in out Angle_X4) is
+   procedure Follow
+     (Get_Velocity : Speed_X4;
+      Followed     : in out Angle_X4;
+      Rest         : in out Speed_X4) is
    begin
-      Followed :=
-        (Axis_1 => Next (Followed.Axis_1, Get_Velocity.Axis_1),
-         Axis_2 => Next (Followed.Axis_2, Get_Velocity.Axis_2),
-         Axis_3 => Next (Followed.Axis_3, Get_Velocity.Axis_3),
-         Axis_4 => Next (Followed.Axis_4, Get_Velocity.Axis_4));
+      Go_On (Followed.Axis_1, Rest.Axis_1, Get_Velocity.Axis_1);
+      Go_On (Followed.Axis_2, Rest.Axis_2, Get_Velocity.Axis_2);
+      Go_On (Followed.Axis_3, Rest.Axis_3, Get_Velocity.Axis_3);
+      Go_On (Followed.Axis_4, Rest.Axis_4, Get_Velocity.Axis_4);
    end Follow;
 end Surgical_Robot.Servo.Follow_Stand_In;
