@@ -19,6 +19,7 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
 from ravenchart.failures import Refused
 from ravenchart.paths import ROOT
+from tests.support.faults import shows
 
 CASE = ROOT / "tests" / "feature" / "registers"
 
@@ -104,6 +105,12 @@ def test_devices_start_before_the_first_release_and_are_safe_behind_a_stop(tmp_p
     assert registers == [*STARTED, *DRIVEN, *SAFE]
 
 
+@shows(
+    "a device fails its self-test",
+    found_by="`Self_Test` of its driver, before the first release",
+    reaction="no command acts, all devices are made safe, exit status 1; the device is named",
+    within="5 s",
+)
 def test_a_failed_self_test_names_the_device_and_nothing_is_ever_driven(tmp_path: Path) -> None:
     begun = time.monotonic()
     status, registers, errors = _run(_built(tmp_path), 10, BROKEN_DRIVE="RIGHT_UNIT")
@@ -123,6 +130,11 @@ FAULTS = {
 }
 
 
+@shows(
+    "a task dies or hangs while its devices are driven",
+    found_by="the fallback handler of task termination; liveness supervision",
+    reaction="the main program makes the devices safe, exit status 1",
+)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_failure_of_a_task_makes_the_devices_safe(fault: str, tmp_path: Path) -> None:
     statement, reason = FAULTS[fault]
@@ -136,6 +148,11 @@ def test_a_failure_of_a_task_makes_the_devices_safe(fault: str, tmp_path: Path) 
     assert registers == [*STARTED, *DRIVEN, *SAFE]
 
 
+@shows(
+    "a processor is silent, and the main program no longer runs",
+    found_by="liveness supervision",
+    reaction="the supervisor makes the devices safe and ends the process, exit status 1",
+)
 def test_a_supervisor_makes_devices_safe_where_the_main_program_cannot(tmp_path: Path) -> None:
     program = _built(tmp_path)
     generated = tmp_path / "generated"
