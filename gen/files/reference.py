@@ -46,6 +46,8 @@ TITLES: Mapping[str, str] = {
     "NeedForm": "Required command",
     "ProvidedForm": "Provided interface",
     "DeviceTypeForm": "Device type",
+    "DeviceParameterForm": "Device parameter",
+    "RegisterForm": "Register",
     "DeviceForm": "Device",
     "BindingForm": "Binding",
     "NodeForm": "Node",

@@ -12,7 +12,8 @@ is
    type First_Joints is array (Amplifier_Units.Unit) of Arm.Joint;
 
    First : constant First_Joints :=
-     (Amplifier_Units.Left_Power_Unit => 1, Amplifier_Units.Right_Power_Unit => 3);
+     (Amplifier_Units.Left_Power_Unit  => 1,
+      Amplifier_Units.Right_Power_Unit => 3);
 
    Control : Words := (others => 0)
    with Volatile;

@@ -34,11 +34,13 @@ is
    end Drive;
 
    function Count
-     (Unit : Io_Board_Units.Unit; Axis : Arm.Joint) return Interfaces.Unsigned_32;
+     (Unit : Io_Board_Units.Unit; Axis : Arm.Joint)
+      return Interfaces.Unsigned_32;
    --  What an encoder has counted, rounded down, in two's complement.
 
    function Count
-     (Unit : Io_Board_Units.Unit; Axis : Arm.Joint) return Interfaces.Unsigned_32
+     (Unit : Io_Board_Units.Unit; Axis : Arm.Joint)
+      return Interfaces.Unsigned_32
    is
       Turned  : constant Integer :=
         Arm.Place (First (Unit) + Axis - 1)

@@ -36,9 +36,9 @@ is
       Found := 0;
       Force_Sensor_Registers.Write_Control (Unit, Start);
       for Try in 1 .. Tries loop
+         exit when Is_New;
          Force_Sensor_Registers.Read_Status (Unit, Status);
          Is_New := (Status and Done) /= 0;
-         exit when Is_New;
       end loop;
       if Is_New then
          Force_Sensor_Registers.Read_Sample (Unit, Sample);
@@ -54,9 +54,14 @@ is
    procedure Self_Test
      (Unit   : Force_Sensor_Units.Unit;
       Device : in out Force_Sensor_States.State;
-      Passed : out Boolean) is
+      Passed : out Boolean)
+   is
+      Found : Force;
    begin
-      Convert (Unit, Passed, Device.Last);
+      Convert (Unit, Passed, Found);
+      if Passed then
+         Device.Last := Found;
+      end if;
    end Self_Test;
 
    procedure Get_Force
