@@ -52,7 +52,8 @@ def callers(system: System, device: Device) -> tuple[str, ...]:
         if isinstance(binding.provider, Device) and device in binding.provider.leaves()
         for row in rows_of(system, binding)
     )
-    return tuple(dict.fromkeys(rows))
+    handlers = (f"{poll.instance}.ports" for poll in system.polls if poll.device == device)
+    return tuple(dict.fromkeys((*rows, *handlers)))
 
 
 def called(system: System, device: Device) -> tuple[DriverCommand, ...]:
@@ -63,6 +64,7 @@ def called(system: System, device: Device) -> tuple[DriverCommand, ...]:
         if isinstance(binding.provider, Device)
         and (binding.provider == device or _holds(binding.provider, device))
     }
+    names |= {poll.event for poll in system.polls if poll.device == device}
     return tuple(one for one in device.provides if one.name in names)
 
 

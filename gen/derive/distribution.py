@@ -204,6 +204,7 @@ def part_of(system: System, node: Node) -> System:
         shutdown=Shutdown(raises, system.shutdown.grace),
         chains=(),
         devices=tuple(device for device in system.devices if called(part, device)),
+        polls=tuple(poll for poll in system.polls if poll.instance in here),
         tasks=(),
         objects=(),
     )

@@ -150,6 +150,11 @@ class DriverCommand:
         """The command's."""
         return self.command.name
 
+    @property
+    def is_event(self) -> bool:
+        """Whether the device raises it, and nobody calls it."""
+        return self.command.kind is CommandKind.EVENT
+
 
 @dataclass(frozen=True, slots=True)
 class DeviceParameter:
@@ -263,6 +268,23 @@ class Device:
     def command(self, name: str) -> DriverCommand:
         """The command of that name; KeyError where it has none."""
         return named(self.provides, name)
+
+
+@dataclass(frozen=True, slots=True)
+class Poll:
+    """An event of a device, which the port handler of an instance asks for in each execution."""
+
+    origin: Origin
+    device: Device
+    event: str
+    instance: str
+    port: str
+    """The input port that it comes to."""
+
+    @property
+    def wcet(self) -> Ns:
+        """What it adds to the execution of the port handler."""
+        return self.device.command(self.event).wcet
 
 
 @dataclass(frozen=True, slots=True)

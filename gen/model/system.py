@@ -17,7 +17,7 @@ from functools import cached_property
 from ravenchart.gen.language.terms import IntegerType, Ns, Scalar, Type, named
 from ravenchart.gen.origins import Origin
 
-from .commands import Binding, Device, Remote
+from .commands import Binding, Device, Poll, Remote
 from .component import Component
 from .protection import Protection
 from .signals import Signal
@@ -446,8 +446,9 @@ class System:
     traffic: tuple[Message, ...] = ()
     """Frames of the buses that are none of the system's ``messages``."""
     devices: tuple[Device, ...] = ()
-    """Those that some command is bound to, pieces of an array before it."""
+    """Those that some command or event is bound to, pieces of an array before it."""
     bindings: tuple[Binding, ...] = ()
+    polls: tuple[Poll, ...] = ()
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
 

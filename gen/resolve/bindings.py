@@ -15,7 +15,15 @@ from ravenchart.gen.files.schema_devices import BindingForm
 from ravenchart.gen.language.names import Findings, Scope, meant
 from ravenchart.gen.language.quantities import LONGEST
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.commands import Binding, Device, Need, wcet_of
+from ravenchart.gen.model.commands import (
+    Binding,
+    Device,
+    DriverCommand,
+    Need,
+    Poll,
+    Server,
+    wcet_of,
+)
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Connection, End, Instance, Processor, Slot, System
@@ -105,9 +113,13 @@ def bindings_of(
 
 def event_wires(
     instances: Iterable[Instance], given: Given, findings: Findings
-) -> tuple[Connection, ...]:
-    """What brings the events of required interfaces: connections of the ports on both sides."""
+) -> tuple[tuple[Connection, ...], tuple[Poll, ...]]:
+    """What brings the events of required interfaces.
+
+    Of a task it is a connection of the ports on both sides; a device is polled.
+    """
     made: list[Connection] = []
+    polls: list[Poll] = []
     for instance in instances:
         for heard in instance.component.hears:
             wanted = f"{instance.name}.{heard.interface}"
@@ -130,18 +142,39 @@ def event_wires(
                         f"{instance.name} requires"
                     )
                     near = meant(heard.name, told_by(provider))
-                    near = near or "provide it by `events`; a device has none"
+                    near = near or "provide it by `events`, or by `provides` of a device type"
                     findings.error("RV-1204", form.at("to"), message, notes=notes, hint=near)
                 elif len(told) > 1:
-                    first, second = (name_of(server) for server, _ in told[:2])
+                    first, second = (name_of(teller) for teller, _ in told[:2])
                     message = f"{first} and {second} of {name_of(provider)} both tell {heard.name}"
                     hint = f"say which is meant: `choose: {{{heard.name}: {first}}}`"
                     findings.error("RV-1212", form.at("to"), message, notes=notes, hint=hint)
                 else:
-                    ((server, event),) = told
-                    source = End(server.instance, event.port)
-                    made.append(Connection(form.origin, source, End(instance.name, heard.port)))
-    return tuple(made)
+                    ((teller, event),) = told
+                    at = form.origin
+                    if isinstance(event, DriverCommand):
+                        assert isinstance(teller, Device)
+                        poll = Poll(at, teller, event.name, instance.name, heard.port)
+                        polls.append(poll)
+                        _check_type(poll, event, instance, form, findings)
+                    else:
+                        assert isinstance(teller, Server)
+                        source = End(teller.instance, event.port)
+                        made.append(Connection(at, source, End(instance.name, heard.port)))
+    return tuple(made), tuple(polls)
+
+
+def _check_type(
+    poll: Poll, event: DriverCommand, instance: Instance, form: BindingForm, findings: Findings
+) -> None:
+    """Report an event of a device that has another number of axes than who hears it."""
+    taken = instance.component.port(poll.port).type
+    if event.argument is not None and event.argument != taken:
+        message = (
+            f"{poll.device.name} tells {event.name} as {event.argument.name}, and "
+            f"{instance.name}.{poll.port} takes {taken.name}"
+        )
+        findings.error("RV-1205", form.at("to"), message, hint="change `axes` of one of them")
 
 
 _NOTHING: tuple[BindingForm | None, Provider | None] = None, None
@@ -197,20 +230,24 @@ def _axes(count: int) -> str:
 # --- What follows ------------------------------------------------------------------
 
 
-def with_bindings(system: System, bindings: tuple[Binding, ...]) -> System:
+def with_bindings(system: System, bindings: tuple[Binding, ...], polls: tuple[Poll, ...]) -> System:
     """The system with its bindings: stand-ins that nobody needs gone, calls in the budgets."""
     of: defaultdict[str, list[Binding]] = defaultdict(list)
     for binding in bindings:
         of[binding.instance].append(binding)
-    if not of:
+    if not of and not polls:
         return system
     instances = tuple(
         replace(one, component=_pruned(one.component, of[one.name])) for one in system.instances
     )
     kept = {i.name: {row.name for row in i.component.runnables()} | {"ports"} for i in instances}
     costs = {i.name: _costs(i.component, of[i.name]) for i in instances}
+    for poll in polls:
+        ports = costs[poll.instance].get("ports", Ns(0))
+        costs[poll.instance]["ports"] = Ns(ports + poll.wcet)
     processors = (_of_kept(one, kept, costs) for one in system.processors)
     used = [b.provider for b in bindings if isinstance(b.provider, Device)]
+    used += [poll.device for poll in polls]
     return replace(
         system,
         components=tuple(_in_use(one, instances) for one in system.components),
@@ -218,6 +255,7 @@ def with_bindings(system: System, bindings: tuple[Binding, ...]) -> System:
         processors=tuple(one for one in processors if one.slots),
         devices=tuple(dict.fromkeys(part for device in used for part in _parts(device))),
         bindings=bindings,
+        polls=polls,
     )
 
 

@@ -51,7 +51,7 @@ def name_of(provider: Provider) -> str:
 def offered(provider: Provider) -> tuple[str, ...]:
     """The names of the commands that it provides."""
     if isinstance(provider, Device):
-        return tuple(one.name for one in provider.provides)
+        return tuple(one.name for one in provider.provides if not one.is_event)
     if isinstance(provider, Server):
         own = provider.interface
         return (*(one.name for one in own.requests), *(one.name for one in own.published))
@@ -70,11 +70,7 @@ def device_type_of(
     for text, wcet in form.provides.items():
         at = form.entry_at("provides", text)
         command = dictionary.look_up(text, at, findings)
-        if command is not None and command.kind is CommandKind.EVENT:
-            message = f"{command.name} is an event, and a device has no task that could raise it"
-            hint = "let the device be read, and a component tell of it"
-            findings.error("RV-1215", at, message, hint=hint)
-        elif command is not None:
+        if command is not None:
             made = DriverCommand(command, *at_axes(command, form.axes, types), Ns(wcet))
             found.declare(command.name, at, made, findings)
     parameters, registers = parameters_of(form, types, findings), registers_of(form, findings)
@@ -247,7 +243,7 @@ class Devices:
                 Ns(sum(piece.command(one.name).wcet for piece in pieces)),
             )
             for one in pieces[0].provides
-            if one.command.per_axis or one.reply is None
+            if not one.is_event and (one.command.per_axis or one.reply is None)
         ]
         return Device(name, form.origin, None, tuple(pieces), tuple(joined), axes)
 
@@ -299,12 +295,18 @@ def found_in(provider: Provider, command: str, report: Report) -> Device | Serve
     return found_in(having[0], command, report) if having else None
 
 
-def tells(provider: Provider, event: str) -> tuple[tuple[Server, InterfaceEvent], ...]:
-    """Who raises an event, and by which port; of a facade whoever is chosen, or all."""
+Teller = tuple[Server, InterfaceEvent] | tuple[Device, DriverCommand]
+"""Who raises an event, and by which port; a device is asked for it."""
+
+
+def tells(provider: Provider, event: str) -> tuple[Teller, ...]:
+    """Who raises an event; of a facade whoever is chosen, or all."""
     if isinstance(provider, Server):
         return tuple((provider, one) for one in provider.interface.events if one.name == event)
     if isinstance(provider, Device):
-        return ()
+        return tuple(
+            (provider, one) for one in provider.provides if one.is_event and one.name == event
+        )
     meant_by = dict(provider.chosen).get(event.lower())
     members = provider.members if meant_by is None else (meant_by,)
     return tuple(one for member in members for one in tells(member, event))
@@ -314,6 +316,8 @@ def told_by(provider: Provider) -> tuple[str, ...]:
     """The names of the events that it provides."""
     if isinstance(provider, Server):
         return tuple(one.name for one in provider.interface.events)
+    if isinstance(provider, Device):
+        return tuple(one.name for one in provider.provides if one.is_event)
     members = provider.members if isinstance(provider, Facade) else ()
     return tuple(name for member in members for name in told_by(member))
 

@@ -17,7 +17,7 @@ from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
 from ravenchart.gen.language.terms import BOOLEAN, EnumerationType, Type
-from ravenchart.gen.model.commands import Binding, DeviceType
+from ravenchart.gen.model.commands import Binding, DeviceType, Poll
 from ravenchart.gen.model.system import Bus, Connection, Instance, Message, Shutdown, System
 from ravenchart.gen.origins import Origin
 
@@ -240,7 +240,7 @@ class _Sections:
         instances: Scope[Instance],
         types: Scope[Type],
         damaged: frozenset[str],
-    ) -> tuple[tuple[Binding, ...], tuple[Connection, ...]]:
+    ) -> tuple[tuple[Binding, ...], tuple[Connection, ...], tuple[Poll, ...]]:
         """What provides each required command, and brings each event.
 
         None where something of it was lost.
@@ -260,13 +260,13 @@ class _Sections:
         )
         if lost or scope.has_lost() or self.findings.count() > count or not self.whole:
             self.sound.discard("connections")
-            return (), ()
+            return (), (), ()
         known += [f"{i.name}.{p.name}" for i in instances.sound() for p in i.component.provides]
         made = bindings_of(instances.sound(), given, known, self.findings)
-        wires = event_wires(instances.sound(), given, self.findings)
+        wires, polls = event_wires(instances.sound(), given, self.findings)
         if self.findings.count() > count:
             self.sound.discard("connections")
-        return made, wires
+        return made, wires, polls
 
     def buses(self, site: Site) -> tuple[Bus, ...]:
         """The buses, with the events that they raise and are asked by."""
@@ -332,7 +332,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     stop = sections.shutdown(site)
     lines = sections.buses(site)
     damaged = {part.component.name for part in parts.sound() if part.is_damaged}
-    bindings, wires = sections.bindings(kinds, instances, types, frozenset(damaged))
+    bindings, wires, polls = sections.bindings(kinds, instances, types, frozenset(damaged))
     if any(
         part.is_damaged and _hears_or_tells(part.component.name, model) for part in parts.sound()
     ):
@@ -357,7 +357,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         shutdown=stop,
         chains=chains.sound(),
     )
-    system = calling(with_bindings(system, bindings))
+    system = calling(with_bindings(system, bindings, polls))
     frames = identified(system.frames)
     system = replace(
         system,

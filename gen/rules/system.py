@@ -139,6 +139,8 @@ def inputs_have_one_source(resolved: Resolved) -> Iterator[Diagnostic]:
     for item in resolved.system.messages:
         for target in item.targets:
             sources[target.instance, target.port].append(item.origin)
+    for poll in resolved.system.polls:
+        sources[poll.instance, poll.port].append(poll.origin)
     complete = {"connections", "messages", "instances"} <= resolved.sound_sections
     for instance in resolved.system.instances:
         for port in instance.component.inputs():

@@ -7,6 +7,7 @@ import random
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -98,9 +99,13 @@ class Node(threading.Thread):
                 self._receive(0)
             else:
                 self._receive(0.001)
-            self.over = self.span[1] - self.span[0] >= FULL_LOAD
+            #  of its own frames it hears nothing: the last that sends would never be over
+            passed = self.span[1] - self.span[0] >= FULL_LOAD
+            self.over = passed or any(node.over for node in others)
+        #  the last frame of another node may come before that node says that it was the last
+        patient = time.monotonic() + PATIENCE / 2
         while self.wrong is None and not self._has_all(others):
-            if not self._receive(PATIENCE) and not self._has_all(others):
+            if not self._receive(0.1) and time.monotonic() > patient:
                 self.wrong = f"{self.got} came"
 
     def _has_all(self, others: Sequence[Node]) -> bool:
@@ -145,7 +150,7 @@ def test_eight_nodes_at_full_load_lose_nothing(start: Start) -> None:
     sent = [node.sent for node in nodes]
     for index, node in enumerate(nodes):
         assert node.got == [0 if other == index else count for other, count in enumerate(sent)]
-        assert node.span[1] - node.span[0] >= FULL_LOAD
+    assert max(node.span[1] - node.span[0] for node in nodes) >= FULL_LOAD
     busy = sum(sent) * LONGEST / BIT_RATE
     assert busy >= FULL_LOAD, "the bus was idle"
 

@@ -75,6 +75,9 @@ def providers(system: System, instance: Instance) -> tuple[str, ...]:
                 found[ada_case(binding.instance)] = None
         elif isinstance(provider, Device) and binding.instance == instance.name:
             found[ada_case(provider.name)] = None
+    for poll in system.polls:
+        if poll.instance == instance.name:
+            found[ada_case(poll.device.name)] = None
     found.pop(ada_case(instance.name), None)
     return tuple(found)
 

@@ -85,6 +85,10 @@ def _state(kind: DeviceType) -> str:
 
 def _params(system: System, command: DriverCommand) -> tuple[Param, ...]:
     params = []
+    if command.is_event:
+        assert command.argument is not None
+        of_type = type_name(system, command.argument)
+        return (Param("Is_Raised", "out", "Boolean"), Param("Argument", "out", of_type))
     if command.argument is not None:
         params.append(Param("Argument", "in", type_name(system, command.argument)))
     if command.reply is not None:
@@ -93,6 +97,8 @@ def _params(system: System, command: DriverCommand) -> tuple[Param, ...]:
 
 
 def _passed(command: DriverCommand) -> tuple[Arg, ...]:
+    if command.is_event:
+        return arguments(Ref("Is_Raised"), Ref("Argument"))
     argument = arguments(Ref("Argument")) if command.argument is not None else ()
     return (*argument, *(arguments(Ref("Reply")) if command.reply is not None else ()))
 
@@ -147,7 +153,11 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
                 if of_type is not None:
                     start = default_value(system, of_type)
                     kept.append(Component(slot, type_name(system, of_type), start))
-            if command.argument is not None:
+            if command.is_event:
+                assert command.argument is not None
+                steps.append(Assign("Is_Raised", FALSE))
+                steps.append(Assign("Argument", Ref(f"Device.{name}")))
+            elif command.argument is not None:
                 steps.append(Assign(f"Device.{name}", Ref("Argument")))
             if command.reply is not None:
                 steps.append(Assign("Reply", Ref(f"Device.{name}_Reply")))
@@ -238,6 +248,10 @@ def _work(
         steps = (If(((Ref("Is_Ready"), steps),)),)
         if command.reply is not None:
             steps = (Assign("Reply", default_value(system, command.reply)), *steps)
+        if command.is_event:
+            assert command.argument is not None
+            nothing = default_value(system, command.argument)
+            steps = (Assign("Is_Raised", FALSE), Assign("Argument", nothing), *steps)
     return Subprogram(ada_case(command.name), _params(system, command), body=steps)
 
 

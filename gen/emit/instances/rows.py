@@ -43,7 +43,7 @@ from ravenchart.gen.emit.components.packages import (
 )
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.places import Places
-from ravenchart.gen.model.commands import Binding, Device, RemoteRead, Server
+from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
@@ -65,6 +65,13 @@ class Rows(Site):
         if any(p.on_overflow for p in component.inputs()):
             declarations.append(UseType("Ravenchart.Event_Count"))
         body: list[Stmt] = []
+        for poll in self.system.polls:
+            if poll.instance == self.instance.name:
+                asked = f"{ada_case(poll.port)}_Told"
+                told = self.instance.component.port(poll.port).type
+                declarations.append(Object(asked, type_name(self.system, told)))
+                declarations.append(Object(f"{asked}_Now", "Boolean"))
+                body += self._asked_for(poll, asked)
         for port in component.inputs():
             name = ada_case(port.name)
             declarations.append(Object(f"{name}_Item", type_name(self.system, port.type)))
@@ -92,6 +99,15 @@ class Rows(Site):
                 body += self._watch_losses(port, port.on_overflow)
             body.append(self._react(port))
         return Subprogram("Run_Ports", declarations=tuple(declarations), body=tuple(body))
+
+    def _asked_for(self, poll: Poll, told: str) -> list[Stmt]:
+        """Ask a device for an event, and take it like a value that has arrived."""
+        asked = f"{ada_case(poll.device.name)}.{ada_case(poll.event)}"
+        arrived = Do(f"Put_{ada_case(poll.port)}", arguments(Ref(told)))
+        return [
+            Do(asked, arguments(Ref(f"{told}_Now"), Ref(told))),
+            If(((Ref(f"{told}_Now"), (arrived,)),)),
+        ]
 
     def _watch_losses(self, port: Port, event: str) -> list[Stmt]:
         """Raise the overflow event when the mailbox has lost more than last time."""

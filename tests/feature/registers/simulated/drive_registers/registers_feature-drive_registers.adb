@@ -1,6 +1,7 @@
---  Drives whose axes go on by a count for each positive step of the DAC. Each
---  change of a DAC or a control register is a line on standard error; the
---  environment variable BROKEN_DRIVE names a drive that is not sound.
+--  Drives whose axes go on by a count for each positive step of the DAC, with
+--  a limit switch at 300 counts. Each change of a DAC or a control register
+--  is a line on standard error; the environment variable BROKEN_DRIVE names a
+--  drive that is not sound.
 
 with Ada.Environment_Variables;
 with GNAT.IO;
@@ -83,6 +84,8 @@ is
       Value :=
         (if Ada.Environment_Variables.Value ("BROKEN_DRIVE", "") = Unit'Image
          then 0
+         elsif Equipment.Count (Unit) in 300 .. 2**31
+         then 3
          else 1);
    end Read_Status;
 

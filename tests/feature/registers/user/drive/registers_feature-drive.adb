@@ -13,6 +13,7 @@ is
 
    Enabled : constant Interfaces.Unsigned_8  := 16#01#;
    Sound   : constant Interfaces.Unsigned_16 := 16#0001#;
+   Limit   : constant Interfaces.Unsigned_16 := 16#0002#;
    Middle  : constant := 512;
    --  Of the DAC: no current.
 
@@ -126,4 +127,22 @@ is
                      Ravenchart.Number (Position (Unit, Count))
                      - Ravenchart.Number (Argument))));
    end Calibrate;
+
+   procedure Limit_Reached
+     (Unit      : Drive_Units.Unit;
+      Device    : in out Drive_States.State;
+      Is_Raised : out Boolean;
+      Argument  : out Angle)
+   is
+      Status : Interfaces.Unsigned_16;
+      Count  : Interfaces.Unsigned_32;
+      Is_At  : Boolean;
+   begin
+      Drive_Registers.Read_Status (Unit, Status);
+      Drive_Registers.Read_Count (Unit, Count);
+      Is_At := (Status and Limit) /= 0;
+      Is_Raised := Is_At and not Device.At_Limit;
+      Argument := Position (Unit, Count);
+      Device.At_Limit := Is_At;
+   end Limit_Reached;
 end Registers_Feature.Drive;
