@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import Findings, Scope, meant
-from ravenchart.gen.language.terms import Ns, RecordType, Scalar, Type
+from ravenchart.gen.language.terms import Ns, Scalar, Type
 from ravenchart.gen.model.commands import (
     Access,
     Device,
@@ -17,7 +17,7 @@ from ravenchart.gen.model.commands import (
     Register,
 )
 
-from .values import constant
+from .values import constant, parameter
 
 REGISTERS = "RV-1216"
 """Registers or addresses that do not fit."""
@@ -38,17 +38,8 @@ def parameters_of(
     """The parameters of a device type; None when one of them is wrong."""
     found: Scope[DeviceParameter] = Scope("parameter")
     for name, at in (form.parameters or {}).items():
-        type_ = types.look_up(at.type, at.at("type"), findings)
-        made = None
-        if isinstance(type_, RecordType):
-            message = f"the parameter {name} is of the record type {type_.name}"
-            findings.error("RV-0311", at.at("type"), message, hint="use one parameter a field")
-        elif type_ is not None:
-            default = None
-            if at.default is not None:
-                default = constant(at.default, at.place("default"), name, type_, findings)
-            if default is not None or at.default is None:
-                made = DeviceParameter(name, at.origin, type_, default)
+        given = parameter(name, at, types, findings)
+        made = None if given is None else DeviceParameter(name, at.origin, *given)
         found.declare(name, at.origin, made, findings)
     whole = len(found.sound()) == len(form.parameters or {}) and not form.dropped("parameters")
     return found.sound() if whole else None

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ravenchart.gen.files.schema import ComponentForm, InputForm, OutputForm
 from ravenchart.gen.language.names import HIDING, Findings, Scope
-from ravenchart.gen.language.terms import Ns, Reading, RecordType, Type
+from ravenchart.gen.language.terms import Ns, Reading, Type
 from ravenchart.gen.model.component import (
     Data,
     Direction,
@@ -21,7 +21,7 @@ from ravenchart.gen.origins import Origin
 
 from .chart_names import walk
 from .typed import condition
-from .values import constant, initial_value
+from .values import initial_value, parameter
 from .vocabulary import EVENT, Vocabulary
 
 TABLE_WORDS = ("ports", "receive")
@@ -143,17 +143,8 @@ def _parameters(form: ComponentForm, types: Scope[Type], space: Namespace) -> Sc
     findings = space.findings
     for name, at in (form.parameters or {}).items():
         space.claim("parameter", name, at.origin)
-        type_ = types.look_up(at.type, at.at("type"), findings)
-        made = None
-        if isinstance(type_, RecordType):
-            message = f"the parameter {name} is of the record type {type_.name}"
-            findings.error("RV-0311", at.at("type"), message, hint="use one parameter a field")
-        elif type_ is not None:
-            default = None
-            if at.default is not None:
-                default = constant(at.default, at.place("default"), name, type_, findings)
-            if default is not None or at.default is None:
-                made = Parameter(name, at.origin, type_, default)
+        given = parameter(name, at, types, findings)
+        made = None if given is None else Parameter(name, at.origin, *given)
         scope.declare(name, at.origin, made, findings)
     return scope
 
@@ -288,8 +279,8 @@ def vocabulary_of(
         if not members.data_types.knows(name):
             read = None if item is None else (Reading.DATA, name, item.type)
             readable.declare(name, origin, read)
-    for name, origin, parameter in members.parameters.items.values():
-        told = None if parameter is None else (Reading.PARAMETER, name, parameter.type)
+    for name, origin, found in members.parameters.items.values():
+        told = None if found is None else (Reading.PARAMETER, name, found.type)
         readable.declare(name, origin, told)
     for name, origin, port in members.ports.items.values():
         if port is None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Set
 
 from ravenchart.gen.files.located import Place
-from ravenchart.gen.files.schema import FieldsType, RangeType, ValuesType
+from ravenchart.gen.files.schema import FieldsType, ParameterForm, RangeType, ValuesType
 from ravenchart.gen.files.schema_base import Element
+from ravenchart.gen.files.schema_devices import DeviceParameterForm
 from ravenchart.gen.language.names import CHILDREN, HIDING, PREDEFINED_TYPES, Findings, Scope, meant
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -146,6 +147,24 @@ def constant(
     hint = meant(str(value), type_.literals)
     findings.error("RV-0312", place.origin, message, hint=hint)
     return None
+
+
+def parameter(
+    name: str,
+    form: ParameterForm | DeviceParameterForm,
+    types: Scope[Type],
+    findings: Findings,
+) -> tuple[ScalarType, Scalar | None] | None:
+    """Type and default of a parameter; None when one of them is wrong."""
+    type_ = types.look_up(form.type, form.at("type"), findings)
+    if isinstance(type_, RecordType):
+        message = f"the parameter {name} is of the record type {type_.name}"
+        findings.error("RV-0311", form.at("type"), message, hint="use one parameter a field")
+        return None
+    if type_ is None or form.default is None:
+        return None if type_ is None else (type_, None)
+    default = constant(form.default, form.place("default"), name, type_, findings)
+    return None if default is None else (type_, default)
 
 
 def initial_value(
