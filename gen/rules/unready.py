@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.system import UNREADY, System
 
@@ -14,7 +15,7 @@ def unready(system: System) -> Iterator[Diagnostic]:
         if node.cores > 1:
             text = f"{node.name} has {node.cores} cores: several are analysed, not generated yet"
             yield error(UNREADY, node.origin, text, hint="put all processors on one core")
-    for bus in system.buses:
+    for bus in (bus for part in programs(system) for bus in part.buses):
         if not any(message.bus == bus.name for message in system.messages):
             text = f"the model sends and receives nothing on {bus.name}"
             hint = "give a component a port, and a message `from` or `to` it, or remove the bus"

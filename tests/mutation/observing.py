@@ -292,7 +292,13 @@ class PlayedTogether(Observer):
         generation.write_program(unbroken)
         self.generated = unbroken.generated
         self.controllers = [controller(made) for made in programs.programs_of(unbroken)]
-        if failures := self._failures(executable):
+        #  a host that is busy for a moment can lose a frame of a sound program, too
+        failures = ""
+        for _ in range(3):
+            failures = self._failures(executable)
+            if not failures:
+                break
+        if failures:
             raise ToolFailed(f"the unbroken program fails its scenario: {failures}")
 
     def _failures(self, executable: Path) -> str:

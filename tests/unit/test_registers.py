@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.building import checking, generation
+from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims
@@ -69,6 +70,14 @@ def test_the_main_program_makes_devices_safe_behind_the_grace_and_before_the_rep
     text = _file(_system({"grace: 0 ms": "grace: 50 ms"}), "_main.adb")
     grace, safe = text.index("for Unused in 1 .. 10"), text.index("Make_All_Safe")
     assert grace < safe < text.index("Reports.Put_All")
+
+
+def test_the_supervisor_makes_devices_safe_before_it_ends_the_program() -> None:
+    system = _system({})
+    assert "Give_Up => Give_Up" in _file(system, "-liveness_supervision.ads")
+    text = _file(system, "-liveness_supervision.adb")
+    body = text[text.index("procedure Give_Up is") :]
+    assert 0 < body.index("Device_Lifecycle.Make_All_Safe;") < body.index("Failures.Give_Up;")
 
 
 def test_without_supervision_there_is_none_to_take_the_main_programs_place() -> None:
@@ -135,3 +144,11 @@ def test_the_certificate_of_such_a_model_holds(supervised: bool, tmp_path: Path)
     generation.write_program(checking.check(tmp_path / "model.yaml"))
     text = (tmp_path / "generated" / "registers_feature-timing_certificate.ads").read_text()
     assert "Right_Section" in text
+
+
+def test_a_bus_that_nothing_uses_has_no_program(tmp_path: Path) -> None:
+    bus = "buses:\n  line: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8,"
+    text = MODEL.replace("nodes:\n", f"{bus} transmit_depth: 8}}\nnodes:\n")
+    (tmp_path / "model.yaml").write_text(text)
+    with pytest.raises(Refused, match=r"sends and receives nothing on line .RV-0804"):
+        generation.write_program(checking.check(tmp_path / "model.yaml"))
