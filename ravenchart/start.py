@@ -24,6 +24,11 @@ INTERNAL = 70
 SIGNALLED = 128
 """Ended by signal n: the exit status is 128 + n, as a shell reports it."""
 
+SOON = 0.005
+"""Seconds until a request to stop that got lost is made again."""
+
+_swallowed: list[int] = []
+
 
 class Stopped(BaseException):
     """A signal asks the process to end; every ``finally`` on the way out still runs."""
@@ -87,11 +92,26 @@ def _heed_signals() -> None:
         ignored = signal.getsignal(number) is signal.SIG_IGN
         if number == signal.SIGINT or not ignored:  # `nohup` ignores SIGHUP
             signal.signal(number, _stop)
+    signal.signal(signal.SIGALRM, _stop_again)
+    sys.unraisablehook = _unraised
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
 def _stop(number: int, frame: FrameType | None) -> None:
     raise Stopped(number)
+
+
+def _unraised(found: sys.UnraisableHookArgs) -> None:
+    """A `Stopped` that a callback of a foreign library swallowed is raised again soon after."""
+    if isinstance(found.exc_value, Stopped):
+        _swallowed.append(found.exc_value.number)
+        signal.setitimer(signal.ITIMER_REAL, SOON)
+    else:
+        sys.__unraisablehook__(found)
+
+
+def _stop_again(number: int, frame: FrameType | None) -> None:
+    raise Stopped(_swallowed.pop())
 
 
 def _reader_is_gone() -> bool:

@@ -54,8 +54,12 @@ is
    --  The numbers of Linux
 
    Standard_Error : constant C_Int := 2;
-   Ordinary       : constant C_Int := 0;
-   --  SCHED_OTHER: no real-time priority.
+   Round_Robin    : constant C_Int := 2;
+   --  SCHED_RR. It must be a real-time policy: under SCHED_OTHER the kernel
+   --  refuses the ceiling of every protected object, and each call of one
+   --  would raise Program_Error.
+   Least_Urgent   : constant Scheduling_Parameter := (Priority => 1);
+   --  That of the environment task, which has its turn under this policy.
    Write_Only     : constant C_Int := 8#1#;
    Nonblocking    : constant C_Int := 8#4000#;
    No_File        : constant C_Int := -1;
@@ -266,12 +270,13 @@ is
 
    procedure Note_Silence (Name : String) is
       Culprit : Thread_Search;
-      None    : aliased Scheduling_Parameter;
+      Lowest  : aliased Scheduling_Parameter := Least_Urgent;
       Ignored : C_Int;
    begin
       Record_Of_All.Note_Silence (Name, Culprit);
       if Culprit.Found then
-         Ignored := C_Set_Scheduling (Culprit.Thread, Ordinary, None'Access);
+         Ignored :=
+           C_Set_Scheduling (Culprit.Thread, Round_Robin, Lowest'Access);
       end if;
    end Note_Silence;
 

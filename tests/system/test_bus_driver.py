@@ -205,7 +205,8 @@ def test_a_node_that_is_bus_off_recovers(echo: Path) -> None:
         now = a.wait(lambda now: now.sent + now.lost_out == 300)
         assert now.state == "ERROR_ACTIVE" and now.rejected == 0
         assert 1 <= now.lost_out < 300
-        assert now.off == now.back >= 1
+        # it may be error-passive when the bus is let go, and return from that
+        assert 1 <= now.off <= now.back <= now.passive
         found = counted(taken(bus, now.sent))
         assert found == sorted(found) and found[-1] == 300
 
@@ -227,7 +228,7 @@ def test_a_node_that_recovers_on_request_is_bus_off_until_then(echo: Path) -> No
         # and 128 times 11 bits of 100 us behind the request
         assert time.monotonic() - fell >= 0.3
         now = a.wait(lambda now: now.sent + now.lost_out == 300)
-        assert now.state == "ERROR_ACTIVE" and now.off == now.back
+        assert now.state == "ERROR_ACTIVE" and now.off <= now.back <= now.passive
 
 
 @shows(

@@ -147,6 +147,38 @@ def test_a_failure_of_a_task_makes_the_devices_safe(fault: str, tmp_path: Path) 
     assert registers == [*STARTED, *DRIVEN, *SAFE]
 
 
+@shows(
+    "a processor is silent, and the main program no longer runs",
+    found_by="liveness supervision",
+    reaction="the supervisor makes the devices safe and ends the process, exit status 1",
+)
+def test_a_supervisor_makes_devices_safe_where_the_main_program_cannot(tmp_path: Path) -> None:
+    program = _built(tmp_path)
+    generated = tmp_path / "generated"
+    source = generated / "registers_feature_main.adb"
+    # a main program that no longer runs, and processors that go on and count as silent
+    text = source.read_text()
+    assert text.count("   loop\n") == 1
+    asleep = "   loop\n      delay until Ada.Real_Time.Time_Last;\n"
+    source.write_text(text.replace("   loop\n", asleep))
+    supervision = generated / "registers_feature-liveness_supervision.adb"
+    text = supervision.read_text()
+    assert text.count("Is_Silent :=") == 2
+    supervision.write_text(text.replace("Is_Silent :=", "Is_Silent := Elapsed > 500_000_000 or"))
+    home = {"RAVENCHART_BUILD": str(program.parent), "CAN_DRIVER": "loopback", "MODE": "checks"}
+    subprocess.run(
+        ["gprbuild", "-q", "-p", "-P", "registers_feature.gpr"],
+        cwd=generated,
+        env={**os.environ, **home, "GPR_PROJECT_PATH": str(ROOT)},
+        check=True,
+    )
+    for _ in range(8):  # a processor that lost its urgency goes on, wherever it lost it
+        status, registers, errors = _run(program, 10)
+        assert status == 1
+        assert len(errors) == 3 and "did not end the controller in time" in errors[2], errors
+        assert registers == [*STARTED, *DRIVEN, *SAFE]
+
+
 def test_registers_of_the_hardware_need_an_address(tmp_path: Path) -> None:
     _built(tmp_path)
     with pytest.raises(Refused, match="the device Right has no address"):

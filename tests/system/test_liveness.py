@@ -33,6 +33,7 @@ with Ada.Real_Time;
 package body Three_Components.Station.Activities
 with SPARK_Mode => Off
 is
+   use type Ada.Real_Time.Time;
    use type Ravenchart.Number;
 
    Fault : constant Character :=
@@ -40,6 +41,8 @@ is
 
    Turns : Natural := 0
    with Volatile;
+
+   Busy_Until : Ada.Real_Time.Time := Ada.Real_Time.Time_First;
 
    function Deeper (Turn : Natural) return Natural;
 
@@ -67,6 +70,11 @@ is
          delay until Ada.Real_Time.Time_Last;
       elsif Turns = 10 and then Fault = 'l' then
          while Turns = 10 loop
+            null;
+         end loop;
+      elsif Turns = 10 and then Fault = 'b' then
+         Busy_Until := Ada.Real_Time.Clock + Ada.Real_Time.Milliseconds (450);
+         while Ada.Real_Time.Clock < Busy_Until loop
             null;
          end loop;
       end if;
@@ -214,6 +222,29 @@ def test_an_endless_loop_is_found_once_and_answered_by_the_chart(
     #  from then on nothing feeds the watchdog
     assert seen.feeds == found.fed
     assert 0 < found.fed <= faults[0].time // 10_000_000
+
+
+def test_a_processor_that_was_silent_and_comes_back_goes_on_in_the_grace(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "three_components"
+    shutil.copytree(ROOT / "examples" / "three_components", folder)
+    model = _model(folder)
+    text = model.read_text()
+    assert text.count("grace: 0 ms") == 1
+    model.write_text(text.replace("grace: 0 ms", "grace: 600 ms"))
+    checked = checking.check(model)
+    generation.write_program(checked)
+    program = programs.programs_of(checked)[0]
+    monkeypatch.setenv("RAVENCHART_TEST_FAULT", "busy")
+    trace = program.generated / "trace.json"
+    result = run.run_alone(program.build(), trace, SECONDS, tmp_path / "report")
+    #  it has lost its urgency, but none of its protected objects
+    assert "processor_3 is silent" in result.failures[0]
+    assert not any("has ended" in failure for failure in result.failures), result.failures
+    assert result.observation is not None
+    fault = result.observation.of("fault", "processor_3")[0].time
+    assert result.observation.processors["processor_3"].releases * 10_000_000 > fault
 
 
 @shows(
