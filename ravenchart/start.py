@@ -24,10 +24,11 @@ INTERNAL = 70
 SIGNALLED = 128
 """Ended by signal n: the exit status is 128 + n, as a shell reports it."""
 
-SOON = 0.005
+SOON = 0.002
 """Seconds until a request to stop that got lost is made again."""
 
-_swallowed: list[int] = []
+_asked: list[int] = []
+"""The signals that asked the process to end, oldest first."""
 
 
 class Stopped(BaseException):
@@ -45,10 +46,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         forget_working_folder()
         return _command(arguments)
     except (Stopped, KeyboardInterrupt) as stopped:
-        number = stopped.number if isinstance(stopped, Stopped) else signal.SIGINT
-        _say("ravenchart: interrupted" if number == signal.SIGINT else "ravenchart: stopped")
-        return SIGNALLED + number
+        return _stopped(stopped.number if isinstance(stopped, Stopped) else signal.SIGINT)
     except Exception as fault:
+        if _asked:  # a library has made an exception of its own of `Stopped`
+            return _stopped(_asked[0])
         if isinstance(fault, BrokenPipeError) and _reader_is_gone():
             return _unread()
         _say(traceback.format_exc())
@@ -97,21 +98,28 @@ def _heed_signals() -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
+def _stopped(number: int) -> int:
+    """Say that this signal ends the process; its exit status."""
+    _say("ravenchart: interrupted" if number == signal.SIGINT else "ravenchart: stopped")
+    return SIGNALLED + number
+
+
 def _stop(number: int, frame: FrameType | None) -> None:
+    _asked.append(number)
     raise Stopped(number)
 
 
 def _unraised(found: sys.UnraisableHookArgs) -> None:
     """A `Stopped` that a callback of a foreign library swallowed is raised again soon after."""
     if isinstance(found.exc_value, Stopped):
-        _swallowed.append(found.exc_value.number)
         signal.setitimer(signal.ITIMER_REAL, SOON)
     else:
         sys.__unraisablehook__(found)
 
 
 def _stop_again(number: int, frame: FrameType | None) -> None:
-    raise Stopped(_swallowed.pop())
+    if _asked:
+        raise Stopped(_asked[-1])
 
 
 def _reader_is_gone() -> bool:

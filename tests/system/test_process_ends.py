@@ -120,6 +120,34 @@ def test_workers_end_with_a_killed_parent() -> None:
         parent.process.communicate()
 
 
+SWALLOWED = """
+import os, signal, time
+from ravenchart import start
+
+class Deaf:
+    def __del__(self):  # what is raised here goes no further
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0)
+
+def command(arguments):
+    Deaf()
+    time.sleep(10)
+    return 0
+
+start._command = command
+raise SystemExit(start.main())
+"""
+
+
+def test_an_interrupt_that_a_callback_swallows_is_not_lost() -> None:
+    begun = time.monotonic()
+    ended = subprocess.run(
+        [PYTHON, "-P", "-c", SWALLOWED], text=True, capture_output=True, timeout=20
+    )
+    assert (ended.returncode, ended.stderr) == (130, "ravenchart: interrupted\n")
+    assert time.monotonic() - begun < 5
+
+
 def test_an_interrupt_at_any_time_of_the_start_prints_no_traceback() -> None:
     for step in range(24):
         process = subprocess.Popen(
