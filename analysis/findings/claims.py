@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from math import ceil
 
 from ravenchart.analysis.core import can
 from ravenchart.analysis.core.bus import Bus
@@ -18,6 +19,7 @@ from ravenchart.analysis.core.responses import Response, demand_of, jitter_of, r
 from ravenchart.analysis.core.window import Effort, Window, fixed_cost, source
 from ravenchart.analysis.system import latencies
 from ravenchart.analysis.system.latencies import Latency, reception_frames
+from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.derive.instants import instants, phased
 from ravenchart.gen.diagnostics import Diagnostic, error
@@ -57,8 +59,14 @@ def claims_of(analysis: Analysis) -> Claims:
     steps = {hop.step.name for _, latency in analysis.limited for hop in latency.hops}
     rows = {r.row.name: Ns(r.bound) for _, r in analysis.rows() if r.row.name in steps}
     handed = {element for element in analysis.deliveries if latencies.handed(element) in steps}
+    guarded = protected(analysis)
+    residual = {one.message.name: ceil(one.residual * 10**18) for one in guarded}
+    noticed = [silence for one in guarded for silence in one.silences]
+    stale = {str(one.port): one.found for one in noticed if one.found is not None}
+    handed |= {one.delivery for one in noticed if one.found is not None}
     waits, busiest = _capped(analysis)
-    return Claims(items, rows, waits, busiest, _turns(analysis, handed), chains)
+    turns = _turns(analysis, handed)
+    return Claims(items, rows, waits, busiest, turns, chains, residual, stale)
 
 
 def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:

@@ -79,7 +79,7 @@ def figures(analysis: Analysis) -> Json:
                 "message": row.message.name,
                 "profile": row.protection.name,
                 "random": row.random,
-                "residual": row.residual,
+                "residual": float(row.residual),
                 "residual_per_hour": row.rate,
                 "tolerated": row.tolerated,
                 "stale": [{"port": str(one.port), "found": one.found} for one in row.silences],

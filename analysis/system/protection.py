@@ -7,6 +7,7 @@ itself counts, not the CRC of CAN. docs/protection.md has the formulas and their
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from math import comb
 
 from ravenchart.gen.language.terms import Ns
@@ -15,7 +16,7 @@ from ravenchart.gen.model.system import End, Message, System
 
 from .timing import Analysis
 
-BIT_ERROR_PROBABILITY = 0.01
+BIT_ERROR_PROBABILITY = Fraction(1, 100)
 """That of the black channel."""
 HOUR = 3_600_000_000_000
 """In ns."""
@@ -29,6 +30,8 @@ class Silence:
     """
 
     port: End
+    delivery: str
+    """The element that hands the message over."""
     found: Ns | None
 
 
@@ -40,8 +43,8 @@ class Protected:
     protection: Protection
     random: float
     """Probability that a frame of random bits is used."""
-    residual: float
-    """Probability that corruption of a frame is not found."""
+    residual: Fraction
+    """Probability that corruption of a frame is not found; exact."""
     rate: float
     """Corrupted frames that are not found, in an hour."""
     tolerated: Ns
@@ -49,16 +52,17 @@ class Protected:
     silences: tuple[Silence, ...]
 
 
-def residual_probability(check_bits: int, found_bits: int, length: int, bit_error: float) -> float:
+def residual_probability(
+    check_bits: int, found_bits: int, length: int, bit_error: Fraction
+) -> Fraction:
     """The probability that errors in ``length`` bits are not found.
 
     2 ** -check_bits of the errors of more than ``found_bits`` bits; those of fewer all are.
     """
-    few = sum(
-        comb(length, wrong) * bit_error**wrong * (1 - bit_error) ** (length - wrong)
-        for wrong in range(found_bits + 1)
-    )
-    return float(2.0**-check_bits * max(0.0, 1.0 - few))
+    few = Fraction(0)
+    for wrong in range(found_bits + 1):
+        few += comb(length, wrong) * bit_error**wrong * (1 - bit_error) ** (length - wrong)
+    return (1 - few) / (1 << check_bits)
 
 
 def protected(analysis: Analysis) -> tuple[Protected, ...]:
@@ -79,34 +83,26 @@ def protected(analysis: Analysis) -> tuple[Protected, ...]:
                 own,
                 own.residual,
                 residual,
-                residual * HOUR / message.period,
+                float(residual * HOUR / message.period),
                 Ns(own.max_delta * message.period),
-                tuple(
-                    Silence(end, _stale_after(analysis, message, end)) for end in message.targets
-                ),
+                tuple(_silence(analysis, message, end) for end in message.targets),
             )
         )
     return tuple(found)
 
 
-def _stale_after(analysis: Analysis, message: Message, end: End) -> Ns | None:
+def _silence(analysis: Analysis, message: Message, end: End) -> Silence:
     """Delivery, then executions of the port region until the age passes, one more, and R of it."""
     system: System = analysis.system
     component = system.instance(end.instance).component
-    port = next(p for p in component.ports if p.name == end.port)
-    home = system.home(end)
-    delivered = next(
-        (
-            analysis.deliveries[one.element].bound
-            for one in system.receptions(message)
-            if one.node == home and one.element in analysis.deliveries
-        ),
-        None,
-    )
+    home, limit = system.home(end), component.port(end.port).max_age
+    element = next(one.element for one in system.receptions(message) if one.node == home)
+    if component.port_region is None or limit is None:
+        return Silence(end, element, None)
+    delivery = analysis.deliveries.get(element)
+    delivered = delivery.bound if delivery else None
     response = analysis.found.from_event(system.processor_of(f"{end.instance}.ports").name)
-    if component.port_region is None or port.max_age is None:
-        return None
     if delivered is None or response is None:
-        return None
+        return Silence(end, element, None)
     period = component.port_region.period
-    return Ns(delivered + (port.max_age // period + 2) * period + response)
+    return Silence(end, element, Ns(delivered + (limit // period + 2) * period + response))

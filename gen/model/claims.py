@@ -55,6 +55,10 @@ class Claims:
     """Received messages: when the reception turns to them."""
     chains: Mapping[str, ChainClaim] = field(default_factory=dict)
     """The model's chains by name."""
+    residual: Mapping[str, int] = field(default_factory=dict)
+    """Protected messages: the probability in 10**-18 that corruption of a frame is not found."""
+    stale: Mapping[str, Ns] = field(default_factory=dict)
+    """Ports of protected messages: when it is known that no usable frame comes."""
 
     def of(self, element: str) -> Claim:
         """The claim about a task or message."""

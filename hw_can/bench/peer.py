@@ -20,7 +20,7 @@ import cantools
 from cantools.database import Database
 from cantools.database.errors import Error as CodecFault
 
-from .protection import HEADER, sender_of
+from .protection import HEADER, Sender, Wrong, sender_of
 
 OUTSIDE = "Outside"
 """In a database, the sender of what no node of the model sends."""
@@ -69,25 +69,47 @@ class Codec:
 
         A protected message gets its header, unless a field of it is given.
         """
-        message = self._message(name)
-        unknown = sorted(set(values) - {s.name for s in message.signals})
-        if unknown:
-            raise BenchError(f"{name} has no field {unknown[0]}")
-        sender = None if HEADER & set(values) else self._senders.get(name)
-        blank = {} if sender is None else {s.name: 0 for s in message.signals if s.name in HEADER}
-        try:
-            data = message.encode(blank | dict(values), strict=True)
-        except (CodecFault, KeyError, ValueError) as fault:
-            raise BenchError(f"{name} cannot be sent: {fault}") from None
-        if sender is not None:
-            data = sender.protect(data)
+        made = self.faulty(name, values, None)
+        assert made is not None
+        return made
+
+    def faulty(
+        self, name: str, values: Mapping[str, Value], wrong: Wrong | None
+    ) -> can.Message | None:
+        """The same with a fault that protection finds; None where the fault is loss."""
+        message, data, sender = self._encoded(name, values, wrong)
+        made = data if sender is None else sender.protect(data, wrong)
+        if made is None:
+            return None
         return can.Message(
             arbitration_id=message.frame_id,
             is_extended_id=message.is_extended_frame,
             is_fd=message.is_fd,
             bitrate_switch=message.is_fd and self._switched,
-            data=data,
+            data=made,
         )
+
+    def check(self, name: str, values: Mapping[str, Value], wrong: Wrong | None) -> None:
+        """BenchError where `faulty` raises it; nothing is sent, and no counter goes on."""
+        self._encoded(name, values, wrong)
+
+    def _encoded(
+        self, name: str, values: Mapping[str, Value], wrong: Wrong | None
+    ) -> tuple[cantools.database.Message, bytes, Sender | None]:
+        """The message, its data, and who writes its header."""
+        message = self._message(name)
+        unknown = sorted(set(values) - {s.name for s in message.signals})
+        if unknown:
+            raise BenchError(f"{name} has no field {unknown[0]}")
+        sender = None if HEADER & set(values) else self._senders.get(name)
+        if sender is None and wrong is not None:
+            reason = "its header is given" if name in self._senders else "it is not protected"
+            raise BenchError(f"{name} cannot be sent with `wrong: {wrong}`: {reason}")
+        blank = {} if sender is None else {s.name: 0 for s in message.signals if s.name in HEADER}
+        try:
+            return message, message.encode(blank | dict(values), strict=True), sender
+        except (CodecFault, KeyError, ValueError) as fault:
+            raise BenchError(f"{name} cannot be sent: {fault}") from None
 
     def decode(self, frame: can.Message) -> tuple[str, Values] | None:
         """Name and values of a frame; BenchError for bad data.
@@ -165,9 +187,11 @@ class Peer:
         """Neither dropped nor closed."""
         return self._open
 
-    def send(self, name: str, values: Mapping[str, Value]) -> None:
-        """Send one message now."""
-        self._send(name, self.codec.encode(name, values))
+    def send(self, name: str, values: Mapping[str, Value], wrong: Wrong | None = None) -> None:
+        """Send one message now, perhaps with a fault."""
+        frame = self.codec.faulty(name, values, wrong)
+        if frame is not None:
+            self._send(name, frame)
 
     def forward(self, frame: can.Message) -> None:
         """Send one frame of a log now."""

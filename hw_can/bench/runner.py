@@ -135,7 +135,7 @@ def _check(step: Step, peer: Peer) -> None:
     """BenchError when a step's message does not fit the DBC."""
     match step:
         case Send():
-            peer.codec.encode(step.send, step.fields)
+            peer.codec.check(step.send, step.fields, step.wrong)
         case WaitFor():
             message, field = step.wait_for.split(".")
             if field not in peer.codec.fields(message):
@@ -184,10 +184,11 @@ class _Runner:
     def _send(self, step: Send) -> tuple[bool, str]:
         if not self._bench.peer.is_open:
             return False, "the bench has left the bus"
-        self.sendings.append(Sending(self._bench.now, step.send, dict(step.fields)))
-        self._bench.peer.send(step.send, step.fields)
-        self._bench.order(step.send, step.fields)
-        return True, "sent"
+        self._bench.peer.send(step.send, step.fields, step.wrong)
+        if step.wrong is None:
+            self.sendings.append(Sending(self._bench.now, step.send, dict(step.fields)))
+            self._bench.order(step.send, step.fields)
+        return True, "lost" if step.wrong == "loss" else "sent"
 
     def _replay(self, step: Replay) -> tuple[bool, str]:
         """All frames of the log that come from outside, each at its time."""

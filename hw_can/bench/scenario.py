@@ -20,6 +20,7 @@ from ravenchart.gen.files.located import grow
 from ravenchart.gen.origins import Origin
 
 from .plant import Axis
+from .protection import Wrong
 from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
 from .reading import Path as Place
 from .replay import fault_of_log
@@ -92,9 +93,12 @@ class Send(_Form):
 
     send: str
     fields: dict[str, Scalar] = Field(alias="with")
+    wrong: Wrong | None = None
+    """A fault of the frame, for a protected message."""
 
     def __str__(self) -> str:
-        return f"send {self.send}: {_values(self.fields)}"
+        wrong = f", with {self.wrong.replace('_', ' ')}" if self.wrong else ""
+        return f"send {self.send}: {_values(self.fields)}{wrong}"
 
 
 class WaitFor(_Form):

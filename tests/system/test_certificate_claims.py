@@ -123,3 +123,28 @@ def test_what_has_no_bound_cannot_be_claimed(model: str, problem: str, tmp_path:
     long = ChainClaim(Ns(10**8), Ns(10**8), (Ns(10**8),))
     chains = {chain.name: long for chain in found.system.chains}
     assert problem in compiled(claimed(found, replace(claims, chains=chains)), tmp_path)
+
+
+# --- End-to-end protection: how surely and how soon ---------------------------------------
+
+
+def test_residual_errors_and_detection_times_are_exact(tmp_path: Path) -> None:
+    found = checking.check(ROOT / "tests" / "feature" / "protected" / "model.yaml").analysis
+    text = certificate(found)
+    assert compiled(text, tmp_path, found.system.name) == ""
+    names = [*numbers(text, "_Residual"), *numbers(text, "_Stale")]
+    assert len(names) == len(found.system.messages) + 1
+    for name in names:
+        what = "passes corruption more often" if name.endswith("_Residual") else "can be stale"
+        for by, problem in ((-1, what), (1, "claims more than its terms add up to")):
+            assert problem in compiled(changed(text, name, by), tmp_path, found.system.name)
+
+
+def test_residual_errors_and_detection_times_that_are_not_claimed_are_refused(
+    tmp_path: Path,
+) -> None:
+    found = checking.check(ROOT / "tests" / "feature" / "protected" / "model.yaml").analysis
+    claims = replace(claims_of(found), residual={}, stale={})
+    said = compiled(claimed(found, claims), tmp_path, found.system.name)
+    assert said.count("passes corruption more often than claimed") == len(found.system.messages)
+    assert said.count("can be stale for longer than claimed before it is known") == 1

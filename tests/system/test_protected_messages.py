@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
+from typing import get_args
 
 import can
 import e2e
@@ -17,7 +18,8 @@ import pytest
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.hw_can.bench.peer import Codec
+from ravenchart.hw_can.bench.peer import BenchError, Codec
+from ravenchart.hw_can.bench.protection import Wrong
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
@@ -248,3 +250,71 @@ def test_a_scenario_exchanges_protected_messages(tmp_path: Path) -> None:
     assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
     assert outcome.observation is not None
     assert outcome.observation.faults["Protection_Error"] == 0
+
+
+FACES = ("first", "second", "third", "fourth", "fifth")
+
+
+@pytest.mark.parametrize("wrong", get_args(Wrong))
+def test_what_the_bench_sends_with_a_fault_is_never_used(
+    wrong: Wrong, gate: Callable[[Callable[[RavenchartBus], None]], Observation], tmp_path: Path
+) -> None:
+    codec = Codec.from_file(tmp_path / "protected" / "generated" / "line.dbc")
+    seen: dict[str, set[object]] = {f"{face}_out": set() for face in FACES}
+
+    def play(bench: RavenchartBus) -> None:
+        def give(level: int, fault: Wrong | None = None) -> None:
+            for face in FACES:
+                values: dict[str, int | str] = {"level": level, "mode": "Stop", "ready": "True"}
+                frame = codec.faulty(f"{face}_in", values, fault)
+                if frame is not None:
+                    bench.send(frame, timeout=5)
+            end = time.monotonic() + 0.03
+            while (rest := end - time.monotonic()) > 0:
+                answer = bench.recv(timeout=rest)
+                found = None if answer is None else codec.decode(answer)
+                if found is not None and found[0] in seen:
+                    seen[found[0]].add(found[1]["level"])
+
+        for _ in range(5):
+            give(GOOD)
+        give(WRONG, wrong)
+        for _ in range(8):  # as many as the slowest of the five needs to be in sequence again
+            give(GOOD + 1)
+
+    trace = gate(play)
+    for name, levels in seen.items():
+        assert {GOOD, GOOD + 1} <= levels, name
+        assert WRONG not in levels, name
+    assert (trace.faults["Protection_Error"] >= len(FACES)) == (wrong != "loss")
+
+
+def test_a_scenario_sends_a_fault_by_its_name(tmp_path: Path) -> None:
+    copy = tmp_path / "protected"
+    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
+    checked = checking.check(copy / "model.yaml")
+    generation.write_program(checked)
+    (program,) = (controller(made) for made in programs.programs_of(checked))
+    scenario = copy / "scenario.yaml"
+    given = "with: {level: 700, mode: Stop, ready: true}"
+    good = f"  - {{send: fifth_in, {given}}}\n"
+    bad = f"  - {{send: fifth_in, {given}, wrong: masquerade}}\n"
+    heard = "  - {wait_for: fifth_out.level, is: 700, within: 2 s}\n"
+    expect = "expect:\n  - {fault: Protection_Error, times: 1, because: one is foreign}\n"
+    text = f"scenario: A fault\nsteps:\n{good * 3}{heard}{bad}{good}{heard}{expect}"
+    scenario.write_text(text)
+    database = copy / "generated" / "line.dbc"
+    arguments = (program.executable, program.trace_json, database, scenario, None, copy / "report")
+    outcome = run_controller(*arguments)
+    assert [step.outcome for step in outcome.steps if not step.passed] == []
+    assert any(step.text.endswith(", with masquerade") for step in outcome.steps)
+    assert outcome.observation is not None
+    assert outcome.observation.faults["Protection_Error"] == 1
+    assert not any("Protection_Error" in failure for failure in outcome.failures)
+
+
+def test_a_fault_of_a_message_without_protection_is_refused() -> None:
+    codec = Codec.from_file(ROOT / "examples" / "two_nodes" / "generated" / "link.dbc")
+    values: dict[str, int | str] = {name: 0 for name in codec.fields("servo_report")}
+    with pytest.raises(BenchError, match="`wrong: loss`: it is not protected"):
+        codec.check("servo_report", values, "loss")

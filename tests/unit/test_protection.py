@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from itertools import product
 from typing import get_args
 
@@ -42,13 +43,13 @@ def test_no_signal_is_in_the_header(system: System) -> None:
 
 
 def test_the_residual_probability_is_that_of_all_error_patterns() -> None:
-    bits, found, chance = 8, 2, 0.1
+    bits, found, chance = 8, 2, Fraction(1, 10)
     wrong = sum(
         chance ** sum(pattern) * (1 - chance) ** (bits - sum(pattern))
         for pattern in product((0, 1), repeat=bits)
         if sum(pattern) > found
     )
-    assert residual_probability(4, found, bits, chance) == pytest.approx(wrong / 16)
+    assert residual_probability(4, found, bits, chance) == wrong / 16
 
 
 def test_rates_and_times_of_a_message(system: System) -> None:

@@ -35,6 +35,7 @@ from .chains import chain_claims
 from .demand import costs, demand, most, switches, work
 from .hops import hops_of
 from .offsets import offset_claims
+from .protection import protection_claims, watched
 from .tables import order, table_terms
 from .terms import (
     LATE,
@@ -96,6 +97,9 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
     rows = {hop.element for hop in hops if hop.kind == "row"}
     handed = {hop.element for hop in hops if hop.kind == "handed"}
+    for message, end in watched(system):
+        received = system.reception(message, str(end))
+        handed |= set() if received is None else {received.element}
     for task in system.tasks:
         items += _claims(system, task, claims, rows)
     for node in system.nodes:
@@ -104,6 +108,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
         items += bus_claims(system, bus, claims, handed)
     for chain in system.chains:
         items += chain_claims(system, chain, claims.chains.get(chain.name, ChainClaim()))
+    items += protection_claims(system, claims)
     package = Package(
         f"{ada_case(system.name)}.Timing_Certificate", tuple(items), (SPARK, Aspect("Pure"))
     )

@@ -1,0 +1,110 @@
+"""What end-to-end protection finds, in the timing certificate: how surely, and how soon.
+
+The residual error probability is that of IEC 61784-3 for a black channel: the bits of a frame
+are wrong independently of each other, each with probability 1/100, and a CRC of r bits does not
+find 2**-r of what it does not always find. All of it is exact: named numbers are integers
+without a largest value.
+"""
+
+from __future__ import annotations
+
+from math import comb
+
+from ravenchart.gen.emit.ada.syntax import Chain, Comment, Decl, Expr, Ref, number
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.protection import Protection
+from ravenchart.gen.model.system import End, Message, System
+
+from .terms import ceiling, least, name_of, named, plus, stated, times
+
+HOUR = 3_600 * 10**9
+"""In nanoseconds."""
+
+RESIDUAL = (
+    "Few: 100**Data_Bits times the probability that no more bits are wrong than the CRC always "
+    "finds, each bit with probability 1/100. Residual: the probability that corruption of a frame "
+    "is not found, in 10**-18; Per_Hour: of the frames of an hour, in 10**-9."
+)
+
+
+def watched(system: System) -> tuple[tuple[Message, End], ...]:
+    """The ports whose `max_age` finds that usable frames of a protected message no longer come."""
+    found: list[tuple[Message, End]] = []
+    for message in system.messages:
+        if message.protection is None:
+            continue
+        for end in message.targets:
+            component = system.instance(end.instance).component
+            if component.port(end.port).max_age is not None and component.port_region is not None:
+                found.append((message, end))
+    return tuple(found)
+
+
+def protection_claims(system: System, claims: Claims) -> list[Decl]:
+    """The residual error of each protected message, and when a port of one is stale."""
+    items: list[Decl] = []
+    for message in system.messages:
+        if message.protection is not None:
+            items += [] if items else [Comment(RESIDUAL)]
+            items += _residual(message, message.protection, claims.residual.get(message.name, 0))
+    for message, end in watched(system):
+        items += _stale(system, message, end, claims.stale.get(str(end), 0))
+    return items
+
+
+def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
+    """The probability that a corrupted frame is used, and how often that is in an hour."""
+    element, profile = name_of(message.element), own.profile
+    bits, few, right = (Ref(f"{element}_{part}") for part in ("Data_Bits", "Few", "Residual"))
+    whole, checks = (
+        Chain("**", (number(100), bits)),
+        Chain("**", (number(2), number(profile.crc_bits))),
+    )
+    patterns: list[Expr] = []
+    for wrong in range(profile.found_bits + 1):
+        sound = Chain("**", (number(99), Chain("-", (bits, number(wrong))) if wrong else bits))
+        patterns.append(times(number(comb(8 * message.length, wrong)), sound))
+    missed = Chain("-", (whole, few))
+    needs = Ref(f"{right.text}_Needs")
+    return [
+        Comment(f"[{message.element}] what its {own.name} finds"),
+        named(bits.text, times(number(8), Ref(f"{element}_Length"))),
+        named(few.text, plus(*patterns)),
+        stated(right.text, claimed),
+        named(needs.text, ceiling(times(missed, number(10**18)), times(checks, whole))),
+        *least(right, [needs], message.element, "passes corruption more often than claimed"),
+        named(
+            f"{right.text}_Per_Hour",
+            ceiling(times(right, number(HOUR)), times(number(10**9), Ref(f"{element}_T"))),
+        ),
+    ]
+
+
+def _stale(system: System, message: Message, end: End, claimed: int) -> list[Decl]:
+    """From when a frame is due that is not usable, or does not come: when its port is Stale."""
+    own, processor = name_of(str(end)), system.processor_of(f"{end.instance}.ports")
+    received = system.reception(message, str(end))
+    component = system.instance(end.instance).component
+    age = component.port(end.port).max_age
+    assert received is not None
+    assert component.port_region is not None
+    assert age is not None
+    limit, period = Ref(f"{own}_Max_Age"), Ref(f"{own}_Looks")
+    needs = plus(
+        Ref(f"{name_of(received.element)}_Handed"),
+        times(plus(Chain("/", (limit, period)), number(2)), period),
+        Ref(f"{name_of(processor.name)}_R"),
+    )
+    words = (
+        f"[{end}] Looks: the distance at which the age of its value is looked at; Stale: the time "
+        f"from when {message.name} was last due in good order until the port is known to be stale."
+    )
+    problem = "can be stale for longer than claimed before it is known"
+    return [
+        Comment(words),
+        stated(limit.text, age),
+        stated(period.text, component.port_region.period),
+        stated(f"{own}_Stale", claimed),
+        named(f"{own}_Stale_Needs", needs),
+        *least(Ref(f"{own}_Stale"), [Ref(f"{own}_Stale_Needs")], str(end), problem),
+    ]
