@@ -133,7 +133,7 @@ def test_hints_list_what_there_is() -> None:
     hints = {
         "{pull: q, switch: low}": "the drives are x",
         "{wait: 1 s, hurry: 1}": "the keys here are `wait`",
-        "{send: m}": "the keys are `send`, `with`",
+        "{send: m}": "the keys are `send`, `with`, `wrong`",
     }
     for step, hint in hints.items():
         with pytest.raises(ScenarioError) as caught:
