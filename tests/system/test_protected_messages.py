@@ -23,6 +23,7 @@ from ravenchart.hw_can.bench.protection import Wrong
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
+from ravenchart.running.result import RunResult
 from ravenchart.running.runs import controller, run_controller
 from ravenchart.tools import toolchain
 
@@ -224,35 +225,47 @@ def test_the_bench_protects_what_it_sends(tmp_path: Path) -> None:
             assert found[1].items() >= values.items()
 
 
-def test_a_scenario_exchanges_protected_messages(tmp_path: Path) -> None:
+FACES = ("first", "second", "third", "fourth", "fifth")
+
+Playing = Callable[[str], RunResult]
+
+
+@pytest.fixture
+def playing(tmp_path: Path) -> Playing:
+    """A function that runs the feature model with the scenario of that text; all steps pass."""
     copy = tmp_path / "protected"
     shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
     checked = checking.check(copy / "model.yaml")
     generation.write_program(checked)
     (program,) = (controller(made) for made in programs.programs_of(checked))
-    scenario = copy / "scenario.yaml"
+
+    def play(text: str) -> RunResult:
+        scenario = copy / "scenario.yaml"
+        scenario.write_text(text)
+        outcome = run_controller(
+            program.executable,
+            program.trace_json,
+            copy / "generated" / "line.dbc",
+            scenario,
+            None,
+            copy / "report",
+        )
+        assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
+        return outcome
+
+    return play
+
+
+def test_a_scenario_exchanges_protected_messages(playing: Playing) -> None:
     given = "{level: 700, mode: Stop, ready: true}"
-    faces = ("first", "second", "third", "fourth", "fifth")
     steps_of = (
         f"  - {{send: {face}_in, with: {given}}}\n" * 3
         + f"  - {{wait_for: {face}_out.level, is: 700, within: 2 s}}\n"
-        for face in faces
+        for face in FACES
     )
-    scenario.write_text(f"scenario: Protected\nsteps:\n{''.join(steps_of)}")
-    outcome = run_controller(
-        program.executable,
-        program.trace_json,
-        copy / "generated" / "line.dbc",
-        scenario,
-        None,
-        copy / "report",
-    )
-    assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
+    outcome = playing(f"scenario: Protected\nsteps:\n{''.join(steps_of)}")
     assert outcome.observation is not None
     assert outcome.observation.faults["Protection_Error"] == 0
-
-
-FACES = ("first", "second", "third", "fourth", "fifth")
 
 
 @pytest.mark.parametrize("wrong", get_args(Wrong))
@@ -289,24 +302,13 @@ def test_what_the_bench_sends_with_a_fault_is_never_used(
     assert (trace.faults["Protection_Error"] >= len(FACES)) == (wrong != "loss")
 
 
-def test_a_scenario_sends_a_fault_by_its_name(tmp_path: Path) -> None:
-    copy = tmp_path / "protected"
-    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
-    checked = checking.check(copy / "model.yaml")
-    generation.write_program(checked)
-    (program,) = (controller(made) for made in programs.programs_of(checked))
-    scenario = copy / "scenario.yaml"
+def test_a_scenario_sends_a_fault_by_its_name(playing: Playing) -> None:
     given = "with: {level: 700, mode: Stop, ready: true}"
     good = f"  - {{send: fifth_in, {given}}}\n"
     bad = f"  - {{send: fifth_in, {given}, wrong: masquerade}}\n"
     heard = "  - {wait_for: fifth_out.level, is: 700, within: 2 s}\n"
     expect = "expect:\n  - {fault: Protection_Error, times: 1, because: one is foreign}\n"
-    text = f"scenario: A fault\nsteps:\n{good * 3}{heard}{bad}{good}{heard}{expect}"
-    scenario.write_text(text)
-    database = copy / "generated" / "line.dbc"
-    arguments = (program.executable, program.trace_json, database, scenario, None, copy / "report")
-    outcome = run_controller(*arguments)
-    assert [step.outcome for step in outcome.steps if not step.passed] == []
+    outcome = playing(f"scenario: A fault\nsteps:\n{good * 3}{heard}{bad}{good}{heard}{expect}")
     assert any(step.text.endswith(", with masquerade") for step in outcome.steps)
     assert outcome.observation is not None
     assert outcome.observation.faults["Protection_Error"] == 1
