@@ -73,7 +73,7 @@ is
             null;
          end loop;
       elsif Turns = 10 and then Fault = 'b' then
-         Busy_Until := Ada.Real_Time.Clock + Ada.Real_Time.Milliseconds (450);
+         Busy_Until := Ada.Real_Time.Clock + Ada.Real_Time.Milliseconds (800);
          while Ada.Real_Time.Clock < Busy_Until loop
             null;
          end loop;
@@ -232,7 +232,7 @@ def test_a_processor_that_was_silent_and_comes_back_goes_on_in_the_grace(
     model = _model(folder)
     text = model.read_text()
     assert text.count("grace: 0 ms") == 1
-    model.write_text(text.replace("grace: 0 ms", "grace: 600 ms"))
+    model.write_text(text.replace("grace: 0 ms", "grace: 1200 ms"))
     checked = checking.check(model)
     generation.write_program(checked)
     program = programs.programs_of(checked)[0]
