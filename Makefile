@@ -6,7 +6,8 @@ PYTHON     := .venv/bin/python
 export RAVENCHART_WARNINGS := errors
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-long hw-test check prove generate bench bench-proof mutate docs lock clean
+.PHONY: help setup demo test test-long hw-test check prove generate bench bench-proof mutate docs site
+.PHONY: lock clean
 
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
@@ -20,6 +21,7 @@ help:
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make docs      model reference, JSON Schema and error list; pictures of the examples'
+	@echo 'make site      the documentation as a site, which needs no network: build/site/docs/index.html'
 
 setup:
 	@scripts/setup.sh
@@ -65,6 +67,10 @@ docs: setup
 	@$(PYTHON) -P -m tests.support.faults
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
+
+site: setup
+	@.venv/bin/sphinx-build -q -W --keep-going -b html -c docs/site . build/site
+	@echo build/site/docs/index.html
 
 lock:
 	@.venv/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --extra dev \

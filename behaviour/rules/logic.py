@@ -1,7 +1,7 @@
 """Types and expressions as terms of the solver z3.
 
-Integers are bounded ``Int``s, enumerations ``Int``s over the positions of their
-literals, Booleans ``Bool``s. A *variable* is a scalar that expressions read.
+Integers are bounded terms ``Int``, enumerations ``Int`` over the positions of their
+literals, Booleans ``Bool``. A *variable* is a scalar that expressions read.
 """
 
 from __future__ import annotations
