@@ -41,6 +41,8 @@ class Checked:
     analysis: Analysis
     warnings: str
     sources: Sources
+    diagnostics: tuple[Diagnostic, ...]
+    """What ``warnings`` shows."""
 
     @property
     def folder(self) -> Path:
@@ -86,14 +88,15 @@ def check(
     loaded = load(path)
     system = loaded.system
     if system is None:
-        raise Refused(_rendered(loaded, loaded.diagnostics))
+        raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
     system, unordered = identified(system)
     analysis = analyse(system)
     late = (unordered or findings(analysis)) if deadlines else ()
     everything = (*loaded.diagnostics, *_behaviour(loaded, system, patience, finish), *late)
     if any(d.is_error for d in everything):
-        raise Refused(_rendered(loaded, everything))
-    return Checked(path, system, analysis, _rendered(loaded, everything), loaded.sources)
+        raise Refused(_rendered(loaded, everything), everything)
+    warnings = _rendered(loaded, everything)
+    return Checked(path, system, analysis, warnings, loaded.sources, everything)
 
 
 def _behaviour(

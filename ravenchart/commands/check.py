@@ -7,6 +7,7 @@ import argparse
 from ravenchart.failures import OK
 
 from . import common
+from .results import CheckResult
 
 add_arguments = common.add_model
 
@@ -14,6 +15,13 @@ add_arguments = common.add_model
 def execute(options: argparse.Namespace) -> int:
     """Check it; the exit status."""
     system = common.checked(options, finish=True).system
+    options.answer.result = CheckResult(
+        system.name,
+        system.digest,
+        len(system.instances),
+        len(system.processors),
+        len(system.messages),
+    )
     instances = common.several(len(system.instances), "instance")
     processors = common.several(len(system.processors), "processor")
     messages = common.several(len(system.messages), "message")
