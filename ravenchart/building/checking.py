@@ -16,6 +16,7 @@ from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
 from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 
@@ -79,13 +80,15 @@ def check(
     deadlines: bool = True,
     patience: float = SECONDS,
     finish: bool = False,
+    read: Reader = read_file,
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
     ``patience`` is how many seconds the rules of behaviour may take. What they found in the
-    same content before is taken again; with ``finish``, unless it was not finished.
+    same content before is taken again; with ``finish``, unless it was not finished. ``read`` is
+    how files are read.
     """
-    loaded = load(path)
+    loaded = load(path, read)
     system = loaded.system
     if system is None:
         raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)

@@ -27,15 +27,29 @@ def checked(
     from ravenchart.building import checking
 
     found = checking.check(options.model, deadlines=deadlines, finish=finish)
-    if found.warnings:
-        print(found.warnings, file=sys.stderr)
-        options.answer.add(found.diagnostics)
+    tell_warnings(found)
+    options.answer.add(found.diagnostics)
     return found
+
+
+def tell_warnings(found: Checked) -> None:
+    """Print the warnings of a model."""
+    if found.warnings:
+        print(found.warnings, file=sys.stderr, flush=True)
 
 
 def several(count: int, what: str) -> str:
     """A count in words: `1 file`, `2 files`."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def verdict(found: Checked) -> str:
+    """One line on a model without errors."""
+    system = found.system
+    instances = several(len(system.instances), "instance")
+    processors = several(len(system.processors), "processor")
+    messages = several(len(system.messages), "message")
+    return f"{system.name}: {instances} on {processors}, {messages}; every deadline is met"
 
 
 def tell_written(written: Written, answer: Answer) -> GenerateResult:
