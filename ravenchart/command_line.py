@@ -47,25 +47,82 @@ COMMANDS = {
 
 ALIASES = {"import": ("import-dbc",)}
 
+JSON = "--json"
+
+WITHOUT_JSON = ("bus",)
+"""Commands that have no answer: they go on until they are stopped."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit status."""
     told = sys.argv[1:] if arguments is None else list(arguments)
-    options = _parser(told).parse_args(told)
+    try:
+        options = _parser(told).parse_args(told)
+    except _WrongCall as wrong:
+        if JSON in told:
+            _refuse(_called(told), wrong)
+        raise
+    from .commands.answer import Answer, printed
+
+    options.answer = Answer(options.command)
+    if getattr(options, "json", False):
+        return printed(options.answer, lambda: _executed(options))
+    return _executed(options)
+
+
+def _executed(options: argparse.Namespace) -> int:
+    """Execute the command; the exit status, and its failure told and put into its answer."""
     try:
         status: int = options.execute(options)
     except Failure as failure:
         print(failure.shown(), file=sys.stderr)
+        options.answer.fail(failure.shown(), failure.found)
         return failure.status
     except BrokenPipeError:
         raise  # nobody reads the output: `start` tells that from other broken pipes
     except OSError as problem:
-        print(f"ravenchart: error: {said_of(problem)}", file=sys.stderr)
+        text = f"ravenchart: error: {said_of(problem)}"
+        print(text, file=sys.stderr)
+        options.answer.fail(text)
         return UNUSABLE
     except KeyboardInterrupt:
         print("ravenchart: interrupted", file=sys.stderr)
         return 130
     return status
+
+
+class _WrongCall(SystemExit):
+    """The call is wrong: argparse has printed how."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(UNUSABLE)
+        self.message = message
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says as a `_WrongCall` what is wrong with a call."""
+
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        print(f"{self.prog}: error: {message}", file=sys.stderr)
+        raise _WrongCall(message)
+
+
+def _refuse(command: str | None, wrong: _WrongCall) -> None:
+    """Print the answer to a wrong call with `--json`."""
+    from .commands.answer import Answer
+
+    answer = Answer(command)
+    answer.tell(wrong.message)
+    sys.stdout.write(answer.text(UNUSABLE))
+
+
+def _called(told: Sequence[str]) -> str | None:
+    """The command that is called, by its own name."""
+    word = next((word for word in told if not word.startswith("-")), None)
+    names = {alias: name for name, aliases in ALIASES.items() for alias in aliases}
+    found = names.get(word or "", word)
+    return found if found in COMMANDS else None
 
 
 class _Version(argparse.Action):
@@ -85,7 +142,7 @@ def said_of(problem: OSError) -> str:
 
 def _parser(told: Sequence[str]) -> argparse.ArgumentParser:
     """The parser, with the options of the one command that is called."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="ravenchart",
         description="From one model of a real-time controller to a proved SPARK Ada program, "
         "its timing analysis and its CAN bench.",
@@ -93,13 +150,17 @@ def _parser(told: Sequence[str]) -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and end")
-    called = next((word for word in told if not word.startswith("-")), None)
+    called = _called(told)
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for name, (module, help_text) in COMMANDS.items():
         aliases = ALIASES.get(name, ())
         sub = commands.add_parser(name, aliases=aliases, help=help_text, description=help_text)
-        if called == name or called in aliases:
+        if called == name:
             command = import_module(f"ravenchart.commands.{module}")
             command.add_arguments(sub)
-            sub.set_defaults(execute=command.execute)
+            if name not in WITHOUT_JSON and not any(JSON in a.option_strings for a in sub._actions):
+                sub.add_argument(
+                    JSON, action="store_true", help="print the answer as one JSON object"
+                )
+            sub.set_defaults(execute=command.execute, command=name)
     return parser

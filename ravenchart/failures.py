@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 OK = 0
@@ -15,9 +16,16 @@ NOT_JUDGED = 3
 
 
 class Failure(Exception):  # noqa: N818
-    """A command cannot go on; the text is what is printed."""
+    """A command cannot go on; the text is what is printed.
+
+    ``found`` has the diagnostics that the text shows, where it shows diagnostics of a model.
+    """
 
     status: ClassVar[int] = WRONG
+
+    def __init__(self, text: str, found: Sequence[object] = ()) -> None:
+        super().__init__(text)
+        self.found = tuple(found)
 
     def shown(self) -> str:
         """What is printed."""
@@ -42,12 +50,17 @@ class Unusable(Failure):
         return f"ravenchart: error: {self}"
 
 
-STATUSES = """\
-exit status:
-  0    done; every deadline and limit is kept, the proof or the run passed
-  1    the model, its proof, its timing or its run has errors
-  2    the call is wrong, or a file, program or bus that it needs is missing
-  70   internal error: a fault of Ravenchart, shown with its traceback
-  129, 130, 143   stopped by SIGHUP, SIGINT (Ctrl-C) or SIGTERM
-  141  nobody reads the output any more, as in `| head`
-"""
+MEANINGS: Mapping[str, str] = {
+    "0": "done; every deadline and limit is kept, the proof or the run passed",
+    "1": "the model, its proof, its timing or its run has errors",
+    "2": "the call is wrong, or a file, program or bus that it needs is missing",
+    "3": "`run --strict`: the run passed, but its timing could not be judged",
+    "70": "internal error: a fault of Ravenchart, shown with its traceback",
+    "129, 130, 143": "stopped by SIGHUP, SIGINT (Ctrl-C) or SIGTERM",
+    "141": "nobody reads the output any more, as in `| head`",
+}
+"""Every exit status with its meaning, for `--help`, the manual page and docs/command-line.md."""
+
+STATUSES = "exit status:\n" + "".join(
+    f"  {status:<{5 if len(status) < 5 else 15}}{meaning}\n" for status, meaning in MEANINGS.items()
+)

@@ -1,7 +1,6 @@
 """The terminal table: the verdict first, then one row a task or message, worst first.
 
-It fits 80 columns and never says anything by colour alone; `rich` leaves the
-colour out when the output is no terminal.
+It fits 80 columns and never says anything by colour alone.
 """
 
 from __future__ import annotations
@@ -10,14 +9,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ravenchart import terminal
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds
 
 from .words import WORDS, load_lines, offset_lines, verdict_line
-
-WIDTH = 80
-"""Columns of a printed table."""
 
 LEGEND = (
     "Times in us: T period, D deadline, C execution or transmission, J jitter,\n"
@@ -27,7 +24,7 @@ LEGEND = (
 
 def show(analysis: Analysis, console: Console | None = None) -> None:
     """Print the verdict, loads and limits, and the tables of tasks, messages and chains."""
-    out = console or Console(width=WIDTH, highlight=False)
+    out = console or terminal.console()
     style = "bold green" if analysis.schedulable else "bold red"
     out.print(Text(verdict_line(analysis), style=style))
     for line in load_lines(analysis):

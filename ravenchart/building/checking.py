@@ -16,6 +16,7 @@ from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
 from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.files.load import Reader, read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 
@@ -41,6 +42,8 @@ class Checked:
     analysis: Analysis
     warnings: str
     sources: Sources
+    diagnostics: tuple[Diagnostic, ...]
+    """What ``warnings`` shows."""
 
     @property
     def folder(self) -> Path:
@@ -77,23 +80,26 @@ def check(
     deadlines: bool = True,
     patience: float = SECONDS,
     finish: bool = False,
+    read: Reader = read_file,
 ) -> Checked:
     """Load, check and analyse a model; Refused with every diagnostic when it is wrong.
 
     ``patience`` is how many seconds the rules of behaviour may take. What they found in the
-    same content before is taken again; with ``finish``, unless it was not finished.
+    same content before is taken again; with ``finish``, unless it was not finished. ``read`` is
+    how files are read.
     """
-    loaded = load(path)
+    loaded = load(path, read)
     system = loaded.system
     if system is None:
-        raise Refused(_rendered(loaded, loaded.diagnostics))
+        raise Refused(_rendered(loaded, loaded.diagnostics), loaded.diagnostics)
     system, unordered = identified(system)
     analysis = analyse(system)
     late = (unordered or findings(analysis)) if deadlines else ()
     everything = (*loaded.diagnostics, *_behaviour(loaded, system, patience, finish), *late)
     if any(d.is_error for d in everything):
-        raise Refused(_rendered(loaded, everything))
-    return Checked(path, system, analysis, _rendered(loaded, everything), loaded.sources)
+        raise Refused(_rendered(loaded, everything), everything)
+    warnings = _rendered(loaded, everything)
+    return Checked(path, system, analysis, warnings, loaded.sources, everything)
 
 
 def _behaviour(

@@ -39,14 +39,14 @@ def without_clashes(checked: Checked) -> None:
     """Refused where names would clash in the generated program."""
     found = in_order(clashes(checked.system), checked.sources)
     if found:
-        raise Refused(render_all(found, checked.sources))
+        raise Refused(render_all(found, checked.sources), found)
 
 
 def claims(checked: Checked) -> Claims:
     """What the program's certificate claims, in ns. Refused when something cannot be shown."""
-    gaps = [render(diagnostic, {}) for diagnostic in uncertified(checked.analysis)]
+    gaps = tuple(uncertified(checked.analysis))
     if gaps:
-        raise Refused("\n".join(gaps))
+        raise Refused("\n".join(render(gap, {}) for gap in gaps), gaps)
     try:
         return claims_of(checked.analysis)
     except Unclaimed as problem:
@@ -79,9 +79,9 @@ def write_program(checked: Checked) -> Written:
     incremental; files of the last generation that are no longer made go. `Refused` for
     what can be analysed only.
     """
-    gaps = [render(diagnostic, {}) for diagnostic in unready(checked.system)]
+    gaps = tuple(unready(checked.system))
     if gaps:
-        raise Refused("\n".join(gaps))
+        raise Refused("\n".join(render(gap, {}) for gap in gaps), gaps)
     without_clashes(checked)
     folder = checked.generated
     folder.mkdir(parents=True, exist_ok=True)

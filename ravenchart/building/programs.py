@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,6 +53,11 @@ def runtime_folders(driver: str) -> tuple[Path, ...]:
     return tuple(ROOT / f for f in (".", "spark_runtime", *RUNTIME_FOLDERS, *chosen))
 
 
+def to_standard_error(text: str) -> None:
+    """Print what outside programs warn of."""
+    print(text, file=sys.stderr)
+
+
 @dataclass(frozen=True, slots=True)
 class Program:
     """What runs on one node: where its sources are, its objects, itself and its proof.
@@ -82,9 +88,15 @@ class Program:
         return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(self.home(driver))}
 
     def build(
-        self, mode: str = "checks", driver: str | None = None, registers: str = "simulated"
+        self,
+        mode: str = "checks",
+        driver: str | None = None,
+        registers: str = "simulated",
+        warn: Callable[[str], None] = to_standard_error,
     ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words.
+
+        ``warn`` gets the compiler's warnings.
 
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
         hardware where a device has no address.
@@ -97,7 +109,7 @@ class Program:
         options = ["-p", "-q", "-j0", "-P", self.project.name]
         warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
         if warnings.strip():
-            print(warnings.rstrip(), file=sys.stderr)
+            warn(warnings.rstrip())
         return self.home(chosen) / f"{self.checked.stem}_main"
 
     def _check_addresses(self) -> None:

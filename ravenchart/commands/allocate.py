@@ -21,7 +21,6 @@ from ravenchart.analysis.core import allocation
 from ravenchart.analysis.core.allocation import Activity, Strategy, Table
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.tasks import Task
-from ravenchart.analysis.present.table import WIDTH
 from ravenchart.analysis.present.words import verdict_line
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.analysis.units import duration, microseconds
@@ -29,9 +28,11 @@ from ravenchart.failures import OK, WRONG
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
+from ravenchart.terminal import console
 
 from . import common
 from .allocation_search import SET, Judged, searched
+from .results import Allocated, AllocateResult, Row
 
 STRATEGIES = {
     "period": Strategy.BY_PERIOD,
@@ -166,7 +167,7 @@ def _free(name: str, taken: Sequence[str]) -> str:
 
 def show(proposal: Proposal, out: Console | None = None) -> None:
     """The verdict, a row for each processor and each of its rows, and what stayed."""
-    out = out or Console(width=WIDTH, highlight=False)
+    out = out or console()
     analysis = proposal.analysis
     out.print(Text(verdict_line(analysis)))
     out.print()
@@ -250,6 +251,37 @@ def _written(system: System) -> Iterator[Processor]:
             yield one
 
 
+def _answer(proposal: Proposal, strategy: str) -> AllocateResult:
+    analysis = proposal.analysis
+    bounds = {row.row.name: row.bound for _, row in analysis.rows()}
+    made = [
+        Allocated(
+            one.name,
+            one.node,
+            one.core,
+            one.name in proposal.kept,
+            one.priority,
+            one.period,
+            one.offset,
+            one.deadline,
+            one.wcet,
+            analysis.found.from_event(one.name),
+            [
+                Row(
+                    slot.element,
+                    slot.timing.period,
+                    slot.timing.deadline,
+                    slot.timing.wcet,
+                    bounds.get(slot.element),
+                )
+                for slot in one.slots
+            ],
+        )
+        for one in sorted(proposal.system.processors, key=lambda p: -p.priority)
+    ]
+    return AllocateResult(strategy, analysis.schedulable, made, yaml(proposal))
+
+
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
@@ -265,6 +297,7 @@ def execute(options: argparse.Namespace) -> int:
     """Propose it; the exit status."""
     checked = common.checked(options, deadlines=False)
     proposal = propose(checked.analysis, options.strategy)
+    options.answer.result = _answer(proposal, options.strategy)
     if options.yaml:
         print(yaml(proposal), end="")
     else:

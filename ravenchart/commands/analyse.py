@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from ravenchart.failures import OK, WRONG, Refused
@@ -46,7 +45,7 @@ def execute(options: argparse.Namespace) -> int:
     if options.json:
         from ravenchart.analysis.present.figures import figures
 
-        print(json.dumps(figures(analysis), indent=1))
+        options.answer.figures = figures(analysis)
         return status
     show(analysis)
     if options.html is not None:
@@ -66,6 +65,6 @@ def _plain(options: argparse.Namespace) -> int:
     if options.html is not None:
         raise Refused(f"{options.model}: error: --html is for models")
     met = plain.run(
-        options.model, as_json=options.json, export=options.export, seen=options.observed
+        options.model, options.answer if options.json else None, options.export, options.observed
     )
     return OK if met else WRONG

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 from ravenchart.building import generation, programs
 from ravenchart.failures import OK
+from ravenchart.terminal import progress
 
 from . import common
+from .answer import say
+from .results import BuildResult, Built
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -27,7 +31,12 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Build every program of the model; the exit status."""
     checked = common.checked(options)
-    common.tell_written(generation.write_program(checked))
+    generated = common.tell_written(generation.write_program(checked), options.answer)
+    answer = options.answer.result = BuildResult(generated, [])
+    warn = partial(say, options.answer, severity="warning")
     for made in programs.programs_of(checked):
-        print(f"built {made.build(options.mode, options.driver, options.registers)}")
+        with progress(f"compile {made.node}"):
+            program = made.build(options.mode, options.driver, options.registers, warn)
+        answer.programs.append(Built(made.node, str(program)))
+        print(f"built {program}")
     return OK

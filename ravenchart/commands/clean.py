@@ -9,6 +9,8 @@ from pathlib import Path
 from ravenchart.failures import OK
 from ravenchart.paths import cache, work
 
+from .results import CleanResult
+
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
@@ -32,9 +34,10 @@ def execute(options: argparse.Namespace) -> int:
     if options.results:
         folders += [cache() / "checks", cache() / "proofs"]
     freed = sum(_size(folder) for folder in folders)
-    for folder in folders:
-        if folder.exists():
-            shutil.rmtree(folder)
+    there = [folder for folder in folders if folder.exists()]
+    for folder in there:
+        shutil.rmtree(folder)
+    options.answer.result = CleanResult([str(folder) for folder in there], freed)
     print(f"{freed / 1e6:.0f} MB freed")
     return OK
 

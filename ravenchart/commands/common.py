@@ -7,6 +7,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .answer import Answer, say
+from .results import GenerateResult
+
 if TYPE_CHECKING:
     from ravenchart.building.checking import Checked
     from ravenchart.building.generation import Written
@@ -24,9 +27,15 @@ def checked(
     from ravenchart.building import checking
 
     found = checking.check(options.model, deadlines=deadlines, finish=finish)
-    if found.warnings:
-        print(found.warnings, file=sys.stderr)
+    tell_warnings(found)
+    options.answer.add(found.diagnostics)
     return found
+
+
+def tell_warnings(found: Checked) -> None:
+    """Print the warnings of a model."""
+    if found.warnings:
+        print(found.warnings, file=sys.stderr, flush=True)
 
 
 def several(count: int, what: str) -> str:
@@ -34,16 +43,25 @@ def several(count: int, what: str) -> str:
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
-def tell_written(written: Written) -> None:
-    """What a generation did, and what is still to write."""
+def verdict(found: Checked) -> str:
+    """One line on a model without errors."""
+    system = found.system
+    instances = several(len(system.instances), "instance")
+    processors = several(len(system.processors), "processor")
+    messages = several(len(system.messages), "message")
+    return f"{system.name}: {instances} on {processors}, {messages}; every deadline is met"
+
+
+def tell_written(written: Written, answer: Answer) -> GenerateResult:
+    """What a generation did, and what is still to write: printed, and for the answer."""
     from ravenchart.building.generation import EDITED
 
     print(f"{written.folder}: {several(written.files, 'file')}, {written.changed} changed")
     for name in written.edited:
-        print(
+        say(
+            answer,
             f"warning: {written.folder / name} was edited by hand and is generated again; "
             f"your version is kept as {name}{EDITED}",
-            file=sys.stderr,
         )
     for path in written.untouched:
         state = (
@@ -51,4 +69,12 @@ def tell_written(written: Written) -> None:
             if path in written.first
             else "its bodies do nothing yet"
         )
-        print(f"note: {path}: {state}. Write them: the file is yours", file=sys.stderr)
+        say(answer, f"note: {path}: {state}. Write them: the file is yours")
+    return GenerateResult(
+        str(written.folder),
+        written.files,
+        written.changed,
+        list(written.edited),
+        [str(path) for path in written.first],
+        [str(path) for path in written.untouched],
+    )

@@ -13,6 +13,9 @@ from dataclasses import dataclass
 from ravenchart.failures import OK, UNUSABLE
 from ravenchart.paths import PACKAGE, ROOT, cache, version, work
 
+from .results import DoctorResult
+from .results import Tool as Listed
+
 
 @dataclass(frozen=True, slots=True)
 class Tool:
@@ -39,6 +42,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status: 2 where no program can be built."""
     rows = list(_rows())
+    options.answer.result = DoctorResult([Listed(what, state, said) for state, what, said in rows])
     width = max(len(what) for _, what, _ in rows)
     for state, what, said in rows:
         print(f"{state:<8} {what:<{width}}  {said}")

@@ -21,6 +21,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.tools import toolchain
 
 from . import common
+from .results import DrawResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,5 +99,6 @@ def execute(options: argparse.Namespace) -> int:
         drawings = texts(common.checked(options, deadlines=False).system, options.format)
     folder = options.out or (options.from_ada or options.model).parent / "drawings"
     write(drawings, folder)
+    options.answer.result = DrawResult(str(folder), options.format, list(drawings))
     print(f"{folder}: {len(drawings)} drawings")
     return OK

@@ -10,6 +10,8 @@ from ravenchart.failures import OK, Refused
 from ravenchart.gen import explanations
 from ravenchart.gen.diagnostics import CODES
 
+from .results import ExplainResult
+
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
@@ -28,10 +30,18 @@ def execute(options: argparse.Namespace) -> int:
         near = difflib.get_close_matches(code, CODES, 3)
         hint = f"; there are {', '.join(near)}" if near else ""
         raise Refused(f"ravenchart: error: no message has the code {options.code}{hint}")
+    found = explanations.explanations().get(code)
+    options.answer.result = ExplainResult(
+        code,
+        CODES[code],
+        found.why if found else None,
+        found.wrong if found else None,
+        found.corrected if found else None,
+        explanations.text(code),
+    )
     if not options.wrong and not options.corrected:
         sys.stdout.write(explanations.text(code))
         return OK
-    found = explanations.explanations().get(code)
     if found is None:
         raise Refused(f"ravenchart: error: {code} has no example model yet")
     sys.stdout.write(found.wrong if options.wrong else found.corrected)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ravenchart.databases import exporting
@@ -11,6 +10,8 @@ from ravenchart.failures import OK, Refused
 from ravenchart.gen.language.names import meant
 
 from . import common
+from .answer import say
+from .results import ExportResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -38,7 +39,8 @@ def execute(options: argparse.Namespace) -> int:
         told = "name one with `--bus`" if options.bus is None else f"no bus is called {options.bus}"
         raise Refused(f"{options.model}: error: {told}: {hint}")
     found = exporting.exported(system, buses[name], options.like, lenient=options.lenient)
+    options.answer.result = ExportResult(name, found.text)
     print(found.text, end="")
     for note in found.notes:
-        print(f"note: {note}", file=sys.stderr)
+        say(options.answer, f"note: {note}")
     return OK

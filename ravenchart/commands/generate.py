@@ -14,5 +14,6 @@ add_arguments = common.add_model
 
 def execute(options: argparse.Namespace) -> int:
     """Write it; the exit status."""
-    common.tell_written(generation.write_program(common.checked(options)))
+    written = generation.write_program(common.checked(options))
+    options.answer.result = common.tell_written(written, options.answer)
     return OK

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ravenchart.databases import database
 from ravenchart.failures import OK, WRONG
+
+from .answer import say
+from .results import ImportResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -39,7 +41,8 @@ def execute(options: argparse.Namespace) -> int:
     found = database.imported(
         options.database, options.node, given, lenient=options.lenient, bus=options.bus
     )
+    options.answer.result = ImportResult(found.text)
     print(found.text, end="")
     for problem in found.problems:
-        print(problem, file=sys.stderr)
+        say(options.answer, problem)
     return WRONG if found.problems else OK

@@ -9,15 +9,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ravenchart import terminal
 from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Setup, open_ends
 from ravenchart.hw_can.conformance.suite import LoopbackResult, Verdict, histogram, run
 
-from . import loopback_files
-
-WIDTH = 80
-"""Columns of the table."""
+from . import loopback_files, results
 
 BAR = 40
 """Columns of the longest bar of the histogram."""
@@ -48,7 +46,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 def show(result: LoopbackResult, console: Console | None = None) -> None:
     """Print a row for each case, the histogram of latencies, and the verdict."""
-    out = console or Console(width=WIDTH, highlight=False)
+    out = console or terminal.console()
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
     table.add_column("case", no_wrap=True)
     table.add_column("")
@@ -97,6 +95,15 @@ def tested(options: argparse.Namespace) -> bool:
         result = run(ends)
     finally:
         ends.close()
+    options.answer.result = results.LoopbackResult(
+        result.passed,
+        [
+            results.Case(one.name, one.verdict.value.lower(), one.seconds, one.detail)
+            for one in result.cases
+        ],
+        list(result.latencies),
+        result.rate,
+    )
     show(result)
     if options.junit is not None:
         options.junit.write_text(loopback_files.junit(result), encoding="utf-8")

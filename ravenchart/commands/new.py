@@ -12,6 +12,8 @@ from ravenchart.gen.diagnostics import render_all
 from ravenchart.gen.files.reference import json_schema
 from ravenchart.gen.pipeline import load
 
+from .results import NewResult
+
 SYSTEM = "SYSTEM"
 """What stands for the name of the system in the files."""
 
@@ -42,6 +44,7 @@ def execute(options: argparse.Namespace) -> int:
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
+    options.answer.result = NewResult(str(folder), list(files))
     print(f"{folder}: {len(files)} files. Next, there: `make check`, `make run`, `make prove`")
     return OK
 

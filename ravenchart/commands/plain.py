@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from fractions import Fraction
 from pathlib import Path
 
@@ -20,7 +19,9 @@ from ravenchart.analysis.present.report import Execution
 from ravenchart.analysis.present.words import offset_lines
 from ravenchart.analysis.units import duration, percent
 from ravenchart.failures import Refused
+from ravenchart.terminal import console
 
+from .answer import Answer
 from .observed import tell
 
 EXPORTS = tuple(FORMATS)
@@ -48,10 +49,11 @@ def _text(path: Path) -> str:
         raise Refused(f"{path}: error: the file must be UTF-8 text") from None
 
 
-def run(path: Path, *, as_json: bool, export: str | None, seen: Path | None) -> bool:
+def run(path: Path, answer: Answer | None, export: str | None, seen: Path | None) -> bool:
     """Analyse and print; whether every deadline is met, or the export was printed.
 
-    With ``seen``, a file of observed times, whether these are within their budgets too.
+    With ``answer`` everything goes there, for `--json`. With ``seen``, a file of observed times,
+    whether these are within their budgets too.
     """
     system = read(path)
     if export is not None:
@@ -61,11 +63,11 @@ def run(path: Path, *, as_json: bool, export: str | None, seen: Path | None) -> 
         result = analyse(system)
     except ValueError as fault:
         raise Refused(f"{path}: error: {fault}") from None
-    if as_json:
+    if answer is not None:
         changes = {"changes": advice.figures(_advice(result))}
-        print(json.dumps(everything(result) | changes, indent=1))
+        answer.figures = everything(result) | changes
     else:
-        show(result, Console(highlight=False))
+        show(result, console(None))
     within = seen is None or _within_budgets(seen, system)
     return within and result.met
 

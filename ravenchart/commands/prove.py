@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ravenchart.building import generation, programs
 from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.proof import outside_spark, proving
 from ravenchart.proof.spark_results import Outside
+from ravenchart.terminal import progress
 
 from . import common
+from .answer import say
+from .results import Proved, ProveResult
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -32,7 +34,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Prove every program of the model; the exit status."""
     checked = common.checked(options)
-    common.tell_written(generation.write_program(checked))
+    generated = common.tell_written(generation.write_program(checked), options.answer)
+    answer = options.answer.result = ProveResult(generated, [])
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)
     made = programs.programs_of(checked)
@@ -42,7 +45,9 @@ def execute(options: argparse.Namespace) -> int:
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:
-        proof = proving.prove(one.proof(driver, whole=options.whole), fresh=options.fresh)
+        with progress(f"prove {one.node}"):
+            proof = proving.prove(one.proof(driver, whole=options.whole), fresh=options.fresh)
+        answer.programs.append(_proved(one.node, proof))
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean
@@ -50,5 +55,22 @@ def execute(options: argparse.Namespace) -> int:
         if options.record is not None:
             options.record.write_text(proving.record_text(proof), encoding="utf-8")
     for line in outside_spark.lines(tuple(outside), reasons):
-        print(line, file=sys.stderr if line.startswith("error") else sys.stdout)
+        if line.startswith("error"):
+            say(options.answer, line)
+        else:
+            print(line)
     return OK if clean and outside_spark.agree(tuple(outside), reasons) else WRONG
+
+
+def _proved(node: str, proof: proving.Proof) -> Proved:
+    found = proof.results
+    return Proved(
+        node,
+        found.checks,
+        found.checks - found.justified - found.unproved,
+        found.justified,
+        found.assumed,
+        [one.name for one in found.outside],
+        proof.clean,
+        proof.cached,
+    )

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from ravenchart.building import generation, programs
 from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running import scenarios
+from ravenchart.running.result import RunResult
 from ravenchart.running.runs import RunRequest, controller, run_model
+from ravenchart.terminal import progress
 
-from . import common
+from . import common, results
+from .answer import say
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -33,10 +37,12 @@ def execute(options: argparse.Namespace) -> int:
     checked = common.checked(options)
     if options.scenario is not None:
         scenarios.checked(options.scenario, checked.system)
-    common.tell_written(generation.write_program(checked))
+    common.tell_written(generation.write_program(checked), options.answer)
     controllers = []
+    warn = partial(say, options.answer, severity="warning")
     for made in programs.programs_of(checked):
-        controllers.append(controller(made))
+        with progress(f"compile {made.node}"):
+            controllers.append(controller(made, warn))
         print(f"built {controllers[-1].executable}")
     home = programs.build_home(checked, programs.default_driver(checked))
     request = RunRequest(
@@ -48,9 +54,33 @@ def execute(options: argparse.Namespace) -> int:
         options.report or home / "report",
     )
     try:
-        outcome = run_model(request)
+        outcome = run_model(request, refuse=options.answer.fail)
     except BenchError as problem:
         raise Unusable(str(problem)) from problem
-    if outcome is None or not outcome.passed:
+    if outcome is None:
+        return WRONG
+    options.answer.result = _judged(outcome, request.folder)
+    if not outcome.passed:
         return WRONG
     return NOT_JUDGED if options.strict and outcome.not_judged else OK
+
+
+def _judged(outcome: RunResult, folder: Path) -> results.RunResult:
+    return results.RunResult(
+        outcome.title,
+        outcome.passed,
+        outcome.verdict,
+        outcome.not_judged,
+        list(outcome.failures),
+        list(outcome.notes),
+        [results.Step(one.at, one.text, one.passed, one.outcome) for one in outcome.steps],
+        [
+            results.Observed(one.task, one.releases, one.observed, one.bound)
+            for one in outcome.compared
+        ],
+        [
+            results.Observed(one.chain, one.count, one.observed, one.bound)
+            for one in outcome.journeys
+        ],
+        str(folder / "report.html"),
+    )

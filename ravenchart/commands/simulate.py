@@ -62,7 +62,7 @@ def _unreadable(path: Path, reason: str) -> Diagnostic:
 
 def _refused(found: Sequence[Diagnostic], path: Path, text: str) -> Refused:
     sources = {str(path): lines_of(text)} if text else {}
-    return Refused(render_all(found, sources))
+    return Refused(render_all(found, sources), found)
 
 
 def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
@@ -71,7 +71,8 @@ def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
         return list(Machine(as_one(system)).run(stimuli))
     except Stuck as stuck:
         hint = "give it a segment with the guard `else`"
-        raise Refused(render(error("RV-1007", stuck.origin, str(stuck), hint=hint), {})) from stuck
+        found = error("RV-1007", stuck.origin, str(stuck), hint=hint)
+        raise Refused(render(found, {}), [found]) from stuck
 
 
 def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
@@ -168,7 +169,8 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
     if interpreter and bindings:
         message = "the interpreter knows no drivers: it executes no models with bindings"
         hint = "leave out `--interpreter`: the program in virtual time has them"
-        raise Refused(render(error("RV-1008", bindings[0].origin, message, hint=hint), {}))
+        found = error("RV-1008", bindings[0].origin, message, hint=hint)
+        raise Refused(render(found, {}), [found])
     stimuli = stimuli_of(checked.system, events)
     for one in unexpected(checked.system, stimuli):
         print(render(one, {}), file=sys.stderr)
@@ -198,5 +200,7 @@ def execute(options: argparse.Namespace) -> int:
     missing = left_out(checked.system) if options.interpreter else None
     if missing is not None:
         print(render(missing, {}), file=sys.stderr)
-    print(trace, end="")
+    options.answer.lines = trace
+    if not options.json:
+        print(trace, end="")
     return OK

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from ravenchart import terminal
 from ravenchart.analysis.present.plots import svg
 from ravenchart.analysis.present.report import RunReport, compare, executions, render
 from ravenchart.analysis.system.journeys import journeys
@@ -22,7 +23,7 @@ from ravenchart.analysis.system.observed import (
     together,
 )
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.building.programs import Program
+from ravenchart.building.programs import Program, to_standard_error
 from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
@@ -48,9 +49,9 @@ class Controller:
     trace_json: Path
 
 
-def controller(made: Program) -> Controller:
+def controller(made: Program, warn: Callable[[str], None] = to_standard_error) -> Controller:
     """A program built, to be run. ToolFailed with the compiler's words."""
-    return Controller(made.node, made.build(), made.generated / "trace.json")
+    return Controller(made.node, made.build(warn=warn), made.generated / "trace.json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,12 +70,19 @@ class RunRequest:
     folder: Path
 
 
-def run_model(request: RunRequest, console: Console | None = None) -> RunResult | None:
-    """Run, print the summary and write the report; None where nothing could be run."""
-    out = console or summary.terminal()
+def run_model(
+    request: RunRequest,
+    console: Console | None = None,
+    refuse: Callable[[str], None] = lambda text: None,
+) -> RunResult | None:
+    """Run, print the summary and write the report.
+
+    None where nothing could be run: ``refuse`` gets the reason, which is printed too.
+    """
+    out = console or terminal.console()
     first = request.controllers[0]
     try:
-        with out.status("start the controller") as status:
+        with terminal.progress("start the controller") as progress:
             by_priority = any(one.by_priority for one in request.analysis.system.buses)
             if len(request.controllers) > 1 or by_priority:
                 outcome = run_nodes(
@@ -84,7 +92,7 @@ def run_model(request: RunRequest, console: Console | None = None) -> RunResult 
                     request.scenario,
                     request.seconds,
                     request.folder,
-                    lambda text: status.update(text),
+                    progress,
                 )
             elif request.scenario is None:
                 outcome = run_alone(
@@ -102,11 +110,12 @@ def run_model(request: RunRequest, console: Console | None = None) -> RunResult 
                     request.scenario,
                     None,
                     request.folder,
-                    lambda text: status.update(text),
+                    progress,
                     analysis=request.analysis,
                 )
     except (ScenarioError, BenchError, TraceError) as fault:
         out.print(str(fault), markup=False, soft_wrap=True)
+        refuse(str(fault))
         return None
     written = write_report(outcome, request.analysis, request.folder)
     out.print(outcome.title, markup=False)
@@ -209,7 +218,7 @@ def _passed(outcome: RunResult) -> str:
 
 def print_summary(outcome: RunResult, console: Console | None = None) -> None:
     """Print what the run showed, 80 columns wide, without the verdict."""
-    out = console or summary.terminal()
+    out = console or terminal.console()
     if outcome.steps:
         summary.print_steps(out, outcome.steps)
     if outcome.observation is not None:

@@ -55,7 +55,7 @@ def checked(path: Path, system: System) -> Scenario:
     assert source is not None
     found = problems(scenario, system)
     if found:
-        raise Refused(rendered(found, source.file, source.text))
+        raise Refused(rendered(found, source.file, source.text), found)
     return scenario
 
 

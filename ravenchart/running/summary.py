@@ -10,14 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from ravenchart.analysis.present.report import Comparison, FrameRow, StepRow
-from ravenchart.analysis.present.table import WIDTH
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.units import microseconds
-
-
-def terminal() -> Console:
-    """A console of that width; without colour when the output is no terminal."""
-    return Console(width=WIDTH, highlight=False)
 
 
 def print_steps(console: Console, steps: Sequence[StepRow]) -> None:

@@ -1,0 +1,188 @@
+"""What `--json` prints: one object for each call, whatever comes of it.
+
+A command fills in ``result`` and tells its warnings; `command_line` tells how it failed, keeps
+what is printed for people off standard output, and prints the object. Standard error has the
+same text as without `--json`. docs/answer.schema.json is made of the classes here and in `results`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import asdict, dataclass, field
+from os import devnull
+from typing import Any, ClassVar, Literal
+
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.origins import Origin
+from ravenchart.paths import version
+
+from .results import Described, Result
+
+FORMAT = 1
+"""The version of the object: raised when a key goes or changes its meaning."""
+
+LOCATED = re.compile(
+    r"(?P<file>[^\s:|][^:|]*):(?P<line>\d+):(?:(?P<column>\d+):)? "
+    r"(?:(?P<severity>error|warning|note|hint|info|high|medium|low): )?"
+    r"(?P<message>.*?)(?: \[(?P<code>RV-\d{4})\])?"
+)
+"""A line as compilers, provers and Ravenchart itself print it."""
+NAMED = re.compile(r"(?:(?P<file>[^\n]+?): )?(?P<severity>error|warning|note): (?P<message>.*)")
+"""The same without a line of a file; ``ravenchart`` is no file."""
+EXCERPT = re.compile(r" *\d* \| .*")
+"""A line of the file that a message is about."""
+HINT = re.compile(r"\s*hint: (?P<message>.*)")
+Severity = Literal["error", "warning", "note"]
+SEVERITIES: Mapping[str, Severity] = {"warning": "warning", "note": "note", "info": "note"}
+"""Of a word before a message; every other one is an error."""
+
+
+@dataclass(slots=True)
+class Note(Described):
+    """Another place that a diagnostic speaks of."""
+
+    message: str
+    """What is to be seen there."""
+    file: str | None = None
+    """The file, as it was given."""
+    line: int | None = None
+    """The line, from 1."""
+    column: int | None = None
+    """The column, from 1."""
+
+
+@dataclass(slots=True)
+class Found(Described):
+    """An error, a warning or a note."""
+
+    severity: Severity
+    """`error`, `warning` or `note`."""
+    message: str
+    """What is wrong."""
+    code: str | None = None
+    """The code, for `ravenchart explain`; null where the message has none."""
+    file: str | None = None
+    """The file, as it was given; null where the message is about none."""
+    line: int | None = None
+    """The line, from 1."""
+    column: int | None = None
+    """The column, from 1."""
+    hint: str | None = None
+    """What to do."""
+    notes: list[Note] = field(default_factory=list)
+    """Other places."""
+
+
+@dataclass(slots=True)
+class Answer:
+    """What one call came to; ``figures`` is the answer of `analyse`, ``lines`` of `simulate`."""
+
+    command: str | None
+    result: Result | None = None
+    found: list[Found] = field(default_factory=list)
+    figures: Mapping[str, Any] = field(default_factory=dict)
+    lines: str | None = None
+    internal: ClassVar[str] = "internal error: a fault of Ravenchart, not of the model"
+
+    def add(self, diagnostics: Iterable[object]) -> None:
+        """Diagnostics of a model."""
+        self.found += [_of(one) for one in diagnostics if isinstance(one, Diagnostic)]
+
+    def tell(self, text: str, severity: Severity = "error") -> None:
+        """What is said in a text for people, which an outside program may have printed."""
+        self.found += found_in(text, severity)
+
+    def fail(self, text: str, diagnostics: Iterable[object] = ()) -> None:
+        """Why a command could not go on: the diagnostics, or what the text says."""
+        kept = list(diagnostics)
+        if kept:
+            self.add(kept)
+        else:
+            self.tell(text)
+
+    def text(self, status: int) -> str:
+        """What is printed."""
+        if self.lines is not None and status == 0:
+            return self.lines
+        head = {
+            "format": FORMAT,
+            "version": version(),
+            "command": self.command,
+            "status": status,
+            "diagnostics": [asdict(one) for one in self.found],
+        }
+        answer = self.figures or {"result": None if self.result is None else asdict(self.result)}
+        return f"{json.dumps(head | dict(answer), indent=1)}\n"
+
+
+def say(answer: Answer, text: str, severity: Severity = "error") -> None:
+    """Print what is not the result of a command to standard error, and put it in the answer."""
+    print(text, file=sys.stderr)
+    answer.tell(text, severity)
+
+
+def printed(answer: Answer, execute: Callable[[], int]) -> int:
+    """Execute a command, and print its answer alone; the exit status."""
+    with _alone() as write:
+        try:
+            status = execute()
+        except BrokenPipeError:
+            raise
+        except Exception:
+            answer.tell(answer.internal)
+            write(answer.text(70))
+            raise
+        write(answer.text(status))
+    return status
+
+
+@contextmanager
+def _alone() -> Iterator[Callable[[str], int]]:
+    """Nothing gets to standard output but what is written by the function."""
+    out = sys.stdout
+    with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
+        yield out.write
+
+
+def _of(one: Diagnostic) -> Found:
+    notes = [Note(text, *_place(origin)) for origin, text in one.notes]
+    severity = SEVERITIES.get(one.severity.value, "error")
+    return Found(severity, one.message, one.code, *_place(one.origin), one.hint, notes)
+
+
+def _place(origin: Origin) -> tuple[str, int, int]:
+    return origin.file, origin.line, origin.column
+
+
+def found_in(text: str, severity: Severity = "error") -> list[Found]:
+    """The messages in a text; one with all of it where no line has the form of a message."""
+    made: list[Found] = []
+    for line in (line for line in text.splitlines() if not EXCERPT.fullmatch(line)):
+        located = LOCATED.fullmatch(line)
+        named = None if located else HINT.fullmatch(line) or NAMED.fullmatch(line)
+        if located is not None:
+            _take(made, located.groupdict(), severity)
+        elif named is not None:
+            _take(made, named.groupdict(), severity)
+    if not made and text.strip():
+        made.append(Found(severity, text.strip()))
+    return made
+
+
+def _take(made: list[Found], parts: Mapping[str, str | None], severity: Severity) -> None:
+    """One message more, or a note or hint of the last one."""
+    word, message = parts.get("severity"), parts["message"] or ""
+    file = parts.get("file")
+    line, column = (int(n) if (n := parts.get(key)) else None for key in ("line", "column"))
+    if made and (word == "hint" or "severity" not in parts):
+        made[-1].hint = message
+    elif made and word == "note" and line is not None:
+        made[-1].notes.append(Note(message, file, line, column))
+    else:
+        kind = severity if word is None else SEVERITIES.get(word, "error")
+        named = None if file == "ravenchart" else file
+        made.append(Found(kind, message, parts.get("code"), named, line, column))

@@ -1,0 +1,357 @@
+"""``result`` of the object that `--json` prints, one class for each command.
+
+Times are whole ns. A change of these classes changes docs/answer.schema.json (`make docs`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+
+class Described:
+    """A part of the object: the text below a key describes it, and there are no other keys."""
+
+    __slots__ = ()
+    __pydantic_config__: ClassVar[dict[str, Any]] = {
+        "use_attribute_docstrings": True,
+        "extra": "forbid",
+    }
+
+
+@dataclass(slots=True)
+class Result(Described):
+    """What a command did or found."""
+
+
+@dataclass(slots=True)
+class CheckResult(Result):
+    """A model without errors."""
+
+    system: str
+    """The name of the system."""
+    digest: str
+    """SHA-256 of the model's files."""
+    instances: int
+    """How many instances of components it has."""
+    processors: int
+    """How many command processors."""
+    messages: int
+    """How many messages of buses."""
+
+
+@dataclass(slots=True)
+class GenerateResult(Result):
+    """A program, written beside its model."""
+
+    folder: str
+    """Where it was written."""
+    files: int
+    """How many files it has."""
+    changed: int
+    """How many of these differ from those before."""
+    edited: list[str]
+    """Files that had been edited by hand: their copies end in `.edited`."""
+    first: list[str]
+    """Files of the user that were not there, and got a first version."""
+    untouched: list[str]
+    """Files of the user that are as first written, and do nothing."""
+
+
+@dataclass(slots=True)
+class Built(Described):
+    """The program of one node."""
+
+    node: str
+    """The name of the node."""
+    program: str
+    """The executable."""
+
+
+@dataclass(slots=True)
+class BuildResult(Result):
+    """Programs, generated and compiled."""
+
+    generated: GenerateResult
+    """What was generated."""
+    programs: list[Built]
+    """One for each node that runs something."""
+
+
+@dataclass(slots=True)
+class Proved(Described):
+    """The proof of one program."""
+
+    node: str
+    """The name of the node."""
+    checks: int
+    """How many checks gnatprove made."""
+    proved: int
+    """How many of these are proved."""
+    justified: int
+    """How many are justified by hand."""
+    assumed: int
+    """How many statements `pragma Assume` there are."""
+    outside: list[str]
+    """What is outside SPARK."""
+    clean: bool
+    """Whether everything is proved, and nothing justified or assumed."""
+    cached: bool
+    """Whether the results are those of an earlier run on the same content."""
+
+
+@dataclass(slots=True)
+class ProveResult(Result):
+    """Programs, generated and given to gnatprove."""
+
+    generated: GenerateResult
+    """What was generated."""
+    programs: list[Proved]
+    """One for each node that runs something."""
+
+
+@dataclass(slots=True)
+class Row(Described):
+    """An activity of a processor."""
+
+    activity: str
+    """Its name."""
+    period: int
+    """In ns."""
+    deadline: int
+    """In ns."""
+    wcet: int
+    """Worst-case execution time in ns."""
+    response: int | None
+    """Response-time bound in ns; null where there is none."""
+
+
+@dataclass(slots=True)
+class Allocated(Described):
+    """A processor of the proposal."""
+
+    processor: str
+    """Its name."""
+    node: str
+    """The node on which it is."""
+    core: int
+    """The core of the node, from 1."""
+    stays: bool
+    """Whether it was left as it is."""
+    priority: int
+    """Its priority."""
+    period: int
+    """In ns."""
+    offset: int
+    """In ns."""
+    deadline: int
+    """In ns."""
+    wcet: int
+    """Worst-case execution time in ns."""
+    response: int | None
+    """Response-time bound in ns; null where there is none."""
+    activities: list[Row]
+    """Its table, first to last."""
+
+
+@dataclass(slots=True)
+class AllocateResult(Result):
+    """A proposal for the processors of a model."""
+
+    strategy: str
+    """As the call had it."""
+    met: bool
+    """Whether every deadline and limit is kept."""
+    processors: list[Allocated]
+    """Highest priority first."""
+    yaml: str
+    """`processors:` for the model."""
+
+
+@dataclass(slots=True)
+class Step(Described):
+    """A step of the scenario."""
+
+    at: float
+    """When, in s from the start."""
+    text: str
+    """What it asked for."""
+    passed: bool
+    """Whether it passed."""
+    outcome: str
+    """How it ended."""
+
+
+@dataclass(slots=True)
+class Observed(Described):
+    """The longest response of a processor, or reaction of a chain, in the run."""
+
+    name: str
+    """Of the processor or chain."""
+    count: int
+    """How many releases or reactions there were."""
+    observed: int
+    """The longest, in ns."""
+    bound: int | None
+    """Its bound in ns; null where there is none."""
+
+
+@dataclass(slots=True)
+class RunResult(Result):
+    """A run of the controller, judged."""
+
+    title: str
+    """What was run."""
+    passed: bool
+    """Whether nothing failed."""
+    verdict: str
+    """The last line of the summary."""
+    not_judged: str | None
+    """Why the timing was not judged, where it was not."""
+    failures: list[str]
+    """The reasons; empty exactly when the run passed."""
+    notes: list[str]
+    """What a reader should know besides."""
+    steps: list[Step]
+    """Of the scenario."""
+    processors: list[Observed]
+    """Longest responses."""
+    chains: list[Observed]
+    """Longest reactions."""
+    report: str
+    """The report as HTML."""
+
+
+@dataclass(slots=True)
+class DrawResult(Result):
+    """Drawings, written."""
+
+    folder: str
+    """Where they are."""
+    form: str
+    """`svg`, `plantuml` or `mermaid`."""
+    files: list[str]
+    """Their names."""
+
+
+@dataclass(slots=True)
+class Tool(Described):
+    """A program, folder or right that Ravenchart needs."""
+
+    name: str
+    """What it is."""
+    state: str
+    """`ok`; `missing`: no program can be built; `absent`: only some commands need it."""
+    text: str
+    """Version and place, or the command that installs it."""
+
+
+@dataclass(slots=True)
+class DoctorResult(Result):
+    """What is installed, and what is missing."""
+
+    tools: list[Tool]
+    """In the order of the printed list."""
+
+
+@dataclass(slots=True)
+class ExplainResult(Result):
+    """What a code means."""
+
+    code: str
+    """The code."""
+    meaning: str
+    """One sentence."""
+    reason: str | None
+    """Why it matters; null where the code has no example yet."""
+    wrong: str | None
+    """A whole model with the error."""
+    corrected: str | None
+    """The same model without it."""
+    text: str
+    """What is printed without `--json`."""
+
+
+@dataclass(slots=True)
+class CleanResult(Result):
+    """What was deleted."""
+
+    folders: list[str]
+    """The folders."""
+    bytes: int
+    """Their size."""
+
+
+@dataclass(slots=True)
+class NewResult(Result):
+    """A project, written."""
+
+    folder: str
+    """Where it is."""
+    files: list[str]
+    """Below that folder."""
+
+
+@dataclass(slots=True)
+class Case(Described):
+    """A case of the suite."""
+
+    name: str
+    """Its name."""
+    verdict: str
+    """`passed`, `failed` or `skipped`."""
+    seconds: float
+    """How long it took."""
+    detail: str
+    """What was seen, or the reason."""
+
+
+@dataclass(slots=True)
+class LoopbackResult(Result):
+    """The suite over two ends of one bus."""
+
+    passed: bool
+    """Whether nothing failed, and something passed."""
+    cases: list[Case]
+    """In the order in which they ran."""
+    latencies: list[int]
+    """From sending to receiving, in ns."""
+    rate: float | None
+    """Frames per second."""
+
+
+@dataclass(slots=True)
+class ImportResult(Result):
+    """The messages of a database."""
+
+    yaml: str
+    """Types, ports and messages for a model."""
+
+
+@dataclass(slots=True)
+class ExportResult(Result):
+    """The database of a bus."""
+
+    bus: str
+    """The name of the bus."""
+    dbc: str
+    """The database."""
+
+
+RESULTS: dict[str, type[Result]] = {
+    "check": CheckResult,
+    "generate": GenerateResult,
+    "build": BuildResult,
+    "prove": ProveResult,
+    "allocate": AllocateResult,
+    "run": RunResult,
+    "draw": DrawResult,
+    "doctor": DoctorResult,
+    "explain": ExplainResult,
+    "clean": CleanResult,
+    "new": NewResult,
+    "loopback": LoopbackResult,
+    "import": ImportResult,
+    "export-dbc": ExportResult,
+}
+"""Of each command with such an object; `analyse` and `simulate` have forms of their own."""
