@@ -42,6 +42,7 @@ COMMANDS = {
     "simulate": ("simulate", "run the model in virtual time, step by step"),
     "explain": ("explain", "explain the code of an error or warning"),
     "clean": ("clean", "delete build results"),
+    "completion": ("completion", "print the completion script of a shell"),
 }
 """Name to the module that does it, and what it does."""
 
@@ -49,8 +50,8 @@ ALIASES = {"import": ("import-dbc",)}
 
 JSON = "--json"
 
-WITHOUT_JSON = ("bus",)
-"""Commands that have no answer: they go on until they are stopped."""
+WITHOUT_JSON = ("bus", "completion")
+"""Commands without an answer: one goes on until it is stopped, and one prints a script."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -140,8 +141,13 @@ def said_of(problem: OSError) -> str:
     return reason if problem.filename is None else f"{problem.filename}: {reason}"
 
 
-def _parser(told: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser, with the options of the one command that is called."""
+def whole_parser() -> argparse.ArgumentParser:
+    """The parser with the options of every command."""
+    return _parser((), whole=True)
+
+
+def _parser(told: Sequence[str], *, whole: bool = False) -> argparse.ArgumentParser:
+    """The parser, with the options of the one command that is called, or the ``whole``."""
     parser = _Parser(
         prog="ravenchart",
         description="From one model of a real-time controller to a proved SPARK Ada program, "
@@ -155,12 +161,12 @@ def _parser(told: Sequence[str]) -> argparse.ArgumentParser:
     for name, (module, help_text) in COMMANDS.items():
         aliases = ALIASES.get(name, ())
         sub = commands.add_parser(name, aliases=aliases, help=help_text, description=help_text)
-        if called == name:
+        if whole or called == name:
             command = import_module(f"ravenchart.commands.{module}")
             command.add_arguments(sub)
             if name not in WITHOUT_JSON and not any(JSON in a.option_strings for a in sub._actions):
                 sub.add_argument(
                     JSON, action="store_true", help="print the answer as one JSON object"
                 )
-            sub.set_defaults(execute=command.execute, command=name)
+            sub.set_defaults(execute=command.execute, command=name, parser=whole_parser)
     return parser

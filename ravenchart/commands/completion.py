@@ -1,0 +1,26 @@
+"""`ravenchart completion`: the script by which a shell completes commands, options and files.
+
+A script is made of the parsers, once: pressing Tab starts no Python.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from ravenchart.failures import OK
+
+SHELLS = ("bash", "zsh", "fish")
+
+
+def add_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare what the command is told."""
+    sub.add_argument("shell", choices=SHELLS, help="the shell that reads the script")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Print it; the exit status."""
+    from ravenchart.completions import SCRIPTS
+    from ravenchart.grammar import grammar
+
+    print(SCRIPTS[options.shell](grammar(options.parser())), end="")
+    return OK
