@@ -20,7 +20,7 @@ help:
 	@echo 'make bench     figures: runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate)'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
-	@echo 'make docs      model reference, JSON Schema and error list; pictures of the examples'
+	@echo 'make docs      model reference, JSON Schemas, manual page and error list; pictures of the examples'
 	@echo 'make site      the documentation as a site, which needs no network: build/site/docs/index.html'
 
 setup:
@@ -64,6 +64,7 @@ mutate: setup
 
 docs: setup
 	@$(PYTHON) -P -m ravenchart.gen.files.reference
+	@$(PYTHON) -P -m ravenchart.reference
 	@$(PYTHON) -P -m tests.support.faults
 	@for e in $(EXAMPLES); do \
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done

@@ -1,6 +1,6 @@
 """The pages about the command line that are made of the command line itself.
 
-`python -m ravenchart.reference` writes docs/answer.schema.json.
+`python -m ravenchart.reference` writes docs/answer.schema.json and docs/ravenchart.1.
 """
 
 from __future__ import annotations
@@ -8,14 +8,16 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from .command_line import COMMANDS, WITHOUT_JSON
+from . import manual
+from .command_line import COMMANDS, WITHOUT_JSON, whole_parser
 from .commands.answer import FORMAT, Found
 from .commands.results import RESULTS
 from .failures import MEANINGS
 from .gen.files.reference import write
-from .paths import ROOT
+from .grammar import grammar
+from .paths import ROOT, version
 
-SCHEMA = "answer.schema.json"
+SCHEMA, MANUAL = "answer.schema.json", "ravenchart.1"
 
 
 def answer_schema() -> dict[str, Any]:
@@ -97,7 +99,10 @@ def _untitled(node: Any) -> Any:
 
 def pages() -> dict[str, str]:
     """File name to text of each page."""
-    return {SCHEMA: json.dumps(answer_schema(), indent=2) + "\n"}
+    return {
+        SCHEMA: json.dumps(answer_schema(), indent=2) + "\n",
+        MANUAL: manual.page(grammar(whole_parser()), version()),
+    }
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -18,6 +19,7 @@ from ravenchart.paths import ROOT
 SOURCES = (
     *("ravenchart", "gen", "analysis", "behaviour", "hw_can", "spark_runtime"),
     *("pyproject.toml", "README.md", "LICENSE", "ravenchart.gpr", "switches.gpr"),
+    "docs/ravenchart.1",
 )
 WITHOUT = shutil.ignore_patterns("__pycache__")
 
@@ -31,6 +33,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         if source.is_dir():
             shutil.copytree(source, target, symlinks=True, ignore=WITHOUT)
         else:
+            target.parent.mkdir(exist_ok=True)
             shutil.copy(source, target)
     options = ["--quiet", "--no-deps", "--no-build-isolation", "--disable-pip-version-check"]
     words = [sys.executable, "-m", "pip", "wheel", *options, "-w", "made", "./source"]
@@ -79,7 +82,9 @@ def _called(away: Path, *words: str, status: int = 0) -> str:
 
 def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
-    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"ravenchart"}
+    beside = (".dist-info", ".data/data/share/man/man1/ravenchart.1")
+    packages = {name.split("/")[0] for name in names if not any(one in name for one in beside)}
+    assert packages == {"ravenchart"}
     ada = {path.relative_to(ROOT) for path in ROOT.glob("spark_runtime/*/*.ad[bsc]")}
     ada |= {path.relative_to(ROOT) for path in ROOT.glob("hw_can/**/*.ad[bs]")}
     assert {f"ravenchart/{path}" for path in ada} <= set(names)
@@ -131,6 +136,21 @@ def test_doctor_tells_where_it_is_and_the_version_is_one(away: Path) -> None:
     version = _called(away, "--version").split()[1]
     assert f'version = "{version}"' in (ROOT / "alire.toml").read_text()
     assert f'version = "{version}"' in (ROOT / "pyproject.toml").read_text()
+
+
+def test_the_manual_page_is_where_man_looks(away: Path) -> None:
+    page = away / "env" / "share" / "man" / "man1" / "ravenchart.1"
+    assert page.read_bytes() == (ROOT / "docs" / "ravenchart.1").read_bytes()
+    if shutil.which("man") is not None:
+        words: list[str | Path] = ["man", "-M", away / "env" / "share" / "man", "ravenchart"]
+        done = subprocess.run(words, capture_output=True, text=True, check=True)
+        assert "EXIT STATUS" in done.stdout
+
+
+def test_commands_answer_with_json_and_shells_are_completed(away: Path) -> None:
+    assert json.loads(_called(away, "new", "answered", "--json"))["status"] == 0
+    assert json.loads(_called(away, "check", "answered/model.yaml", "--json"))["result"]
+    assert "complete -F _ravenchart ravenchart" in _called(away, "completion", "bash")
 
 
 def test_an_installation_explains_codes_with_their_models(away: Path) -> None:
