@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from .failures import STATUSES, UNUSABLE, Failure
+from .failures import INTERNAL, INTERNAL_TEXT, STATUSES, UNUSABLE, Failure
 from .paths import version
 
 COMMANDS = {
@@ -61,7 +61,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = _parser(told).parse_args(told)
     except _WrongCall as wrong:
         if JSON in told:
-            _refuse(_called(told), wrong)
+            _answer(told, wrong.message, UNUSABLE)
+        raise
+    except Exception:  # an installation without a package, for example
+        if JSON in told:
+            _answer(told, INTERNAL_TEXT, INTERNAL)
         raise
     from .commands.answer import Answer, printed
 
@@ -109,13 +113,13 @@ class _Parser(argparse.ArgumentParser):
         raise _WrongCall(message)
 
 
-def _refuse(command: str | None, wrong: _WrongCall) -> None:
-    """Print the answer to a wrong call with `--json`."""
+def _answer(told: Sequence[str], problem: str, status: int) -> None:
+    """Print the answer to a call with `--json` that came to no command."""
     from .commands.answer import Answer
 
-    answer = Answer(command)
-    answer.tell(wrong.message)
-    sys.stdout.write(answer.text(UNUSABLE))
+    answer = Answer(_called(told))
+    answer.tell(problem)
+    sys.stdout.write(answer.text(status))
 
 
 def _called(told: Sequence[str]) -> str | None:

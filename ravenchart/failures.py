@@ -13,6 +13,9 @@ UNUSABLE = 2
 """The call is wrong, or something that it needs is missing."""
 NOT_JUDGED = 3
 """The run passed, and its timing could not be judged (``run --strict``)."""
+INTERNAL = 70
+"""An exception that nobody caught: a fault of Ravenchart (EX_SOFTWARE of sysexits.h)."""
+INTERNAL_TEXT = "internal error: a fault of Ravenchart, not of the model"
 
 
 class Failure(Exception):  # noqa: N818

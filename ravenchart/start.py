@@ -16,10 +16,8 @@ from contextlib import suppress
 from pathlib import Path
 from types import FrameType
 
+from .failures import INTERNAL
 from .paths import ROOT
-
-INTERNAL = 70
-"""An exception that nobody caught: a fault of Ravenchart (EX_SOFTWARE of sysexits.h)."""
 
 SIGNALLED = 128
 """Ended by signal n: the exit status is 128 + n, as a shell reports it."""

@@ -14,8 +14,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import asdict, dataclass, field
 from os import devnull
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
+from ravenchart.failures import INTERNAL, INTERNAL_TEXT
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import version
@@ -86,7 +87,6 @@ class Answer:
     found: list[Found] = field(default_factory=list)
     figures: Mapping[str, Any] = field(default_factory=dict)
     lines: str | None = None
-    internal: ClassVar[str] = "internal error: a fault of Ravenchart, not of the model"
 
     def add(self, diagnostics: Iterable[object]) -> None:
         """Diagnostics of a model."""
@@ -133,8 +133,8 @@ def printed(answer: Answer, execute: Callable[[], int]) -> int:
         except BrokenPipeError:
             raise
         except Exception:
-            answer.tell(answer.internal)
-            write(answer.text(70))
+            answer.tell(INTERNAL_TEXT)
+            write(answer.text(INTERNAL))
             raise
         write(answer.text(status))
     return status

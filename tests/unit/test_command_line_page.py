@@ -29,6 +29,6 @@ def test_the_table_of_exit_statuses_is_that_of_the_help() -> None:
 
 
 def test_every_status_of_the_program_has_a_meaning() -> None:
-    named = {failures.OK, failures.WRONG, failures.UNUSABLE, failures.NOT_JUDGED, start.INTERNAL}
+    named = {failures.OK, failures.WRONG, failures.UNUSABLE, failures.NOT_JUDGED, failures.INTERNAL}
     named |= {start.SIGNALLED + number for number in (1, 2, 13, 15)}
     assert {int(one) for words in MEANINGS for one in words.split(", ")} == named

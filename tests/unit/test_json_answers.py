@@ -109,6 +109,16 @@ raise SystemExit(start.main(["check", "model.yaml", "--json"]))
 """
 
 
+def test_an_installation_without_a_package_is_an_answer(
+    monkeypatch: pytest.MonkeyPatch, capsys: PRINTED
+) -> None:
+    monkeypatch.setitem(sys.modules, "ravenchart.commands.draw", None)
+    with pytest.raises(ImportError):
+        main(["draw", "model.yaml", "--json"])
+    answer = valid(capsys.readouterr().out)
+    assert (answer["command"], answer["status"]) == ("draw", 70)
+
+
 def test_an_internal_error_is_an_answer() -> None:
     done = subprocess.run(
         [sys.executable, "-P", "-c", BROKEN], cwd=ROOT, capture_output=True, text=True
