@@ -13,6 +13,7 @@ SECTION = 1
 
 ENVIRONMENT: Mapping[str, str] = {
     "NO_COLOR": "Where it is set and not empty, nothing is printed in colour or bold.",
+    "FORCE_COLOR": "Where it is set and not empty, a pipe gets colour too, unless NO_COLOR is set.",
     "TERM": "Where it is `dumb`, nothing is printed in colour or bold, and no progress is shown.",
     "PATH": "Where gprbuild, gcc, gnatprove and dot are looked for.",
     "GPR_PROJECT_PATH": "Further folders of GNAT projects, for user code that needs them.",

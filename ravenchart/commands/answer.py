@@ -1,8 +1,8 @@
 """What `--json` prints: one object for each call, whatever comes of it.
 
-A command fills in ``result`` and tells its warnings; `command_line` tells how it failed, keeps
-what is printed for people off standard output, and prints the object. Standard error has the
-same text as without `--json`. docs/answer.schema.json is made of the classes here and in `results`.
+A command fills in ``result`` and tells its warnings; `command_line` tells how it failed. Here the
+text for people is kept off standard output, and the object printed. Standard error has the same
+text as without `--json`. docs/answer.schema.json is made of the classes here and in `results`.
 """
 
 from __future__ import annotations

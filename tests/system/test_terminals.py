@@ -21,7 +21,7 @@ COLOUR = re.compile(r"\x1b\[[\d;]*m")
 
 def called(*words: object, terminals: str = "", **more: str) -> tuple[str, str]:
     """Standard output and error of a command; ``terminals`` names those that are one."""
-    environment = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
+    environment = {name: value for name, value in os.environ.items() if "_COLOR" not in name}
     environment |= {"PYTHONPATH": str(ROOT), "TERM": "xterm-256color", **more}
     ends = {}
     for stream in ("out", "err"):
@@ -59,6 +59,11 @@ def test_pipes_get_no_escape_codes(words: tuple[object, ...]) -> None:
 def test_a_terminal_gets_colour() -> None:
     assert COLOUR.search(called("analyse", PUMP, terminals="out err")[0])
     assert COLOUR.search(called("analyse", PUMP, terminals="out err", NO_COLOR="")[0])
+
+
+def test_colour_for_a_pipe_is_for_those_who_ask_and_do_not_ask_for_none() -> None:
+    assert COLOUR.search(called("analyse", PUMP, FORCE_COLOR="1")[0])
+    assert ESCAPE not in called("analyse", PUMP, FORCE_COLOR="1", NO_COLOR="1")[0]
 
 
 @pytest.mark.parametrize("more", [{"NO_COLOR": "1"}, {"TERM": "dumb"}], ids=str)
