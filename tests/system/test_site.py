@@ -19,7 +19,7 @@ LOADED = re.compile(r"<(?:script|link|img)\b[^>]*?(?:src|href)=\"(?:https?:)?//[
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("site")
     options = ["-q", "-W", "--keep-going", "-j2", "-b", "html", "-c", "docs/site"]
-    places = ["-d", place / "trees", ".", place / "html"]
+    places = ["-d", f"{place}/trees", ".", f"{place}/html"]
     done = subprocess.run(
         [sys.executable, "-P", "-m", "sphinx", *options, *places],
         cwd=ROOT,
