@@ -118,7 +118,7 @@ def test_a_file_that_vanishes_for_a_moment_is_no_error_and_one_that_stays_away_i
     part = model.with_name("parts.yaml")
     text = part.read_text()
     part.unlink()
-    time.sleep(0.5)
+    time.sleep(0.3)
     part.write_text(text)
     assert PASSED.fullmatch(watch.run()[-1])
     part.unlink()
