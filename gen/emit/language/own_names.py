@@ -1,4 +1,4 @@
-"""Transitions and states whose names generated code has for itself: their kind is added in Ada.
+"""Transitions, states and events with names of generated code: their kind is added in Ada.
 
 So no name is reserved: a transition `t` is the literal ``T_Transition``. Traces, drawings
 and messages keep the model's name.
@@ -22,12 +22,17 @@ place region released segment selection self t timer top_transition transition v
 _STATES = "leaf configuration"
 _NODES = "active_node disorder from_node leaf moved node nowhere place to_node"
 
+_EVENTS = "activities event event_lists event_name flows no_event"
+
 IN_REGION = frozenset((_EVERYWHERE + _REGION).split())
 """Names in lower case that a region's package declares or needs to see."""
 IN_STATES = frozenset((_EVERYWHERE + _STATES).split())
 """Those of a region's package of states."""
 IN_NODES = frozenset((_EVERYWHERE + _NODES).split())
 """Those of the ghost package of nodes."""
+
+IN_EVENTS = frozenset((_EVERYWHERE + _EVENTS).split())
+"""Those of a component's package, and of units below it, that stand beside its events."""
 
 
 def transition_literal(name: str) -> str:
@@ -43,6 +48,11 @@ def state_literal(name: str) -> str:
 def node_literal(name: str) -> str:
     """A state or pseudostate as the ghost package of nodes names it."""
     return _apart(name, IN_NODES, "State")
+
+
+def event_literal(name: str) -> str:
+    """An event as its component's package names it."""
+    return _apart(name, IN_EVENTS, "Event")
 
 
 def _apart(name: str, taken: Set[str], kind: str) -> str:
