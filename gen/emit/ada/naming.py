@@ -118,26 +118,14 @@ def default_value(system: System, of_type: Type) -> Expr:
 
 
 _BELOW_COMPONENTS = """
-active active_top activity_id ada ada_2022 after append arm assert before beginning blackboards
-body_of boolean box c capacity ceiling chart choose chosen clock compile_time_error conditions
-configuration counters cycle d data deadline deadline_miss default_priority deferrals disarm
-disorder divisor domain domain_of due element element_id elements enabled ending event event_lists
-event_name everything execute executed false fault_counts faults fire fire_whole fired firing
-firing_array firing_list flows follows found freed freed_after freed_up_to freed_without ghost
-given_deadline given_offset given_priority given_table global has health health_counters
-health_counts hosts i in_source initial innermost innermost_top inputs ins is_appended is_deferral
-is_due is_only is_ordered is_released is_segment is_selection is_taken is_top_selection item items
-j kept last leaf list loop_invariant lost memory milliseconds misses model_digest moved name
-nanoseconds natural next no_event none nothing now nowhere null_element null_event number observe
-occurrence off offer offset old on_deadline_miss on_order order outbox passing past phase place
-policy poll pos positive post pre priority processor pure put put_activity put_all put_model
-put_now put_processor put_status queued queueing queues raised ravenchart read real_time
-record_fault region reject_newest released releases remembered remove reply reports request rest
-result row row_table schedules segment select_segment select_top select_transition selection self
-slot spark_mode start start_of_region started statistics status step stop stop_requested stopped
-string success t table take take_due take_status taken target task_priority tick ticked time
-time_span timer timer_after timer_array timers timing_certificate to_occurrence top top_transition
-transition true unreferenced val variables visit warnings worst_execution worst_response write
+active active_top beginning box chart choice choose chosen conditions deferrals domain domain_of
+done_states due element_id elements enabled ending event event_lists everything executed fire
+fired firing firing_array firing_list follows freed_after freed_events freed_up_to freed_without
+has health_counts i in_source initial_entry inputs ins is_deferral is_due is_only is_ordered
+is_released is_segment is_selection is_top_selection item kept memory nanoseconds next none
+nothing now number occurrence offer on_order outbox passing past poll region released remembered
+reports select_segment select_top select_transition selection self start_of_region status step
+target tick timer_after to_occurrence top_transition transition variables visit
 """
 BELOW_COMPONENTS = frozenset(_BELOW_COMPONENTS.split())
 """Names in lower case that units below components and instances declare: they would hide one."""
