@@ -166,7 +166,13 @@ def with_components(names: tuple[str, ...]) -> str:
     return text.replace("unit.Go_On, unit.Bye, unit.Back, unit.Order", raised)
 
 
-WRITTEN = [with_transitions, with_states, with_events, with_values, with_components]
+def with_regions(names: tuple[str, ...]) -> str:
+    """Regions of an orthogonal state."""
+    del names
+    return MODEL.replace("Left:", "None:").replace("Right:", "Top:")
+
+
+WRITTEN = [with_transitions, with_states, with_events, with_values, with_components, with_regions]
 
 
 def test_own_names_are_found() -> None:

@@ -21,7 +21,7 @@ from ravenchart.gen.emit.ada.syntax import (
 )
 from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, Kind, Place, Step
 from ravenchart.gen.emit.language.events import carries, event_value
-from ravenchart.gen.emit.language.own_names import event_literal
+from ravenchart.gen.emit.language.own_names import event_literal, lane_name
 from ravenchart.gen.emit.language.places import Places, flat
 from ravenchart.gen.emit.language.terms import (
     Scope,
@@ -142,7 +142,7 @@ class RegionShape(Places):
 
     def lane_name(self, lane: Lane) -> str:
         """Its component of a choice."""
-        return "Top" if lane.owner is None else ada_case(lane.name)
+        return "Top" if lane.owner is None else lane_name(lane.name)
 
     def lane_of(self, place: Place) -> Lane:
         """The lane whose leaves a region holds."""

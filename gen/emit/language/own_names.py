@@ -34,6 +34,9 @@ IN_NODES = frozenset((_EVERYWHERE + _NODES).split())
 IN_EVENTS = frozenset((_EVERYWHERE + _EVENTS).split())
 """Those of a component's package, and of units below it, that stand beside its events."""
 
+IN_LANES = frozenset(("none", "selection", "top"))
+"""Those that a choice of transitions needs to see beside its fields."""
+
 
 def transition_literal(name: str) -> str:
     """A transition as its region's package names it."""
@@ -53,6 +56,11 @@ def node_literal(name: str) -> str:
 def event_literal(name: str) -> str:
     """An event as its component's package names it."""
     return _apart(name, IN_EVENTS, "Event")
+
+
+def lane_name(name: str) -> str:
+    """A region of an orthogonal state as the fields of a choice name it."""
+    return _apart(name, IN_LANES, "Region")
 
 
 def _apart(name: str, taken: Set[str], kind: str) -> str:
