@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 
 import networkx
 import z3
@@ -14,6 +14,7 @@ from ravenchart.gen.origins import Origin
 from . import logic
 from .logic import Term
 from .reach import Edge, Reach, Thread
+from .reasons import Reason, beaten, in_front, taken_inside
 from .stepping import Beaten
 from .words import label, reached, trace, valuation, where
 
@@ -54,23 +55,37 @@ def _lost(thread: Thread) -> list[State]:
 
 def states_are_entered(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
     """Some data lead into each state."""
-    tree, fired = thread.tree, _fired(thread)
+    tree, fired, shut_out = thread.tree, _fired(thread), _rivals(reach, thread)
     for state in _lost(thread):
         leading = [
             t
             for t in tree.region.transitions
             if state.name in tree.chains[t.target] and state.name not in tree.chains[t.source]
         ]
-        notes = [(t.origin, f"{t.name} leads to it, and never fires") for t in leading]
         message = f"the state {state.name} of {thread.name} is never entered, whatever the data"
+        notes: list[tuple[Origin, str]] = []
+        changes: list[str] = []
+        for transition in leading:
+            if transition.name in fired:
+                continue
+            note = f"{transition.name} leads to it, and never fires"
+            reason = None
+            if _is_heard(reach, thread, transition, fired) and not transition.otherwise:
+                reason = _reason(reach, thread, transition, shut_out)
+            if reason is None or reason.is_guard:
+                notes.append((transition.origin, note))
+            else:
+                notes += [(transition.origin, f"{note}: {reason.text}"), *reason.notes]
+                changes.append(reason.change)
         hint = "correct the guards on the way to it, or remove it"
-        notes = [note for note, t in zip(notes, leading, strict=True) if t.name not in fired]
+        if changes:
+            hint = f"{changes[0]}, or remove {state.name}"
         yield error("RV-1101", state.origin, message, notes=notes, hint=hint)
 
 
 def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
     """Some data let each transition fire, and no earlier one always comes before it."""
-    tree, active, fired = thread.tree, _active(thread), _fired(thread)
+    tree, fired = thread.tree, _fired(thread)
     lost = {state.name for state in _lost(thread)}
     shut_out = _rivals(reach, thread)
     for transition in tree.region.transitions:
@@ -78,65 +93,55 @@ def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
             transition.name in fired
             or transition.otherwise
             or lost & {*tree.chains[transition.target]}
+            or not _is_heard(reach, thread, transition, fired)
         ):
             continue
-        if transition.source in tree.kinds:
-            heard = any(t.name in fired for t in tree.incoming[transition.source])
-        else:
-            heard = transition.source in active
-        trigger = transition.trigger
-        if not heard or (isinstance(trigger, OnEvent) and trigger.event not in reach.events):
-            continue
-        found = [(f, *rest) for (f, second), rest in shut_out.items() if second == transition.name]
-        if found:
-            names = " and ".join(first for first, _, _ in found)
-            message = f"{transition.name} never fires: {names} always comes before it"
-            notes = [
-                (_transition(tree.region, first).origin, f"{first} is earlier in the model")
-                for first, _, _ in found
-            ]
-            hint = f"change the order or the guards, or remove {transition.name}"
-            yield error("RV-1102", transition.origin, message, notes=notes, hint=hint)
-        else:
-            beaten = [b for b in _beaten(thread) if b.transition == transition.name]
-            if beaten:
-                yield _always_beaten(tree.region, transition, beaten)
-                continue
-            what = "its guard never holds" if transition.guard is not None else "nothing lets it"
-            message = f"{transition.name} never fires: {what} in {transition.source}"
-            if transition.source not in tree.kinds and not _waits(thread, transition.source):
-                message = (
-                    f"{transition.name} never fires: {transition.source} is left at once, "
-                    "as it is complete when entered"
-                )
-            hint = "correct its guard, or remove it"
-            yield error("RV-1102", transition.origin, message, hint=hint)
+        reason = _reason(reach, thread, transition, shut_out)
+        message = f"{transition.name} never fires: {reason.text}"
+        joint = "; " if reason.removal.startswith("where") else ", or "
+        hint = f"{reason.change}{joint}{reason.removal}"
+        yield error("RV-1102", transition.origin, message, notes=reason.notes, hint=hint)
+
+
+def _is_heard(reach: Reach, thread: Thread, transition: Transition, fired: set[str]) -> bool:
+    """Whether its source is ever active, or reached by a transition, and its event ever comes."""
+    tree, trigger = thread.tree, transition.trigger
+    if isinstance(trigger, OnEvent) and trigger.event not in reach.events:
+        return False
+    if transition.source in tree.kinds:
+        return any(t.name in fired for t in tree.incoming[transition.source])
+    return transition.source in _active(thread)
+
+
+def _reason(
+    reach: Reach,
+    thread: Thread,
+    transition: Transition,
+    shut_out: Mapping[tuple[str, str], object],
+) -> Reason:
+    """Why a transition never fires, although its source is active and its event comes."""
+    tree = thread.tree
+    earlier = [first for first, second in shut_out if second == transition.name]
+    if earlier:
+        return in_front(tree, transition, earlier)
+    defeats = [b for b in _beaten(thread) if b.transition == transition.name]
+    if defeats:
+        return beaten(tree, transition, defeats)
+    inside = taken_inside(
+        reach, thread, transition, lambda e, met: _model(reach, thread, e, met) is not None
+    )
+    if inside is not None:
+        return inside
+    what = "its guard never holds" if transition.guard is not None else "nothing lets it"
+    text = f"{what} in {transition.source}"
+    if transition.source not in tree.kinds and not _waits(thread, transition.source):
+        text = f"{transition.source} is left at once, as it is complete when entered"
+    return Reason(text, "correct its guard", "remove it", is_guard=True)
 
 
 def _beaten(thread: Thread) -> Iterator[Beaten]:
     """What some step selects and does not fire, each once."""
     yield from dict.fromkeys(b for edge in thread.edges for b in edge.outcome.beaten)
-
-
-def _always_beaten(region: Region, transition: Transition, beaten: Sequence[Beaten]) -> Diagnostic:
-    """A transition that is enabled, and always gives way to another region."""
-    name, source = transition.name, transition.source
-    states = [b.by for b in beaten if b.is_deferral]
-    if states:
-        message = (
-            f"{name} never fires: while {source} is active, {' or '.join(states)} defers the event"
-        )
-        notes = [(region.state(state).origin, f"{state} is here") for state in states]
-        hint = f"remove {name}, or `defer` from {' and '.join(states)}"
-    else:
-        winners = [_transition(region, b.by) for b in beaten]
-        message = f"{name} never fires: it conflicts with {' and '.join(w.name for w in winners)}"
-        notes = [(w.origin, f"{w.name} of an earlier region fires") for w in winners]
-        hint = (
-            f"change the order of the regions or the guards; where {name} is removed, the next "
-            f"transition of {source}, or of a state around it, takes its place and may fire"
-        )
-    return error("RV-1102", transition.origin, message, notes=notes, hint=hint)
 
 
 def _waits(thread: Thread, state: str) -> bool:

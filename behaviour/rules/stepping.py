@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 
 import z3
 
@@ -59,13 +60,24 @@ class Stuck(Exception):  # noqa: N818
     """A pseudostate that no enabled segment leaves."""
 
 
+class Defeat(Enum):
+    """Why a transition that was selected has not fired."""
+
+    DEFERRAL = 1
+    """A state of another region defers the event."""
+    CONFLICT = 2
+    """A transition that fired before leaves what this one starts from."""
+    END = 3
+    """A transition that fired before ends the region."""
+
+
 @dataclass(frozen=True, slots=True)
 class Beaten:
     """A transition that was selected and not fired, for a transition or a deferring state."""
 
     transition: str
     by: str
-    is_deferral: bool
+    why: Defeat
 
 
 @dataclass
@@ -167,7 +179,9 @@ class Step:
                 chosen.append(found)
             if found is not None and lane.owner is not None:
                 busy |= set(self.tree.chains[lane.owner])
-        self.beaten += [Beaten(p[0].name, state, True) for p in chosen for state in deferring]
+        self.beaten += [
+            Beaten(p[0].name, state, Defeat.DEFERRAL) for p in chosen for state in deferring
+        ]
         return [] if self.deferred else chosen
 
     def select_in(self, chain: Sequence[str]) -> Path | Deferral | None:
@@ -226,15 +240,23 @@ class Step:
     def fire_all(self, paths: Sequence[Path]) -> None:
         """Fire what was selected; what an earlier firing conflicts with is dropped."""
         made: list[Path] = []
-        for path in paths:
+        leaving: dict[str, Path] = {}
+        for index, path in enumerate(paths):
             clash = [o for o in made if self.conflict(path, o) or self.conflict(o, path)]
-            self.beaten += [Beaten(path[0].name, one[0].name, False) for one in clash]
-            if not clash and self.source(path) in self.active:
-                made.append(path)
-                self.fire(path)
-                self.settle()
-                if self.stopped:
-                    return
+            if not clash and self.source(path) not in self.active:
+                clash = [leaving[self.source(path)]]
+            self.beaten += [Beaten(path[0].name, o[0].name, Defeat.CONFLICT) for o in clash]
+            if clash:
+                continue
+            made.append(path)
+            before = set(self.active)
+            self.fire(path)
+            self.settle()
+            leaving |= dict.fromkeys(before - self.active, path)
+            if self.stopped:
+                rest = paths[index + 1 :]
+                self.beaten += [Beaten(p[0].name, path[0].name, Defeat.END) for p in rest]
+                return
 
     def conflict(self, one: Path, other: Path) -> bool:
         """Whether the first leaves a state that the source of the other is inside."""

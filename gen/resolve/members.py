@@ -27,7 +27,7 @@ from .vocabulary import EVENT, Vocabulary
 TABLE_WORDS = ("ports", "receive")
 """What tables call the port region and a bus's reception."""
 
-RENAMED = ("state", "transition")
+RENAMED = ("state", "transition", "event")
 """Kinds of elements that get another name in Ada where theirs is one of Ada's."""
 
 

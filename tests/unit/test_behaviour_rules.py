@@ -301,6 +301,63 @@ def test_deferral_in_another_region_is_the_reason_that_is_named() -> None:
     assert not said(model(region("Main", states % "", transitions, initial="O")))
 
 
+REGIONS = (
+    "{O: {regions: {Left: {initial: L, states: {L: {%s}%s}}, "
+    "Right: {initial: R, states: {R: {}, S: {}}}}}, Away: {}}"
+)
+"""Two regions; what L has besides, and what is beside it."""
+ROUND = "leave: {from: O, to: Away, on: Stop}\nenter: {from: Away, to: O, on: Stop}\n"
+
+
+def test_reason_is_named_where_a_transition_would_lead_to_a_state_that_is_never_entered() -> None:
+    moves = ROUND + "go: {from: R, to: S, on: Go}\n"
+    states = REGIONS % ("defer: [Go]", "")
+    found = only(model(region("Main", states, moves, head="deferred: 1\n", initial="O")))
+    assert found.code == "RV-1101"
+    reason = "go leads to it, and never fires: while R is active, L defers the event"
+    assert [text for _, text in found.notes] == [reason, "L is here"]
+    assert found.hint == "remove `defer` from L, or remove S"
+    assert not said(model(region("Main", REGIONS % ("", ""), moves, initial="O")))
+
+
+@pytest.mark.parametrize(
+    ("beside", "to", "reason"),
+    [
+        (", T: {kind: terminate}", "T", "stop_it fires before it and ends the region"),
+        (", C: {kind: choice}", "C", "it conflicts with stop_it"),
+    ],
+)
+def test_region_that_ends_or_is_left_behind_a_choice_is_the_reason(
+    beside: str, to: str, reason: str
+) -> None:
+    moves = f"stop_it: {{from: L, to: {to}, on: Go}}\nturn: {{from: R, on: Go}}\n"
+    moves += "on_again: {from: R, to: S, on: Stop}\nback: {from: S, to: R, on: Stop}\n"
+    moves += "away: {from: O, to: Away, after: 1 s}\n"
+    if to == "C":
+        moves += "lead: {from: C, to: Away, guard: else}\n"
+    found = only(model(region("Main", REGIONS % ("", beside), moves, initial="O")))
+    assert found.message == f"turn never fires: {reason}"
+    assert [text for _, text in found.notes] == ["stop_it of an earlier region fires"]
+
+
+@pytest.mark.parametrize(
+    ("inside", "moves", "reason", "hint"),
+    [
+        ("defer: [Go]", "", "S defers the event", "remove `defer` from S, or remove go"),
+        ("", "stay: {from: S, on: Go}\n", "stay fires first", "change the guard of stay"),
+    ],
+)
+def test_state_inside_that_takes_the_event_is_the_reason(
+    inside: str, moves: str, reason: str, hint: str
+) -> None:
+    states = f"{{A: {{initial: S, states: {{S: {{{inside}}}}}}}, Away: {{}}}}"
+    moves += "go: {from: A, to: Away, on: Go}\nleave: {from: A, to: Away, on: Stop}\n"
+    moves += "back: {from: Away, to: A, on: Go}\n"
+    found = only(model(region("Main", states, moves, head="deferred: 1\n" if inside else "")))
+    assert found.message == f"go never fires: while A is active, {reason}"
+    assert found.hint is not None and found.hint.startswith(hint)
+
+
 def test_lost_conflict_is_named_with_what_removal_would_do() -> None:
     states = (
         "{O: {regions: {Left: {initial: L, states: {L: {}, M: {}}}, "

@@ -1,4 +1,4 @@
-"""Names that generated code has of its own are free for the transitions and states of a model."""
+"""Names that generated code has of its own are free for what a model names."""
 
 from __future__ import annotations
 
@@ -125,18 +125,68 @@ def with_transitions(names: tuple[str, ...]) -> str:
     return text
 
 
+def with_events(names: tuple[str, ...]) -> str:
+    """Each event is taken and raised."""
+    free = tuple(name for name in names if name.lower() not in ("done", "order"))
+    more = "".join(f", {name}" for name in free)
+    text = MODEL.replace("Order, Ready]", f"Order, Ready{more}]")
+    for state in ("Idle", "First"):
+        rows = "".join(
+            f"          reach_{n}: {{from: {state}, to: {state}, on: {name}, guard: turns = {n}, "
+            f"effect: [{{raise: {free[n - 2]}}}]}}\n"
+            for n, name in enumerate(free, 1)
+        )
+        text = text.replace("          # more transitions\n", rows, 1)
+    return text.replace("Idle: {defer: [Order]}", "Idle: {defer: [Order, Event, T, None]}")
+
+
+def with_values(names: tuple[str, ...]) -> str:
+    """The same where an event carries a value, so that events are records."""
+    del names
+    few = with_events(("Event", "Event_Name", "No_Event", "Event_Lists", "T", "None"))
+    start, rest = few.split("events: [", 1)
+    inside, end = rest.split("]", 1)
+    forms = ", ".join(f"{name.strip()}: {{}}" for name in inside.split(","))
+    return f"{start}events: {{{forms}, Amount: {{type: Count}}}}{end}"
+
+
+def with_components(names: tuple[str, ...]) -> str:
+    """A component of each of a few names, in an instance of its own."""
+    del names
+    start, rest = MODEL.split("  Part:\n", 1)
+    part, end = rest.split("nodes: ", 1)
+    kinds = ("T", "None", "Item", "Event", "Event_Lists", "Memory", "Poll", "Chart")
+    rows = [f"of_{k}.{row}" for k in kinds for row in ("Subject", "Plain", "work")]
+    text = start + "".join(f"  {k}:\n{part}" for k in kinds) + f"nodes: {end}"
+    instances = ", ".join(f"of_{k}: {{component: {k}, node: board}}" for k in kinds)
+    text = text.replace("unit: {component: Part, node: board}", instances)
+    text = text.replace("unit.Subject, unit.Plain, unit.work", ", ".join(rows))
+    events = ("Go_On", "Bye", "Back", "Order")
+    raised = ", ".join(f"of_{k}.{event}" for k in kinds for event in events)
+    return text.replace("unit.Go_On, unit.Bye, unit.Back, unit.Order", raised)
+
+
+def with_regions(names: tuple[str, ...]) -> str:
+    """Regions of an orthogonal state."""
+    del names
+    return MODEL.replace("Left:", "None:").replace("Right:", "Top:")
+
+
+WRITTEN = [with_transitions, with_states, with_events, with_values, with_components, with_regions]
+
+
 def test_own_names_are_found() -> None:
     assert {"T", "None", "Selection", "Leaf", "Domain_Of", "Step", "Chart"} <= set(own_names())
 
 
-@pytest.mark.parametrize("written", [with_transitions, with_states])
+@pytest.mark.parametrize("written", WRITTEN)
 def test_no_name_is_reserved(written: Written, tmp_path: Path) -> None:
     (tmp_path / "model.yaml").write_text(written(own_names()))
     result = load(tmp_path / "model.yaml")
     assert [d.message for d in result.diagnostics if d.severity is Severity.ERROR] == []
 
 
-@pytest.mark.parametrize("written", [with_transitions, with_states])
+@pytest.mark.parametrize("written", WRITTEN)
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_code_with_own_names_compiles(written: Written, mode: str, tmp_path: Path) -> None:
     assert complaints({"Named": written(own_names())}, tmp_path, mode) == ""

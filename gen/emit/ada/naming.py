@@ -117,9 +117,29 @@ def default_value(system: System, of_type: Type) -> Expr:
     return value(system, of_type, default(of_type))
 
 
+_BELOW_COMPONENTS = """
+active active_top beginning box chart choice choose chosen conditions deferrals domain domain_of
+done_states due element_id elements enabled ending event event_lists everything executed fire
+fired firing firing_array firing_list follows freed_after freed_events freed_up_to freed_without
+has health_counts i in_source initial_entry inputs ins is_deferral is_due is_only is_ordered
+is_released is_segment is_selection is_top_selection item kept memory nanoseconds next none
+nothing now number occurrence offer on_order outbox passing past poll region released remembered
+reports select_segment select_top select_transition selection self start_of_region status step
+target tick timer_after to_occurrence top_transition transition variables visit
+"""
+BELOW_COMPONENTS = frozenset(_BELOW_COMPONENTS.split())
+"""Names in lower case that units below components and instances declare: they would hide one."""
+
+
+def component_name(component: Component) -> str:
+    """A component type as units that see its package name it."""
+    own = ada_case(component.name)
+    return f"{own}_Type" if component.name.lower() in BELOW_COMPONENTS else own
+
+
 def component_package(system: System, component: Component) -> str:
     """Package of a component type."""
-    return f"{ada_case(system.name)}.{ada_case(component.name)}"
+    return f"{ada_case(system.name)}.{component_name(component)}"
 
 
 def states_package(region: Region) -> str:

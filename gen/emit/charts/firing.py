@@ -220,7 +220,7 @@ class Moves:
         if self.shape.timers:
             stopped = Aggregate((Arg("others", Ref("Ravenchart.Timers.Stopped")),))
             stops.append(Assign("Self.Timers", stopped))
-        return (*stops, *self.nodes.stopped(goal))
+        return (*stops, *self.nodes.stopped(goal[self.shape.lanes[-1]]))
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
         self._effects_given += [e.flow for e in effects]

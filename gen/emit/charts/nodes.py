@@ -206,12 +206,12 @@ class Nodes:
         """The variable of the lane that a vertex stands in."""
         return self.active(self.shape.lane_of(self.shape.compounds.place(vertex)))
 
-    def stopped(self, goal: dict[Lane, str]) -> list[Assign]:
-        """The region has come to its end."""
+    def stopped(self, end_of_all: str) -> list[Assign]:
+        """The region has come to its end, a leaf of the top lane: no other lane is active."""
         found = []
         for lane in self.shape.lanes:
             active = self.active(lane)
-            end = node(goal[lane]) if lane in goal else _NONE_ACTIVE
+            end = node(end_of_all) if lane.owner is None else _NONE_ACTIVE
             found.append(Assign(active.text, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
         return found
 

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name, value
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    component_name,
+    default_value,
+    type_name,
+    value,
+)
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     Aggregate,
@@ -139,7 +145,7 @@ def _records(shape: RegionShape) -> list[Decl]:
                 "Deferrals",
                 "Ravenchart.Event_Lists",
                 arguments(
-                    Event=Ref(f"{ada_case(component.name)}.Event"),
+                    Event=Ref(f"{component_name(component)}.Event"),
                     Null_Event=null_event(component),
                     Capacity=number(region.deferral_depth),
                 ),

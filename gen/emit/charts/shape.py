@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from ravenchart.gen.emit.ada.naming import ada_case, region_package
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, region_package
 from ravenchart.gen.emit.ada.syntax import (
     Arg,
     Do,
@@ -21,6 +21,7 @@ from ravenchart.gen.emit.ada.syntax import (
 )
 from ravenchart.gen.emit.language.compound import PASSED, TOP, Firing, Kind, Place, Step
 from ravenchart.gen.emit.language.events import carries, event_value
+from ravenchart.gen.emit.language.own_names import event_literal, lane_name
 from ravenchart.gen.emit.language.places import Places, flat
 from ravenchart.gen.emit.language.terms import (
     Scope,
@@ -56,6 +57,7 @@ TYPES = frozenset(
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
         *("firing_list", "firing_array", "done_states", "freed_events"),
+        "deferrals",
     )
 )
 """What hides an event of the same name inside a region's package."""
@@ -140,7 +142,7 @@ class RegionShape(Places):
 
     def lane_name(self, lane: Lane) -> str:
         """Its component of a choice."""
-        return "Top" if lane.owner is None else ada_case(lane.name)
+        return "Top" if lane.owner is None else lane_name(lane.name)
 
     def lane_of(self, place: Place) -> Lane:
         """The lane whose leaves a region holds."""
@@ -369,8 +371,9 @@ class RegionShape(Places):
 
     def event(self, event: str) -> str:
         """The event as the region's package names it."""
-        name = ada_case(event)
-        return f"{ada_case(self.component.name)}.{name}" if name.lower() in TYPES else name
+        name = event_literal(event)
+        hidden = name.lower() in TYPES or name.lower().endswith("_transition")
+        return f"{component_name(self.component)}.{name}" if hidden else name
 
     # --- what it reads
 

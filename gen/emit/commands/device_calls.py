@@ -12,7 +12,13 @@ from ravenchart.gen.derive.calls import (
     repliers,
     replies_read,
 )
-from ravenchart.gen.emit.ada.naming import ada_case, default_value, priority, type_name
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    component_name,
+    default_value,
+    priority,
+    type_name,
+)
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
@@ -70,7 +76,7 @@ def providers(system: System, instance: Instance) -> tuple[str, ...]:
         if isinstance(provider, Server):
             owner = system.instance(provider.instance)
             if binding.instance == instance.name:
-                found[ada_case(owner.name)] = found[ada_case(owner.component.name)] = None
+                found[ada_case(owner.name)] = found[component_name(owner.component)] = None
             elif owner.name == instance.name and delivers(system, binding):
                 found[ada_case(binding.instance)] = None
         elif isinstance(provider, Device) and binding.instance == instance.name:
@@ -279,7 +285,7 @@ def serving_params(system: System, component: Component, activity: str) -> Itera
     """What the activity that serves an interface gets besides: a request, and room for replies."""
     provided = component.served_by(activity)
     if provided is not None:
-        package = f"{ada_case(component.name)}.{requests_package(provided)}"
+        package = f"{component_name(component)}.{requests_package(provided)}"
         yield Param(request_param(provided), "in", f"{package}.Request")
         for one in provided.requests:
             if one.reply is not None:
@@ -288,7 +294,7 @@ def serving_params(system: System, component: Component, activity: str) -> Itera
 
 def put_spec(instance: Instance, provided: Provided) -> Subprogram:
     """Queues a request."""
-    package = f"{ada_case(instance.component.name)}.{requests_package(provided)}"
+    package = f"{component_name(instance.component)}.{requests_package(provided)}"
     params = (Param("Item", "in", f"{package}.Request"), Param("Status", "out", STATUS))
     return Subprogram(f"Put_{ada_case(provided.name)}", params)
 
@@ -304,7 +310,7 @@ def put_body(instance: Instance, provided: Provided, lost: tuple[Stmt, ...]) -> 
 
 def asked(system: System, instance: Instance, provided: Provided) -> list[Decl]:
     """What the row that serves an interface declares: a request, and room for replies."""
-    package = f"{ada_case(instance.component.name)}.{requests_package(provided)}"
+    package = f"{component_name(instance.component)}.{requests_package(provided)}"
     found: list[Decl] = [
         Object("Asked", f"{package}.Request"),
         Object("Taken", "Ravenchart.Queueing.Take_Status"),
@@ -362,7 +368,7 @@ def served(
 
 def request_queue(system: System, instance: Instance, provided: Provided) -> Instantiation:
     """The queue of an interface that is served."""
-    package = f"{ada_case(instance.component.name)}.{requests_package(provided)}"
+    package = f"{component_name(instance.component)}.{requests_package(provided)}"
     element = f"{instance.name}.{provided.name}.queue"
     args = arguments(
         Element_Type=Ref(f"{package}.Request"),

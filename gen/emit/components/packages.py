@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, component_package, default_value, type_name
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    component_name,
+    component_package,
+    default_value,
+    type_name,
+)
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
     SPARK,
@@ -44,12 +50,12 @@ from ravenchart.gen.model.system import System
 
 def leaf_type(component: Component, region: Region) -> str:
     """The type of a region's published state, seen from a sibling package."""
-    return f"{ada_case(component.name)}.{Places(region).place_type}"
+    return f"{component_name(component)}.{Places(region).place_type}"
 
 
 def view_type(component: Component, port: str) -> str:
     """The type of an input port's view."""
-    return f"{ada_case(component.name)}.{ada_case(port)}_View"
+    return f"{component_name(component)}.{ada_case(port)}_View"
 
 
 def reading_type(system: System, component: Component, name: str) -> str:
@@ -80,7 +86,7 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
                 "Event_Lists",
                 "Ravenchart.Event_Lists",
                 arguments(
-                    Event=Ref(f"{ada_case(component.name)}.Event"),
+                    Event=Ref(f"{component_name(component)}.Event"),
                     Null_Event=null_event(component),
                     Capacity=number(RAISED_PER_STEP),
                 ),

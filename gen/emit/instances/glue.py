@@ -61,6 +61,7 @@ from ravenchart.gen.emit.commands.remote_calls import (
 from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
 from ravenchart.gen.emit.components.packages import activity_package, leaf_type
 from ravenchart.gen.emit.language.events import event_value, name_of, null_event
+from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
 from ravenchart.gen.language.terms import named
@@ -381,7 +382,7 @@ class Glue(Site):
             for bus in self._asked(event.name):
                 steps.append(Do(f"{ada_case(bus)}.Controller.Request_Recovery"))
             steps += self._note("Raised", event.name, "event") if steps else ()
-            rows.append((f"{self.component}.{ada_case(event.name)}", tuple(steps)))
+            rows.append((f"{self.component}.{event_literal(event.name)}", tuple(steps)))
         declarations: tuple[Decl, ...] = ()
         if regions:
             declarations = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.emit.ada.naming import ada_case, priority
+from ravenchart.gen.emit.ada.naming import component_name, priority
 from ravenchart.gen.emit.ada.syntax import Call, Do, Expr, Ref, Stmt, arguments
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import note
@@ -25,7 +25,7 @@ class Site:
     @property
     def component(self) -> str:
         """The component's package, as seen from the instance's."""
-        return ada_case(self.instance.component.name)
+        return component_name(self.instance.component)
 
     def _slots(self) -> tuple[Slot, ...]:
         own = self.system.slots_of(self.instance.name)

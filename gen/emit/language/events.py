@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, default_value, type_name
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
@@ -19,6 +19,8 @@ from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.component import Component, Event
 from ravenchart.gen.model.system import System
 
+from .own_names import event_literal
+
 
 def carries(component: Component) -> bool:
     """Does any event of the component carry a value?"""
@@ -32,7 +34,7 @@ def field_of(of_type: Type) -> str:
 
 def event_types(system: System, component: Component) -> list[Decl]:
     """The type `Event`; where events carry values, `Event_Name` too."""
-    names = tuple(ada_case(e.name) for e in component.events)
+    names = tuple(event_literal(e.name) for e in component.events)
     title = Comment(f"[{component.name}.events]")
     if not carries(component):
         return [title, EnumType("Event", names)]
@@ -52,8 +54,8 @@ def event_types(system: System, component: Component) -> list[Decl]:
 
 def null_event(component: Component) -> Expr:
     """What stands where there is no event."""
-    name = "No_Event" if carries(component) else ada_case(component.events[0].name)
-    return Ref(f"{ada_case(component.name)}.{name}")
+    name = "No_Event" if carries(component) else event_literal(component.events[0].name)
+    return Ref(f"{component_name(component)}.{name}")
 
 
 def event_value(
@@ -61,7 +63,7 @@ def event_value(
 ) -> Expr:
     """An event, with the value that it carries."""
     event: Event = named(component.events, name)
-    literal = Ref(f"{prefix}{ada_case(component.name)}.{ada_case(event.name)}")
+    literal = Ref(f"{prefix}{component_name(component)}.{event_literal(event.name)}")
     if not carries(component):
         return literal
     rows = [Arg("Name", literal)]
@@ -74,7 +76,7 @@ def _record(component: Component, *rows: Arg, prefix: str = "") -> Aggregate:
     """An event record; what is not given keeps its default."""
     types = {e.type.name for e in component.events if e.type is not None}
     rest = () if len(rows) > len(types) else (Arg("others", Ref("<>")),)
-    return Aggregate((*rows, *rest), f"{prefix}{ada_case(component.name)}.Event")
+    return Aggregate((*rows, *rest), f"{prefix}{component_name(component)}.Event")
 
 
 def name_of(component: Component, event: str) -> str:

@@ -1,4 +1,4 @@
-"""Transitions and states whose names generated code has for itself: their kind is added in Ada.
+"""Transitions, states and events with names of generated code: their kind is added in Ada.
 
 So no name is reserved: a transition `t` is the literal ``T_Transition``. Traces, drawings
 and messages keep the model's name.
@@ -22,12 +22,20 @@ place region released segment selection self t timer top_transition transition v
 _STATES = "leaf configuration"
 _NODES = "active_node disorder from_node leaf moved node nowhere place to_node"
 
+_EVENTS = "activities event event_lists event_name flows no_event"
+
 IN_REGION = frozenset((_EVERYWHERE + _REGION).split())
 """Names in lower case that a region's package declares or needs to see."""
 IN_STATES = frozenset((_EVERYWHERE + _STATES).split())
 """Those of a region's package of states."""
 IN_NODES = frozenset((_EVERYWHERE + _NODES).split())
 """Those of the ghost package of nodes."""
+
+IN_EVENTS = frozenset((_EVERYWHERE + _EVENTS).split())
+"""Those of a component's package, and of units below it, that stand beside its events."""
+
+IN_LANES = frozenset(("none", "selection", "top"))
+"""Those that a choice of transitions needs to see beside its fields."""
 
 
 def transition_literal(name: str) -> str:
@@ -43,6 +51,16 @@ def state_literal(name: str) -> str:
 def node_literal(name: str) -> str:
     """A state or pseudostate as the ghost package of nodes names it."""
     return _apart(name, IN_NODES, "State")
+
+
+def event_literal(name: str) -> str:
+    """An event as its component's package names it."""
+    return _apart(name, IN_EVENTS, "Event")
+
+
+def lane_name(name: str) -> str:
+    """A region of an orthogonal state as the fields of a choice name it."""
+    return _apart(name, IN_LANES, "Region")
 
 
 def _apart(name: str, taken: Set[str], kind: str) -> str:

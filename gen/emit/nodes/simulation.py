@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ravenchart.gen.derive.completion import on_one_node
-from ravenchart.gen.emit.ada.naming import ada_case, root_package, type_name
+from ravenchart.gen.emit.ada.naming import ada_case, component_name, root_package, type_name
 from ravenchart.gen.emit.ada.syntax import (
     Aggregate,
     Arg,
@@ -93,7 +93,7 @@ def emit_simulation(system: System, header: str) -> Unit:
     order = sorted(system.processors, key=lambda p: -p.priority)
     last = len(order)
     withs = {f"{root}.{ada_case(i.name)}" for i in system.instances}
-    withs |= {f"{root}.{ada_case(i.component.name)}" for i in system.instances}
+    withs |= {f"{root}.{component_name(i.component)}" for i in system.instances}
     withs |= {"Ravenchart.Simulated_Runs", "Ravenchart.Steps"}
     withs |= {f"{root}.{LIFECYCLE}"} if has_lifecycle(system) else set()
     releases: list[tuple[str, tuple[Stmt, ...]]] = []

@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from ravenchart.gen.derive.instants import has_offset
-from ravenchart.gen.emit.ada.naming import ada_case, priority, processor_package, root_package
+from ravenchart.gen.emit.ada.naming import (
+    ada_case,
+    component_name,
+    priority,
+    processor_package,
+    root_package,
+)
 from ravenchart.gen.emit.ada.syntax import (
     SPARK,
     Aggregate,
@@ -30,6 +36,7 @@ from ravenchart.gen.emit.ada.syntax import (
 )
 from ravenchart.gen.emit.certificate.certified import agrees, fact
 from ravenchart.gen.emit.commands.lifecycle import UNIT, ends_devices
+from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.tables.trace_calls import note, traced
 from ravenchart.gen.model.system import SUPERVISOR, Node, Processor, Supervision, System
 
@@ -131,7 +138,7 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
     context |= {f"{root}.Timing_Certificate", *devices}
     context |= {processor_package(system, p) for p in watched}
     context |= {f"{root}.{ada_case(i)}" for i in raised}
-    context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in raised}
+    context |= {f"{root}.{component_name(system.instance(i).component)}" for i in raised}
     if traced(system):
         context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
     withs = {
@@ -192,5 +199,5 @@ def _silence(system: System, processor: Processor) -> tuple[Stmt, ...]:
 
 def offer(system: System, instance: str, event: str) -> Stmt:
     """Raise an event of an instance from outside it."""
-    component = ada_case(system.instance(instance).component.name)
-    return Do(f"{ada_case(instance)}.Offer", arguments(Ref(f"{component}.{ada_case(event)}")))
+    component = component_name(system.instance(instance).component)
+    return Do(f"{ada_case(instance)}.Offer", arguments(Ref(f"{component}.{event_literal(event)}")))
