@@ -363,7 +363,7 @@ def _broken(rule: str) -> can.CanOperationError:
 def _check(record: Record) -> None:
     """CanOperationError when ``record`` breaks a rule of its kind."""
     kind, name = record.kind, record.kind.name.lower().replace("_", " ")
-    if record.flags & ~_FLAGS.get(kind, Flag(0)):
+    if record.flags & ~int(_FLAGS.get(kind, Flag(0))):  # ~ of a Flag keeps to its members
         raise _broken(f"flags {record.flags} in {name}")
     ranges = _RANGES[kind]
     for field in _NUMBERS:

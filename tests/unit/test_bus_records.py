@@ -6,7 +6,7 @@ import random
 
 import can
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ravenchart.hw_can.bench.bus_records import (
@@ -90,6 +90,7 @@ def quick(octets: bytes) -> Record | can.Message | int | None:
 
 
 @settings(max_examples=300)
+@example(1, b"\1", b",", 0)  # a flag that there is not
 @given(st.integers(0, 3), st.binary(max_size=3), st.binary(max_size=3), st.integers(0, 99))
 def test_the_quick_ways_accept_what_is_sound_and_nothing_else(
     kind: int, at: bytes, to: bytes, seed: int
