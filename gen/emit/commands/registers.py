@@ -187,6 +187,10 @@ def _at_addresses(system: System, kind: DeviceType, header: str) -> Unit:
                 ),
             )
         )
+    given = not all(one.access.writes for one in kind.registers)
+    if given and any(device.address is None for device in devices):
+        pattern = Ref('"* is not modified, consider pragma Export *"')
+        items.append(Pragma("Warnings", (Ref("Off"), pattern)))
     for device in devices:
         items.append(Comment(f"[{device.name}]"))
         items += [_placed(device, one) for one in kind.registers]

@@ -85,6 +85,7 @@ is
       Device : in out Drive_States.State;
       Reply  : out Angle)
    is
+      pragma Unmodified (Device);
       Count : Interfaces.Unsigned_32;
       Moved : Ravenchart.Number;
    begin
