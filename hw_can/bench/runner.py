@@ -184,9 +184,10 @@ class _Runner:
     def _send(self, step: Send) -> tuple[bool, str]:
         if not self._bench.peer.is_open:
             return False, "the bench has left the bus"
+        began = self._bench.now
         self._bench.peer.send(step.send, step.fields, step.wrong)
-        if step.wrong is None:
-            self.sendings.append(Sending(self._bench.now, step.send, dict(step.fields)))
+        if step.wrong is None:  # what is faulty arrives at no port
+            self.sendings.append(Sending(began, step.send, dict(step.fields)))
             self._bench.order(step.send, step.fields)
         return True, "lost" if step.wrong == "loss" else "sent"
 

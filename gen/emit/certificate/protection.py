@@ -56,10 +56,8 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
     """The probability that a corrupted frame is used, and how often that is in an hour."""
     element, profile = name_of(message.element), own.profile
     bits, few, right = (Ref(f"{element}_{part}") for part in ("Data_Bits", "Few", "Residual"))
-    whole, checks = (
-        Chain("**", (number(100), bits)),
-        Chain("**", (number(2), number(profile.crc_bits))),
-    )
+    whole = Chain("**", (number(100), bits))
+    checks = Chain("**", (number(2), number(profile.crc_bits)))
     patterns: list[Expr] = []
     for wrong in range(profile.found_bits + 1):
         sound = Chain("**", (number(99), Chain("-", (bits, number(wrong))) if wrong else bits))
