@@ -35,7 +35,7 @@ is
       Driver_Priority =>
         Timing_Certificate.Link_Driver_Rx_Supervisor_Order_Priority,
       Transmit_Depth => 8,
-      Receive_Depth => 8,
+      Receive_Depth => 32,
       Stack_Bytes => 65_536,
       Accepts => Accepts,
       Setting =>

@@ -14,7 +14,7 @@ is
 
    --  SHA-256 of the model: the program and its trace carry it.
    Model_Digest : constant String :=
-     "5bd9b5c3c944095ae1b0842862edccafb569db99c3b854279714b252d6a9c630";
+     "5e36900fdff3c011b2622ecf67cf6c8302468247b5bcc356cc99991444eefc3b";
 
    --  Times in nanoseconds. T period or least separation, D deadline, J
    --  longest time from the event to the release, C longest execution (with
