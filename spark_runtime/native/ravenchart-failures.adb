@@ -1,7 +1,6 @@
 with Ada.Exceptions;
 with Ada.Task_Identification;
 with Ada.Task_Termination;
-with GNAT.Exception_Actions;
 with Interfaces.C.Strings;
 with System;
 
@@ -131,10 +130,19 @@ is
       Demoted : Boolean := False;
    end Record_Of_All;
 
-   procedure On_Unhandled (X : Ada.Exceptions.Exception_Occurrence);
-   --  An exception that nothing handles. In the environment task it ends the
-   --  process: otherwise the run-time library would wait for the other tasks,
-   --  which never end.
+   procedure Last_Chance (X : Ada.Exceptions.Exception_Occurrence)
+   with
+     Export,
+     Convention    => C,
+     External_Name => "__gnat_last_chance_handler",
+     No_Return;
+   --  An exception in the environment task that nothing handles, in the
+   --  elaboration of any package or in the main program: it ends the process.
+   --  The handler of the run-time library, in whose place this one is, waits
+   --  for the other tasks, which never end.
+
+   Elaborated : Boolean := False;
+   --  Is this body elaborated, so that there may be reasons?
 
    Watchdog : C_Int := No_File;
    --  What the environment variable RAVENCHART_WATCHDOG names, if it can be
@@ -314,23 +322,21 @@ is
       end if;
    end Feed_Watchdog;
 
-   ------------------
-   -- On_Unhandled --
-   ------------------
+   -----------------
+   -- Last_Chance --
+   -----------------
 
-   procedure On_Unhandled (X : Ada.Exceptions.Exception_Occurrence) is
+   procedure Last_Chance (X : Ada.Exceptions.Exception_Occurrence) is
    begin
-      if Ada.Task_Identification.Current_Task
-        = Ada.Task_Identification.Environment_Task
-      then
+      if Elaborated then
          Put_Reasons;
-         Put_Error
-           ("error: the main program has ended by "
-            & Ada.Exceptions.Exception_Name (X) & ": "
-            & Ada.Exceptions.Exception_Message (X));
-         C_Exit (1);
       end if;
-   end On_Unhandled;
+      Put_Error
+        ("error: the main program has ended by "
+         & Ada.Exceptions.Exception_Name (X) & ": "
+         & Ada.Exceptions.Exception_Message (X));
+      C_Exit (1);
+   end Last_Chance;
 
    -------------
    -- Give_Up --
@@ -351,8 +357,7 @@ is
 begin
    Ada.Task_Termination.Set_Dependents_Fallback_Handler
      (Record_Of_All.On_End'Access);
-   GNAT.Exception_Actions.Register_Global_Unhandled_Action
-     (On_Unhandled'Access);
+   Elaborated := True;
    if Path /= Interfaces.C.Strings.Null_Ptr then
       Watchdog := C_Open (Path, Write_Only + Nonblocking);
       if Watchdog < 0 then

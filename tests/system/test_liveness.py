@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
 import json
 import os
+import random
 import re
 import shutil
-import signal
 import subprocess
 import time
 from collections.abc import Callable
@@ -23,12 +22,14 @@ from ravenchart.paths import ROOT
 from ravenchart.running import runs as run
 from ravenchart.running.result import RunResult
 from tests.support.faults import shows
+from tests.support.stopped import raise_in
 
 SECONDS = 2.0
 
 BODY = """\
 with Ada.Environment_Variables;
 with Ada.Real_Time;
+with Early;
 
 package body Three_Components.Station.Activities
 with SPARK_Mode => Off
@@ -79,10 +80,28 @@ is
          end loop;
       end if;
       Held := Token'Min (Token_In.Value, 999) + 1;
+      Early.Mark;
       Raise_Worked := True;
    end Work;
 end Three_Components.Station.Activities;
 """
+
+EARLY = """\
+with Ada.Environment_Variables;
+
+package body Early
+with SPARK_Mode => Off
+is
+   procedure Mark is null;
+begin
+   if Ada.Environment_Variables.Value ("RAVENCHART_TEST_FAULT", "none")
+     = "elaboration"
+   then
+      raise Program_Error with "in elaboration";
+   end if;
+end Early;
+"""
+"""A package of the user's that the binder elaborates before those of the runtime."""
 
 WATCHED = re.compile(r" +(supervision|on_silence): .*\n")
 
@@ -118,6 +137,10 @@ def _model(folder: Path) -> Path:
     (folder / "user").mkdir()
     body = folder / "user" / "three_components-station-activities.adb"
     body.write_text(BODY)
+    (folder / "user" / "early.ads").write_text(
+        "package Early with SPARK_Mode => Off is\n   procedure Mark;\nend Early;\n"
+    )
+    (folder / "user" / "early.adb").write_text(EARLY)
     return model
 
 
@@ -287,6 +310,9 @@ def test_a_stack_overflow_ends_the_controller_and_the_verdict_says_so(breaking: 
     assert "SIGSEGV" in found.result.failures[0]
 
 
+LONG = "RAVENCHART_LONG_TESTS" in os.environ
+
+
 def _by_priority(process: int) -> list[int]:
     """The threads of a process with a real-time priority, the most urgent first."""
     threads = [int(one.name) for one in Path(f"/proc/{process}/task").iterdir()]
@@ -312,29 +338,32 @@ class Hit:
     trace: str
 
 
-def _hit(mode: str, place: int, folder: Path) -> Hit:
+def _hit(mode: str, place: int, folder: Path, after: float = 0.5) -> Hit:
     """An exception in the thread with that place by urgency, as a division by zero gives it."""
     checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
     generation.write_program(checked)
     program = programs.programs_of(checked)[0].build(mode)
     trace = folder / "trace"
+    trace.unlink(missing_ok=True)
     told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace)}
     process = subprocess.Popen(
         [program], env=os.environ | told, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
-        time.sleep(0.8)
+        until = time.monotonic() + 5
+        while not trace.exists() and time.monotonic() < until:
+            time.sleep(0.01)
+        time.sleep(after)
         threads = _by_priority(process.pid)
         if not threads:
             pytest.skip("needs real-time priorities, which tell the tasks apart")
-        hit = ctypes.CDLL(None, use_errno=True).tgkill
-        assert hit(process.pid, threads[place], int(signal.SIGFPE)) == 0
+        raise_in(process.pid, threads[place % len(threads)])
         _, said = process.communicate(timeout=5)
     finally:
         process.kill()
         process.wait()
     reasons = tuple(line for line in said.splitlines() if line.startswith("error: "))
-    return Hit(process.returncode, reasons, trace.read_text())
+    return Hit(process.returncode, reasons, trace.read_text() if trace.exists() else "")
 
 
 @shows(
@@ -360,6 +389,23 @@ def test_whatever_task_is_hit_by_an_exception_the_controller_shuts_down(
 
 
 @shows(
+    "a soak in which a random task of the robot is killed at a random time",
+    found_by="the fallback handler of task termination; the last-chance handler",
+    reaction="shutdown of the model where the main program lives, exit status 1 with the reason",
+    within="5 s",
+)
+def test_a_soak_of_killed_tasks_always_ends_in_the_shutdown(tmp_path: Path) -> None:
+    chosen = random.Random(18)
+    for _ in range(300 if LONG else 6):
+        mode = chosen.choice(("checks", "release"))
+        found = _hit(mode, chosen.randrange(64), tmp_path, chosen.uniform(0.0, 0.5))
+        assert found.status == 1
+        assert "has ended by CONSTRAINT_ERROR: " in found.reasons[0]
+        if "the main program" not in found.reasons[0]:
+            assert found.trace.endswith("END\n")
+
+
+@shows(
     "an exception in the main program",
     found_by="the action for unhandled exceptions",
     reaction="exit status 1, with the reason",
@@ -370,6 +416,31 @@ def test_an_exception_in_the_main_program_ends_the_process(tmp_path: Path, mode:
     assert found.status == 1
     (reason,) = found.reasons
     assert reason.startswith("error: the main program has ended by CONSTRAINT_ERROR: ")
+
+
+@shows(
+    "an exception in the elaboration of a package, a user's included",
+    found_by="the last-chance handler",
+    reaction="no task starts; exit status 1, with the reason",
+    within="5 s",
+)
+@pytest.mark.parametrize("mode", ["checks", "release"])
+def test_an_exception_in_elaboration_ends_the_process(
+    built: Callable[[str, bool], Built], mode: str
+) -> None:
+    _, _, executable = built(mode, True)
+    for _ in range(5):
+        ended = subprocess.run(
+            [executable],
+            env=os.environ | {"RAVENCHART_TEST_FAULT": "elaboration"},
+            capture_output=True,
+            text=True,
+            timeout=5,
+        )
+        assert ended.returncode == 1
+        assert ended.stderr == (
+            "error: the main program has ended by PROGRAM_ERROR: in elaboration\n"
+        )
 
 
 @shows(
