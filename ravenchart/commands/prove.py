@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ravenchart.building import generation, programs
 from ravenchart.failures import OK, WRONG, Refused
-from ravenchart.proof import outside_spark, proving
+from ravenchart.proof import outside_spark, proving, verdicts
 from ravenchart.proof.spark_results import Outside
 from ravenchart.terminal import progress
 
@@ -28,7 +28,20 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--fresh", action="store_true",
         help="run gnatprove also where the same content was proved before",
     )  # fmt: skip
+    sub.add_argument(
+        "--cache", metavar="HOST[:PORT]", type=_memcached,
+        help="share verdicts of provers with a memcached server; port 11211 unless given",
+    )  # fmt: skip
     sub.add_argument("--record", type=Path, help="write the proof record to this file")
+
+
+def _memcached(address: str) -> verdicts.Memcached:
+    try:
+        return verdicts.Memcached(address)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"`{address}` is not HOST or HOST:PORT, with a port from 1 to 65535"
+        ) from None
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -46,7 +59,11 @@ def execute(options: argparse.Namespace) -> int:
     outside: dict[Outside, None] = {}
     for one in made:
         with progress(f"prove {one.node}"):
-            proof = proving.prove(one.proof(driver, whole=options.whole), fresh=options.fresh)
+            proof = proving.prove(
+                one.proof(driver, whole=options.whole),
+                fresh=options.fresh,
+                memcached=options.cache,
+            )
         answer.programs.append(_proved(one.node, proof))
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)

@@ -12,6 +12,7 @@ import json
 import shutil
 import tomllib
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,8 +20,9 @@ from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 
 from . import earlier as proof_cache
-from . import spark_results
+from . import spark_results, verdicts
 from .spark_results import Results
+from .verdicts import Memcached
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,11 +72,13 @@ class Proof:
         )
 
 
-def prove(task: Task, *, fresh: bool = False) -> Proof:
+def prove(task: Task, *, fresh: bool = False, memcached: Memcached | None = None) -> Proof:
     """Run gnatprove, or take the results of an earlier run on the same content.
 
-    ToolFailed with gnatprove's messages when anything is left. ``fresh`` runs it in any case.
-    The result folders are emptied first, so the results are those of this run alone.
+    ToolFailed with gnatprove's messages when anything is left. ``fresh`` runs it in any case, and
+    each prover with it; else only formulas that were not proved before go to a prover, and those
+    that the ``memcached`` server of a team does not have. The result folders are emptied first,
+    so the results are those of this run alone.
     """
     version = toolchain.run("gnatprove", ["--version"], task.project.parent, {})
     inputs = _inputs(task.sources)
@@ -82,7 +86,8 @@ def prove(task: Task, *, fresh: bool = False) -> Proof:
     results = None if fresh else proof_cache.load(key)
     cached = results is not None
     if results is None:
-        results = _run(task)
+        with nullcontext() if fresh else verdicts.served(version, memcached) as server:
+            results = _run(task, server)
         if not results.unproved:
             proof_cache.store(key, results)
     read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
@@ -90,13 +95,15 @@ def prove(task: Task, *, fresh: bool = False) -> Proof:
     return Proof(results, sources, version.partition("\n")[0], cached)
 
 
-def _run(task: Task) -> Results:
+def _run(task: Task, server: str | None) -> Results:
     for folder in task.results:
         shutil.rmtree(folder, ignore_errors=True)
     arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline"]
     arguments.append(f"--warnings={task.warnings}")
     if not task.whole:
         arguments.append("--no-subprojects")
+    if server is not None:
+        arguments.append(f"--memcached-server={server}")
     if task.units:
         arguments += ["-u", *task.units]
     toolchain.run("gnatprove", arguments, task.project.parent, task.scenario)
