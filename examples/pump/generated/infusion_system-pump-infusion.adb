@@ -531,13 +531,13 @@ is
               Self.Place'Old,
               Self.Place,
               Self.Timers'Old (3))
-       and then (if Self.Started'Old
-             then Self.Past
-                = Remembered
-                    (Domain_Of (Chosen),
-                     Self.Place'Old,
-                     Self.Past'Old)
-          else Self.Past = Self.Past'Old)
+       and then ((Self.Started'Old
+           and (Self.Past
+              = Remembered
+                  (Domain_Of (Chosen),
+                   Self.Place'Old,
+                   Self.Past'Old)))
+          or (not Self.Started'Old and (Self.Past = Self.Past'Old)))
        and then Self.Freed
          = Freed_After
              (Domain_Of (Chosen),
@@ -1492,13 +1492,13 @@ is
               (Domain_Of (Chosen),
                Self.Place'Old,
                Self.Timers'Old)
-          and then (if Self.Started'Old
-                then Self.Past
-                   = Remembered
-                       (Domain_Of (Chosen),
-                        Self.Place'Old,
-                        Self.Past'Old)
-             else Self.Past = Self.Past'Old)
+          and then ((Self.Started'Old
+              and (Self.Past
+                 = Remembered
+                     (Domain_Of (Chosen),
+                      Self.Place'Old,
+                      Self.Past'Old)))
+             or (not Self.Started'Old and (Self.Past = Self.Past'Old)))
           and then Self.Freed
             = Freed_After
                 (Domain_Of (Chosen),
@@ -1727,13 +1727,13 @@ is
               (Domain_Of (Chosen),
                Self.Place'Old,
                Self.Timers'Old)
-          and then (if Self.Started'Old
-                then Self.Past
-                   = Remembered
-                       (Domain_Of (Chosen),
-                        Self.Place'Old,
-                        Self.Past'Old)
-             else Self.Past = Self.Past'Old)
+          and then ((Self.Started'Old
+              and (Self.Past
+                 = Remembered
+                     (Domain_Of (Chosen),
+                      Self.Place'Old,
+                      Self.Past'Old)))
+             or (not Self.Started'Old and (Self.Past = Self.Past'Old)))
           and then Self.Freed
             = Freed_After
                 (Domain_Of (Chosen),

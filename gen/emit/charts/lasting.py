@@ -325,13 +325,17 @@ class Lasting:
             recalled = call("Remembered", domain, Ref(f"{held}'Old"), Ref("Self.Past'Old"))
             known = equal(Ref("Self.Past"), recalled)
             kept = equal(Ref("Self.Past"), Ref("Self.Past'Old"))
+            started = Ref("Self.Started'Old")
+            starts = Prefix("not", started)
+            #  no `if`: GNAT 14 has an internal error where 'Old stands behind a condition on 'Old
             if any(terminates(self.shape, f) for f in self.shape.firings):
                 #  where the region ends, nothing will be remembered
-                starts = Prefix("not", Ref("Self.Started'Old"))
-                goes_on = Chain("/=", (domain, Ref("Ending")))
-                facts.append(IfExpr(((starts, kept), (goes_on, known)), None))
+                ends = equal(domain, Ref("Ending"))
+                facts.append(Chain("or", (started, kept)))
+                facts.append(Chain("or", (starts, ends, known)))
             else:
-                facts.append(IfExpr(((Ref("Self.Started'Old"), known),), kept))
+                same = Chain("and", (started, known)), Chain("and", (starts, kept))
+                facts.append(Chain("or", same))
         if self.shape.deferring:
             count = call("Deferrals.Count", Ref("Self.Deferred'Old"))
             freed = freed_after(self.shape, domain, count)
