@@ -43,7 +43,7 @@ is
    procedure Lemma_No_Byte
      (Word : Interfaces.Unsigned_64; Length : Integer; I : Byte_Index) is
    begin
-      pragma Assert (I >= Length);
+      pragma Assert (Ends_Within (Word, Length) and then I >= Length);
    end Lemma_No_Byte;
 
    procedure Lemma_Same_Words (F : Fd_Frame; Words : Fd_Words)
