@@ -124,12 +124,12 @@ is
 
    procedure Take_Due (Timers : in out Timer_Array; Due : out Natural)
    with
-     Global         => null,
-     Contract_Cases =>
-       ((for some T of Timers => Is_Due (T)) =>
-          Is_Taken (Timers'Old, Timers, Due),
-        others                               =>
-          Due = 0 and then Timers = Timers'Old);
+     Global => null,
+     Post   =>
+       (Due /= 0) = (for some T of Timers'Old => Is_Due (T))
+       and then (if Due = 0
+                 then Timers = Timers'Old
+                 else Is_Taken (Timers'Old, Timers, Due));
    --  Take the timer that expired earliest and say which; 0 when none is due.
 
 end Ravenchart.Timers;

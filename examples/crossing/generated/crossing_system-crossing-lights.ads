@@ -498,10 +498,10 @@ is
      Post =>
        Self.Started
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
-       and then (if Now = Start_Of_Region
-             then Is_Only (Fired, Initial_Entry)
-          else Follows
-               (Fired,
-                Choose (Self.Place'Old, Now, Self.Data'Old, Item)));
+       and then (((Now = Start_Of_Region) and Is_Only (Fired, Initial_Entry))
+          or ((Now /= Start_Of_Region)
+             and Follows
+                 (Fired,
+                  Choose (Self.Place'Old, Now, Self.Data'Old, Item))));
    --  One run-to-completion step.
 end Crossing_System.Crossing.Lights;

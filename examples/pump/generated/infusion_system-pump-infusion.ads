@@ -840,16 +840,16 @@ is
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (if Segments_Left (Self.Place'Old) = 0
              then Segments_Left (Self.Place) = 0)
-       and then (if Now = Start_Of_Region
-             then Is_Only (Fired, Initial_Entry)
-          else Follows
-               (Fired,
-                Choose
-                  (Self.Place'Old,
-                   Now,
-                   Self.Past'Old,
-                   Self.Data'Old,
-                   Ins,
-                   Item)));
+       and then (((Now = Start_Of_Region) and Is_Only (Fired, Initial_Entry))
+          or ((Now /= Start_Of_Region)
+             and Follows
+                 (Fired,
+                  Choose
+                    (Self.Place'Old,
+                     Now,
+                     Self.Past'Old,
+                     Self.Data'Old,
+                     Ins,
+                     Item))));
    --  One run-to-completion step.
 end Infusion_System.Pump.Infusion;

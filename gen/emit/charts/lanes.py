@@ -252,7 +252,10 @@ def followed(shape: RegionShape) -> Expr:
     begun = equal(Ref("Now"), Ref("Start_Of_Region"))
     choice = Call("Choose", shape.choice_args(old=True))
     only = call("Is_Only", Ref("Fired"), Ref(START))
-    return IfExpr(((begun, only),), call("Follows", Ref("Fired"), choice))
+    follows = call("Follows", Ref("Fired"), choice)
+    #  no `if`: 'Old behind a condition known on entry wants an exception handler
+    goes_on = Chain("/=", (Ref("Now"), Ref("Start_Of_Region")))
+    return Chain("or", (Chain("and", (begun, only)), Chain("and", (goes_on, follows))))
 
 
 # --- The step ----------------------------------------------------------------
