@@ -330,9 +330,9 @@ class Lasting:
             #  no `if`: GNAT 14 has an internal error where 'Old stands behind a condition on 'Old
             if any(terminates(self.shape, f) for f in self.shape.firings):
                 #  where the region ends, nothing will be remembered
-                ends = equal(domain, Ref("Ending"))
+                over = equal(domain, Ref("Ending"))
                 facts.append(Chain("or", (started, kept)))
-                facts.append(Chain("or", (starts, ends, known)))
+                facts.append(Chain("or", (starts, over, known)))
             else:
                 same = Chain("and", (started, known)), Chain("and", (starts, kept))
                 facts.append(Chain("or", same))
