@@ -16,6 +16,7 @@ from ravenchart.analysis.plain.results import (
     everything,
     latency_figures,
 )
+from ravenchart.analysis.system.authentication import authenticated
 from ravenchart.analysis.system.commands import costs
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
@@ -85,6 +86,18 @@ def figures(analysis: Analysis) -> Json:
                 "stale": [{"port": str(one.port), "found": one.found} for one in row.silences],
             }
             for row in protected(analysis)
+        ],
+        "authenticated": [
+            {
+                "message": row.message.name,
+                "profile": row.authentication.name,
+                "key": row.authentication.key,
+                "mac_bits": row.authentication.mac_bits,
+                "random": row.authentication.random,
+                "tolerated": row.tolerated,
+                "stale": [{"port": str(one.port), "found": one.found} for one in row.silences],
+            }
+            for row in authenticated(analysis)
         ],
         "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],

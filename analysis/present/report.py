@@ -15,6 +15,7 @@ from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.tasks import plain
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.findings.deadlines import no_bound_reason
+from ravenchart.analysis.system.authentication import authenticated
 from ravenchart.analysis.system.commands import costs
 from ravenchart.analysis.system.critical import schedule
 from ravenchart.analysis.system.graph import component_view
@@ -245,6 +246,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "visits": _visits(run),
         "watches": watches(analysis),
         "protected": protected(analysis),
+        "authenticated": authenticated(analysis),
     }
 
 

@@ -85,10 +85,15 @@ def protected(analysis: Analysis) -> tuple[Protected, ...]:
                 residual,
                 float(residual * HOUR / message.period),
                 Ns(own.max_delta * message.period),
-                tuple(_silence(analysis, message, end) for end in message.targets),
+                silences(analysis, message),
             )
         )
     return tuple(found)
+
+
+def silences(analysis: Analysis, message: Message) -> tuple[Silence, ...]:
+    """When each port that receives a message is known to be stale."""
+    return tuple(_silence(analysis, message, end) for end in message.targets)
 
 
 def _silence(analysis: Analysis, message: Message, end: End) -> Silence:

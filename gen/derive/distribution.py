@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from ravenchart.gen.language.names import problem_of
+from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.commands import Remote, RemoteRead
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
@@ -29,6 +31,8 @@ from ravenchart.gen.model.system import (
 
 from .calls import called
 from .identifiers import OPEN
+
+Check = TypeVar("Check", Protection, Authentication)
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,13 +169,11 @@ def _heard_here(bus: Bus, here: set[str]) -> Bus:
     )
 
 
-def _raised_here(protection: Protection | None, here: set[str]) -> Protection | None:
-    """The protection, with the events of these instances."""
-    if protection is None:
+def _raised_here(check: Check | None, here: set[str]) -> Check | None:
+    """The protection or authentication, with the events of these instances."""
+    if check is None:
         return None
-    return replace(
-        protection, on_error=tuple(pair for pair in protection.on_error if pair[0] in here)
-    )
+    return replace(check, on_error=tuple(pair for pair in check.on_error if pair[0] in here))
 
 
 def part_of(system: System, node: Node) -> System:
@@ -183,6 +185,7 @@ def part_of(system: System, node: Node) -> System:
             source=message.source if system.sender(message) == node.name else None,
             targets=tuple(end for end in message.targets if end.instance in here),
             protection=_raised_here(message.protection, here),
+            authentication=_raised_here(message.authentication, here),
         )
         for message in system.messages
         if system.sender(message) == node.name

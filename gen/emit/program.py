@@ -13,6 +13,11 @@ from ravenchart.gen.emit.ada.naming import ada_case, root_package
 from ravenchart.gen.emit.ada.readings import Reading, readings
 from ravenchart.gen.emit.ada.syntax import Package, Unit
 from ravenchart.gen.emit.ada.text import print_item, print_unit
+from ravenchart.gen.emit.buses.authentication import (
+    authenticated,
+    emit_authentication,
+    first_authentication,
+)
 from ravenchart.gen.emit.buses.codecs import emit_codecs
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.certificate.package import emit_certificate
@@ -129,7 +134,10 @@ def program(system: System, claims: Claims, whole: System) -> tuple[Made, ...]:
     ``whole`` is the system whose part this program is, or this system itself.
     """
     maker, before, after = _without_claims(system)
-    return (*before, *maker.made([emit_certificate(whole, claims, maker.header)]), *after)
+    made = [emit_certificate(whole, claims, maker.header)]
+    if authenticated(system):  # one spec for all nodes, whose body they share
+        made += emit_authentication(whole, maker.header)
+    return (*before, *maker.made(made), *after)
 
 
 @lru_cache(maxsize=8)
@@ -279,6 +287,8 @@ def _users(system: System) -> Iterator[tuple[str, Unit]]:
             home = unit.item.name.rpartition(".")[2]
             folder = "user" if home == "Activities" else f"user/{c.name}-{home}".lower()
             yield f"{folder}/{unit.file_name}", unit
+    for unit in first_authentication(system, header):
+        yield f"user/{unit.file_name}", unit
     for kind in device_types(system):
         if not kind.simulated:
             folder = f"user/{kind.name}".lower() if _has_own_folder(kind) else "user"

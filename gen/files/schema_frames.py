@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Tag
 from pydantic import Field as PydanticField
 
+from ravenchart.gen.model.authentication import AuthenticationName
 from ravenchart.gen.model.protection import ProfileName
 
 from .schema_base import (
@@ -220,6 +221,40 @@ class ProtectionForm(Element):
     )
 
 
+class AuthenticationForm(Element):
+    """Authentication of a CAN FD message: freshness value and MAC are the last bytes of the frame.
+
+    The user writes the unit that computes MACs (`user/*-authentication.adb`).
+    """
+
+    profile: AuthenticationName = key(
+        "`secoc`: the MAC is of data identifier, data and whole freshness value (AUTOSAR SecOC)."
+    )
+    data_id: int = key(
+        "Data identifier, 0 to 0xFFFF; no other message with the same key has it.", ge=0, le=0xFFFF
+    )
+    key_: Name = key("The name by which the user's unit knows the key.", alias="key")
+    freshness_bits: Literal[8, 16, 24, 32, 40, 48, 56, 64] = PydanticField(
+        default=64,
+        description="Low bits of the freshness value in the frame, in whole bytes. With fewer than "
+        "64 the receiver follows as long as fewer than 2^`freshness_bits` frames in a row are "
+        "lost.",
+    )
+    mac_bits: Literal[24, 32, 40, 48, 56, 64, 72, 80, 88, 96, 104, 112, 120, 128] = PydanticField(
+        default=64, description="First bits of the MAC in the frame, in whole bytes."
+    )
+    mac_wcet: PositiveSpan = key(
+        "Worst-case time for the MAC of one frame: counts in addition to the `wcet` of the row "
+        "that sends, and to `driver_wcet` where the frame is received."
+    )
+    on_error: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised on the node of the instance, which receives the message, for "
+        "each frame that is not verified.",
+        min_length=1,
+        max_length=64,
+    )
+
+
 class MessageForm(Element):
     """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
@@ -274,6 +309,10 @@ class MessageForm(Element):
     )
     protection: ProtectionForm | None = optional(
         "End-to-end protection: counter and CRC in the frame; none unless given."
+    )
+    authentication: AuthenticationForm | None = optional(
+        "Authentication: freshness value and MAC in the frame, which is CAN FD; none unless given. "
+        "Not with `protection`."
     )
     deadline: PositiveSpan | None = optional(
         "From the release of what sends it, or from its arrival, until it is received; the period "

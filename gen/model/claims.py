@@ -58,7 +58,7 @@ class Claims:
     residual: Mapping[str, int] = field(default_factory=dict)
     """Protected messages: the probability in 10**-18 that corruption of a frame is not found."""
     stale: Mapping[str, Ns] = field(default_factory=dict)
-    """Ports of protected messages: when it is known that no usable frame comes."""
+    """Ports of checked messages: when it is known that no usable frame comes."""
 
     def of(self, element: str) -> Claim:
         """The claim about a task or message."""

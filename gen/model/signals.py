@@ -200,9 +200,12 @@ def bits_of(signals: tuple[Signal, ...]) -> int:
     return max(max(signal.bits()) for signal in signals) + 1
 
 
-def length_of(signals: tuple[Signal, ...], *, fd: bool = False) -> int:
-    """Bytes of the frame that carries the signals, at least 1; of CAN FD the next size it has."""
-    length = max(1, -(-bits_of(signals) // 8))
+def length_of(signals: tuple[Signal, ...], *, fd: bool = False, trailer: int = 0) -> int:
+    """Bytes of the frame that carries the signals, at least 1; of CAN FD the next size it has.
+
+    The ``trailer`` is so many bytes behind the signals.
+    """
+    length = max(1, -(-bits_of(signals) // 8)) + trailer
     return next((size for size in FD_SIZES if size >= length), length) if fd else length
 
 

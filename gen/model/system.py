@@ -17,6 +17,7 @@ from functools import cached_property
 from ravenchart.gen.language.terms import IntegerType, Ns, Scalar, Type, named
 from ravenchart.gen.origins import Origin
 
+from .authentication import Authentication
 from .commands import Binding, Device, Poll, Remote
 from .component import Component
 from .protection import Protection
@@ -220,10 +221,18 @@ class Message:
     protection: Protection | None = None
     """From end to end; None: none."""
 
+    authentication: Authentication | None = None
+    """By a MAC; None: none."""
+
     @property
     def element(self) -> str:
         """Stable id of the frame: ``bus.message``."""
         return f"{self.bus}.{self.name}"
+
+    @property
+    def check(self) -> Protection | Authentication | None:
+        """What decides whether a frame that is received is used."""
+        return self.protection or self.authentication
 
     @property
     def is_reply(self) -> bool:
@@ -520,9 +529,9 @@ class System:
         )
 
     def refusals(self, bus: Bus) -> tuple[tuple[str, str], ...]:
-        """(instance, event) raised where a protected message of a bus is not used."""
-        kept = (m.protection for m in self.messages if m.bus == bus.name and m.protection)
-        return tuple(pair for protection in kept for pair in protection.on_error)
+        """(instance, event) raised where a checked message of a bus is not used."""
+        kept = (m.check for m in self.messages if m.bus == bus.name and m.check)
+        return tuple(pair for check in kept for pair in check.on_error)
 
     @property
     def raised_outside(self) -> tuple[tuple[str, str], ...]:

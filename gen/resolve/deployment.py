@@ -16,12 +16,21 @@ from ravenchart.gen.files.schema import (
     ShutdownForm,
     SupervisionForm,
 )
-from ravenchart.gen.files.schema_frames import BusForm, DelayedForm, MessageForm, RequestedForm
+from ravenchart.gen.files.schema_frames import (
+    AuthenticationForm,
+    BusForm,
+    DelayedForm,
+    MessageForm,
+    ProtectionForm,
+    RequestedForm,
+)
 from ravenchart.gen.language.names import Findings, Scope
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import BOOLEAN, Ns, Scalar
+from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.component import Direction, Port
 from ravenchart.gen.model.protection import Protection
+from ravenchart.gen.model.signals import Signal
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
     Bus,
@@ -41,6 +50,7 @@ from ravenchart.gen.model.system import (
 )
 from ravenchart.gen.origins import Origin
 
+from .authentication import authentication_of
 from .components import Parts, timing_of
 from .layouts import layout_of, size_of
 from .protection import protection_of
@@ -288,7 +298,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
-    for key in ("signals", "multiplexor", "protection") if foreign else ():
+    for key in ("signals", "multiplexor", "protection", "authentication") if foreign else ():
         if form.has(key):
             message = f"the message {name} has no value, and `{key}` no meaning"
             findings.error("RV-0210", form.at_key(key), message, hint="remove it")
@@ -308,10 +318,13 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
     signals = () if foreign else layout_of(name, form, type_, findings)
     length = None if signals is None else size_of(name, form, signals, findings)
-    if signals is None or length is None or form.lost("protection"):
+    if signals is None or length is None or form.lost("protection") or form.lost("authentication"):
         return None
     protection = _message_protection(name, form, length, site)
+    authentication = _message_authentication(name, form, signals, site)
     if (protection is None) != (form.protection is None):
+        return None
+    if (authentication is None) != (form.authentication is None):
         return None
     return Message(
         name=name,
@@ -329,21 +342,42 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         fd=form.format == "fd",
         sporadic=source is None and form.sporadic is not False,
         protection=protection,
+        authentication=authentication,
     )
 
 
 def _message_protection(name: str, form: MessageForm, length: int, site: Site) -> Protection | None:
     """The protection of a message of so many bytes; None where it has none, or no sound one."""
-    given = form.protection
-    if given is None or given.lost("on_error") or given.list_damaged("on_error"):
+    if form.protection is None:
+        return None
+    events = _refusals(form.protection, site)
+    found = protection_of(name, form.protection, length, events or (), site.findings)
+    return None if events is None else found
+
+
+def _message_authentication(
+    name: str, form: MessageForm, signals: tuple[Signal, ...], site: Site
+) -> Authentication | None:
+    """The authentication of a message; None where it has none, or no sound one."""
+    if form.authentication is None:
+        return None
+    events = _refusals(form.authentication, site)
+    found = authentication_of(name, form, signals, events or (), site.findings)
+    return None if events is None else found
+
+
+def _refusals(
+    given: ProtectionForm | AuthenticationForm, site: Site
+) -> tuple[tuple[str, str], ...] | None:
+    """The events that a frame raises which is not used; None where not all are sound."""
+    if given.lost("on_error") or given.list_damaged("on_error"):
         return None
     events = [
         event_at(text, given.item_at("on_error", index), site)
         for index, text in enumerate(given.on_error or ())
     ]
     sound = tuple(pair for pair in events if pair is not None)
-    found = protection_of(name, given, length, sound, site.findings)
-    return found if len(sound) == len(events) else None
+    return sound if len(sound) == len(events) else None
 
 
 def _message_period(

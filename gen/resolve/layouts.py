@@ -25,6 +25,7 @@ from ravenchart.gen.model.signals import (
 )
 from ravenchart.gen.origins import Origin
 
+from .authentication import trailer_of
 from .values import constant
 
 LAYOUT = "RV-0614"
@@ -83,7 +84,8 @@ def size_of(
 ) -> int | None:
     """Bytes of the frame: those given, or as few as do; None where there is no such frame."""
     fd = form.format == "fd"
-    needed = length_of(signals, fd=fd) if signals else 0
+    trailer = trailer_of(form)
+    needed = length_of(signals, fd=fd, trailer=trailer) if signals else 0
     if form.bytes is None or (signals and bits_of(signals) > room_of(fd=fd)):
         return needed
     sizes = (0, *FD_SIZES) if fd else range(9)
@@ -97,6 +99,8 @@ def size_of(
         return None
     if form.bytes < needed:
         message = f"{name} needs {needed} bytes, and {form.bytes} are given"
+        if trailer:
+            message += f"; freshness value and MAC take {trailer}"
         findings.error(SIZE, form.at("bytes"), message, hint="leave `bytes` out, or give more")
         return None
     return form.bytes

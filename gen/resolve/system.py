@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 from ravenchart.gen.derive.distribution import Carrier, placed
 from ravenchart.gen.derive.identifiers import identified
+from ravenchart.gen.derive.macs import with_macs
 from ravenchart.gen.derive.remote import calling
 from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
@@ -364,7 +365,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         messages=tuple(m for m in frames if not m.is_foreign),
         traffic=tuple(m for m in frames if m.is_foreign),
     )
-    system = placed(system)
+    system = with_macs(placed(system))
     return Resolved(system, frozenset(damaged), frozenset(sections.sound))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.system import Bus, Message, Slot, System, Work
+from ravenchart.gen.resolve.authentication import AUTHENTICATION
 from ravenchart.gen.resolve.protection import PROTECTION
 from ravenchart.gen.resolve.system import Resolved
 
@@ -92,26 +93,44 @@ def _passes(message: Message, other: Message) -> bool:
     return one is not None and two is not None and one.passes_for(two)
 
 
-def protection_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
-    """The events of a protected message are of nodes that receive it."""
+def authenticated_messages_differ(resolved: Resolved) -> Iterator[Diagnostic]:
+    """No two messages of one key have the same data identifier."""
+    first: dict[tuple[str, int], Message] = {}
+    for message in resolved.system.messages:
+        own = message.authentication
+        if own is None:
+            continue
+        other = first.setdefault((own.key.lower(), own.data_id), message)
+        if other is not message:
+            text = f"{message.name} and {other.name} have the key {own.key} and the data "
+            text += f"identifier {own.data_id}: a frame of one is authentic as the other"
+            notes = [(other.origin, f"`{other.name}` is declared here")]
+            hint = "give one of them another data identifier"
+            yield error(AUTHENTICATION, message.origin, text, notes=notes, hint=hint)
+
+
+def refusal_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The events of a message that is checked are of nodes that receive it."""
     system = resolved.system
     if not {"messages", "instances"} <= resolved.sound_sections:
         return
     for message in system.messages:
         homes = {system.home(end) for end in message.targets}
-        for instance, event in () if message.protection is None else message.protection.on_error:
+        for instance, event in () if message.check is None else message.check.on_error:
             home = system.instance(instance).node
             if home not in homes:
                 text = f"{message.name} names {instance}.{event}, and {instance} is on {home}, "
                 text += f"which does not receive {message.name}"
                 where = " or ".join(sorted(homes)) or "a node that receives it"
                 hint = f"name an event of an instance on {where}"
-                yield error(PROTECTION, message.origin, text, hint=hint)
+                code = PROTECTION if message.protection is not None else AUTHENTICATION
+                yield error(code, message.origin, text, hint=hint)
 
 
 BUS_RULES = (
     buses_are_watched,
     bus_events_can_come,
     protected_messages_differ,
-    protection_events_can_come,
+    authenticated_messages_differ,
+    refusal_events_can_come,
 )

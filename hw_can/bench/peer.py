@@ -25,6 +25,9 @@ from .protection import HEADER, Sender, Wrong, sender_of
 OUTSIDE = "Outside"
 """In a database, the sender of what no node of the model sends."""
 
+TRAILER = "SecOC_"
+"""How the signals of an authenticated message begin that stand behind its data."""
+
 Value = int | str
 Values = dict[str, Value]
 
@@ -105,6 +108,12 @@ class Codec:
         if sender is None and wrong is not None:
             reason = "its header is given" if name in self._senders else "it is not protected"
             raise BenchError(f"{name} cannot be sent with `wrong: {wrong}`: {reason}")
+        sealed = [s.name for s in message.signals if s.name.startswith(TRAILER)]
+        if not set(sealed) <= set(values):
+            raise BenchError(
+                f"{name} cannot be sent: the bench has no key for its MAC; "
+                f"give {' and '.join(sealed)} in `with`"
+            )
         blank = {} if sender is None else {s.name: 0 for s in message.signals if s.name in HEADER}
         try:
             return message, message.encode(blank | dict(values), strict=True), sender

@@ -22,6 +22,8 @@ from cantools.database.namedsignalvalue import NamedSignalValue
 
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.language.units import count_of
+from ravenchart.gen.model.authentication import Authentication
+from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import ByteOrder, Signal
 from ravenchart.gen.model.system import Bus, End, Message, System
 
@@ -45,6 +47,10 @@ PROFILE = DbcAttributeDefinition[str]("E2EProfile", "", "BO_", "STRING")
 DATA_IDS = DbcAttributeDefinition[str]("E2EDataIDs", "", "BO_", "STRING")
 """Of a protected message: its profile, and its data identifiers as hexadecimal numbers."""
 
+KEY = DbcAttributeDefinition[str]("SecOCKey", "", "BO_", "STRING")
+DATA_ID = DbcAttributeDefinition[str]("SecOCDataID", "", "BO_", "STRING")
+"""Of an authenticated message: the name of its key, and its data identifier in hexadecimal."""
+
 
 def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
     """The attributes that the messages need."""
@@ -52,23 +58,24 @@ def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
     if any(m.protection for m in messages):
         made = made or DbcSpecifics()
         made.attribute_definitions.update({one.name: one for one in (PROFILE, DATA_IDS)})
+    if any(m.authentication for m in messages):
+        made = made or DbcSpecifics()
+        made.attribute_definitions.update({one.name: one for one in (KEY, DATA_ID)})
     return made
 
 
-def _protected(message: Message) -> DbcSpecifics | None:
-    """The attributes of a protected message."""
-    own = message.protection
-    if own is None:
-        return None
-    ids = " ".join(f"{one:X}" for one in own.data_ids or (own.data_id,))
-    return DbcSpecifics(
-        attributes=OrderedDict(
-            {
-                PROFILE.name: DbcAttribute(own.name, PROFILE),
-                DATA_IDS.name: DbcAttribute(ids, DATA_IDS),
-            }
-        )
-    )
+def _checked(message: Message) -> DbcSpecifics | None:
+    """The attributes of a message that is protected or authenticated."""
+    match message.check:
+        case Protection() as own:
+            ids = " ".join(f"{one:X}" for one in own.data_ids or (own.data_id,))
+            values = ((PROFILE, str(own.name)), (DATA_IDS, ids))
+        case Authentication() as own:
+            values = ((KEY, own.key), (DATA_ID, f"{own.data_id:X}"))
+        case None:
+            return None
+    found = ((kind.name, DbcAttribute(value, kind)) for kind, value in values)
+    return DbcSpecifics(attributes=OrderedDict(found))
 
 
 def _flexible(bus: Bus) -> DbcSpecifics:
@@ -92,12 +99,13 @@ def _message(system: System, message: Message) -> DbcMessage:
         signals=[
             *(_signal(s, selector, receivers) for s in message.signals),
             *(_header(message, receivers)),
+            *(_trailer(message, receivers)),
         ],
         senders=[OUTSIDE if message.source is None else _node(system, message.source)],
         cycle_time=message.period // 1_000_000,
         is_extended_frame=message.extended,
         is_fd=message.fd,
-        dbc_specifics=_protected(message),
+        dbc_specifics=_checked(message),
         sort_signals=None,
     )
 
@@ -116,6 +124,24 @@ def _header(message: Message, receivers: list[str]) -> list[DbcSignal]:
             length=field.width,
             minimum=0,
             maximum=(1 << field.width) - 1,
+            receivers=receivers,
+        )
+        for field in fields
+    ]
+
+
+def _trailer(message: Message, receivers: list[str]) -> list[DbcSignal]:
+    """The fields of the authentication, the highest byte first."""
+    own = message.authentication
+    fields = () if own is None else own.fields(message.length)
+    return [
+        DbcSignal(
+            name=field.name,
+            start=8 * field.byte + 7,
+            length=8 * field.size,
+            byte_order="big_endian",
+            minimum=0,
+            maximum=(1 << 8 * field.size) - 1,
             receivers=receivers,
         )
         for field in fields

@@ -42,6 +42,8 @@ from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row,
 from ravenchart.gen.emit.tables.trace_calls import note, traced
 from ravenchart.gen.model.system import Bus, End, Message, System, Task, Work
 
+from . import authentication
+from .authentication import AUTHENTICATION
 from .codecs import codec_name, words_of
 from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
 from .protection import (
@@ -122,9 +124,10 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
         )
         items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in received]
-    kept = [m for m in (*sent, *received) if m.protection is not None]
+    kept = [m for m in (*sent, *received) if m.check is not None]
     for message in dict.fromkeys(kept):
         items += setting_of(message)
+    items += authentication.settings_of(dict.fromkeys(kept))
     if not all(m.fd for m in sent):
         items.append(UseType("Interfaces.Unsigned_64"))
     if any(m.fd for m in sent):
@@ -144,14 +147,16 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     if any(m.fd for m in sent):
         withs |= {FD}
     if kept:
-        withs |= {PROTECTION}
+        withs |= {PROTECTION, AUTHENTICATION}
     units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
     if sent:
         made = (_frame_body(system, bus, m) for m in sent)
         handed = (_send_body(system, m) for m in sent)
         pairs = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
-        bodies = (*states_of_senders(sent), *pairs)
+        states = (*states_of_senders(sent), *authentication.states_of_senders(sent))
+        bodies = (*states, *pairs)
         context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+        context |= authentication.context(root, sent)
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
         units.append(
@@ -261,22 +266,26 @@ def _send_body(system: System, message: Message) -> Subprogram:
         *note(system, "Fault", message.name, "message", _overflow_number()),
     ]
     full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    own = message.authentication
+    sending: tuple[Stmt, ...] = (
+        #  and not the frame of another message of the same type
+        Pragma("Assert", (is_framed(message, Ref("Frame")),)),
+        Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
+        *note(system, "Sent", message.name, "message"),
+        If(((full, tuple(lost)),)),
+    )
+    if own is not None:
+        sending = authentication.sealed(message, own, sending, _refusal(system, message))
     return Subprogram(
         f"Send_{ada_case(message.name)}",
         _send_spec(system, message).params,
         declarations=(
             UseType("Ravenchart.Can.Send_Status"),
-            Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.protection is None),
+            Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.check is None),
             Object("Status", "Ravenchart.Can.Send_Status"),
+            *(authentication.variables(taken=True) if own is not None else ()),
         ),
-        body=(
-            *protecting(message),
-            #  and not the frame of another message of the same type
-            Pragma("Assert", (is_framed(message, Ref("Frame")),)),
-            Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
-            *note(system, "Sent", message.name, "message"),
-            If(((full, tuple(lost)),)),
-        ),
+        body=(*protecting(message), *sending),
     )
 
 
@@ -328,12 +337,24 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         known = Pragma("Assert", (is_framed(message, Ref("Frame")),))
         deliver = (known, *note(system, "Arrived", message.name, "message"), *puts)
         taken: tuple[Stmt, ...] = (unpack, If(((good, deliver),)))
-        rows.append((matches, checked(message, taken, _refused(system, message))))
+        refused = _refused(system, message)
+        if message.authentication is None:
+            rows.append((matches, checked(message, taken, refused)))
+        else:
+            own = message.authentication
+            rows.append((matches, authentication.verified(message, own, taken, refused)))
     if any(m.protection for m in received):
         declarations.append(Object("Status", f"{PROTECTION}.Status"))
+    if any(m.authentication for m in received):
+        declarations += [
+            UseType("Interfaces.Unsigned_64"),
+            UseType(f"{AUTHENTICATION}.Status"),
+            *authentication.variables(taken=False),
+        ]
     body: tuple[Decl, ...] = (
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
         *(state for m in received for state in receiver_of(m)),
+        *(state for m in received for state in authentication.receiver_of(m)),
         Subprogram(
             "Wait",
             declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
@@ -350,10 +371,12 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}
-    kept = [m.protection for m in received if m.protection is not None]
+    kept = [m.check for m in received if m.check is not None]
     if kept:
-        context |= {PROTECTION, "Ravenchart.Health", f"{root}.Health_Counts"}
-    owners = {instance for protection in kept for instance, _ in protection.on_error}
+        context |= {PROTECTION, AUTHENTICATION, "Interfaces"}
+        context |= {"Ravenchart.Health", f"{root}.Health_Counts"}
+    context |= authentication.context(root, received)
+    owners = {instance for check in kept for instance, _ in check.on_error}
     context |= {f"{root}.{ada_case(i)}" for i in owners}
     context |= {f"{root}.{ada_case(system.instance(i).component.name)}" for i in owners}
     return [
@@ -364,14 +387,20 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
 
 def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
     """What comes of a frame that is not used: it is counted, and raises its events."""
-    if message.protection is None:
+    if message.check is None:
         return ()
+    events = message.check.on_error
+    raised = (offer(system, instance, event) for instance, event in events)
+    return (*_refusal(system, message), *raised)
+
+
+def _refusal(system: System, message: Message) -> tuple[Stmt, ...]:
+    """Count a frame that is not used or cannot be sent."""
     kind = Ref("Ravenchart.Health.Protection_Error")
     position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
     return (
         Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
         *note(system, "Fault", message.name, "message", position),
-        *(offer(system, instance, event) for instance, event in message.protection.on_error),
     )
 
 

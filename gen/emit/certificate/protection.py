@@ -28,10 +28,10 @@ RESIDUAL = (
 
 
 def watched(system: System) -> tuple[tuple[Message, End], ...]:
-    """The ports whose `max_age` finds that usable frames of a protected message no longer come."""
+    """The ports whose `max_age` finds that usable frames of a checked message no longer come."""
     found: list[tuple[Message, End]] = []
     for message in system.messages:
-        if message.protection is None:
+        if message.check is None:
             continue
         for end in message.targets:
             component = system.instance(end.instance).component
@@ -41,7 +41,7 @@ def watched(system: System) -> tuple[tuple[Message, End], ...]:
 
 
 def protection_claims(system: System, claims: Claims) -> list[Decl]:
-    """The residual error of each protected message, and when a port of one is stale."""
+    """The residual error of each protected message, and when a port of a checked one is stale."""
     items: list[Decl] = []
     for message in system.messages:
         if message.protection is not None:

@@ -1,0 +1,35 @@
+"""What the authentication of each message comes to, in numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.authentication import Authentication
+from ravenchart.gen.model.system import Message
+
+from .protection import Silence, silences
+from .timing import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Authenticated:
+    """An authenticated message."""
+
+    message: Message
+    authentication: Authentication
+    tolerated: Ns | None
+    """Time over which frames may be lost, and the next one is used; None: any time."""
+    silences: tuple[Silence, ...]
+
+
+def authenticated(analysis: Analysis) -> tuple[Authenticated, ...]:
+    """Each authenticated message."""
+    found: list[Authenticated] = []
+    for message in analysis.system.messages:
+        own = message.authentication
+        if own is not None:
+            lost = own.lost_at_most
+            tolerated = None if lost is None else Ns((lost + 1) * message.period)
+            found.append(Authenticated(message, own, tolerated, silences(analysis, message)))
+    return tuple(found)

@@ -1,0 +1,286 @@
+"""Authentication in the code of a bus, and the unit of the user that computes the MACs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from ravenchart.gen.emit.ada.naming import ada_case, root_package
+from ravenchart.gen.emit.ada.syntax import (
+    SPARK,
+    Aggregate,
+    Arg,
+    Aspect,
+    Assign,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    EnumType,
+    Expr,
+    If,
+    Object,
+    Package,
+    Param,
+    PlainType,
+    Pragma,
+    Prefix,
+    Ref,
+    Return,
+    Stmt,
+    Subprogram,
+    Unit,
+    arguments,
+    both,
+    call,
+    equal,
+    number,
+)
+from ravenchart.gen.model.authentication import Authentication
+from ravenchart.gen.model.system import Message, System
+
+AUTHENTICATION = "Ravenchart.Can.Authentication"
+
+UNIT = "Authentication"
+"""The user's unit, below the root package."""
+
+KEYS, MESSAGES = "Keys", "Messages"
+"""Its types. Literals have a prefix, so that no name of the model clashes."""
+
+ITEM = "Ravenchart.Can.Authentication.Mac_Input"
+ANSWER = "Ravenchart.Can.Authentication.Mac_Answer"
+FRESHNESS = "Ravenchart.Can.Authentication.Freshness"
+
+FRAME, VALUE, VERDICT = Ref("Frame"), Ref("Value"), Ref("Verdict")
+
+
+def authenticated(system: System) -> tuple[tuple[Message, Authentication], ...]:
+    """The authenticated messages."""
+    pairs = ((m, m.authentication) for m in system.messages)
+    return tuple((message, own) for message, own in pairs if own is not None)
+
+
+# --- The user's unit ---------------------------------------------------------------
+
+
+def _key(own: Authentication) -> str:
+    return f"Key_{ada_case(own.key)}"
+
+
+def _literal(message: Message) -> str:
+    return f"Message_{ada_case(message.name)}"
+
+
+def _mac_spec() -> Subprogram:
+    params = (Param("Key", "in", KEYS), Param("Item", "in", ITEM))
+    return Subprogram("Mac", params, ANSWER)
+
+
+def _last_spec() -> Subprogram:
+    return Subprogram("Last_Freshness", (Param("Message", "in", MESSAGES),), FRESHNESS)
+
+
+def emit_authentication(system: System, header: str) -> list[Unit]:
+    """The spec of the unit that the user writes; none where no message is authenticated."""
+    found = authenticated(system)
+    if not found:
+        return []
+    keys = {own.key.lower(): _key(own) for _, own in found}
+    pure = (Aspect("Global", Ref("null")),)
+    mac, last = _mac_spec(), _last_spec()
+    items: tuple[Decl, ...] = (
+        Comment("The keys of the model by name: no key stands in generated code."),
+        EnumType(KEYS, tuple(keys.values())),
+        EnumType(MESSAGES, tuple(_literal(message) for message, _ in found)),
+        Subprogram(mac.name, mac.params, mac.result, aspects=pure),
+        Comment(
+            "The MAC of the first Item.Length bytes under a key, or that there is none. Called by "
+            "all tasks that send or receive, within `mac_wcet`; the same arguments give the same "
+            "MAC."
+        ),
+        Subprogram(last.name, last.params, last.result, aspects=pure),
+        Comment(
+            "Called once for each message. Where this node sends it: no less than any freshness "
+            "value that was ever sent with its key and data identifier. Where it receives it: no "
+            "frame with this value or a smaller one is used."
+        ),
+    )
+    return [Unit(header, (AUTHENTICATION,), Package(_unit(system), items, (SPARK,)))]
+
+
+def first_authentication(system: System, header: str) -> list[Unit]:
+    """A first body: no MAC is known, so nothing is sent and nothing is used."""
+    if not authenticated(system):
+        return []
+    mac, last = _mac_spec(), _last_spec()
+    nothing = Aggregate((Arg("others", Ref("<>")),))
+    bodies = tuple(
+        Subprogram(
+            spec.name,
+            spec.params,
+            spec.result,
+            declarations=(Pragma("Unreferenced", tuple(Ref(p.name) for p in spec.params)),),
+            body=(Return(value),),
+        )
+        for spec, value in ((mac, nothing), (last, number(0)))
+    )
+    return [Unit(header, (), Package(_unit(system), bodies, (SPARK,), is_body=True))]
+
+
+def _unit(system: System) -> str:
+    return f"{root_package(system)}.{UNIT}"
+
+
+# --- The bus -----------------------------------------------------------------------
+
+
+def context(root: str, messages: Iterable[Message]) -> set[str]:
+    """The user's unit, where one of these messages is authenticated."""
+    return {f"{root}.{UNIT}"} if any(message.authentication for message in messages) else set()
+
+
+def _setting(message: Message) -> Ref:
+    return Ref(f"Authentication_Of_{ada_case(message.name)}")
+
+
+def _sender(message: Message) -> str:
+    return f"Sender_Of_{ada_case(message.name)}"
+
+
+def _receiver(message: Message) -> str:
+    return f"Checker_Of_{ada_case(message.name)}"
+
+
+def _before(message: Message) -> str:
+    return f"Checker_Before_{ada_case(message.name)}"
+
+
+SETTING = PlainType("Mac_Setting", f"{AUTHENTICATION}.Setting", subtype=True)
+STATE = PlainType("Mac_State", f"{AUTHENTICATION}.Freshness_State", subtype=True)
+"""Short names: those of messages may be long."""
+
+
+def settings_of(messages: Iterable[Message]) -> list[Decl]:
+    """The parameters of the authenticated messages."""
+    found = [m for m in messages if m.authentication is not None]
+    shared: list[Decl] = [SETTING, STATE] if found else []
+    return [*shared, *(item for message in found for item in _setting_of(message))]
+
+
+def _setting_of(message: Message) -> list[Decl]:
+    own = message.authentication
+    assert own is not None
+    columns = {
+        "Data_Id": own.data_id,
+        "Length": message.length,
+        "Freshness_Bytes": own.freshness_bits // 8,
+        "Mac_Bytes": own.mac_bits // 8,
+    }
+    made = Aggregate(tuple(Arg(name, number(value)) for name, value in columns.items()))
+    return [
+        Comment(f"[{message.name}] its authentication"),
+        Object(_setting(message).text, SETTING.name, made, constant=True),
+    ]
+
+
+def states_of_senders(sent: Sequence[Message]) -> tuple[Decl, ...]:
+    """The freshness values of the authenticated messages that are sent."""
+    return tuple(Object(_sender(m), STATE.name) for m in sent if m.authentication)
+
+
+def variables(*, taken: bool) -> tuple[Decl, ...]:
+    """What sending or receiving an authenticated message needs."""
+    last: Decl = Object("Verdict", f"{AUTHENTICATION}.Status")
+    if taken:
+        last = Object("Taken", "Boolean")
+    return (Object("Value", FRESHNESS), Object("Answer", ANSWER), last)
+
+
+def _begun(state: str, message: Message) -> Stmt:
+    """Begin with the user's freshness value, the first time."""
+    last = call(f"{UNIT}.Last_Freshness", Ref(f"{UNIT}.{_literal(message)}"))
+    begin = Do(f"{AUTHENTICATION}.Begin_After", arguments(Ref(state), last))
+    return If(((Prefix("not", Ref(f"{state}.Is_Started")), (begin,)),))
+
+
+def _mac(message: Message, own: Authentication) -> Expr:
+    """The MAC of the frame, by the user's unit."""
+    given = call(f"{AUTHENTICATION}.Input_Of", FRAME, _setting(message), VALUE)
+    return call(f"{UNIT}.Mac", Ref(f"{UNIT}.{_key(own)}"), given)
+
+
+def _is_authentic(message: Message, own: Authentication) -> Expr:
+    return call(
+        f"{AUTHENTICATION}.Is_Authentic", FRAME, _setting(message), VALUE, _mac(message, own)
+    )
+
+
+def sealed(
+    message: Message, own: Authentication, sent: tuple[Stmt, ...], refused: tuple[Stmt, ...]
+) -> tuple[Stmt, ...]:
+    """Send a frame with the next freshness value and its MAC; where there is none, do not."""
+    state, setting = _sender(message), _setting(message)
+    return (
+        _begun(state, message),
+        Do(f"{AUTHENTICATION}.Take", arguments(Ref(state), VALUE, Ref("Taken"))),
+        If(((Ref("Taken"), (Assign("Answer", _mac(message, own)),)),)),
+        If(
+            (
+                (
+                    Ref("Answer.Is_Known"),
+                    (
+                        Do(
+                            f"{AUTHENTICATION}.Seal",
+                            arguments(FRAME, setting, VALUE, Ref("Answer")),
+                        ),
+                        *sent,
+                    ),
+                ),
+            ),
+            refused,
+        ),
+    )
+
+
+def receiver_of(message: Message) -> tuple[Decl, ...]:
+    """What is known of an authenticated message; the second one is for its assertion."""
+    if message.authentication is None:
+        return ()
+    return (Object(_receiver(message), STATE.name), Object(_before(message), STATE.name))
+
+
+def verified(
+    message: Message, own: Authentication, taken: tuple[Stmt, ...], refused: tuple[Stmt, ...]
+) -> tuple[Stmt, ...]:
+    """Take a frame whose MAC is right; of another do what is to be done then."""
+    state, setting = Ref(_receiver(message)), _setting(message)
+    before = _before(message)
+    newer = Chain(">", (VALUE, Ref(f"{before}.Last")))
+    known = both(newer, _is_authentic(message, own))
+    return (
+        _begun(state.text, message),
+        Assign(before, state),
+        Do(f"{AUTHENTICATION}.Reconstruct", arguments(state, setting, FRAME, VALUE, VERDICT)),
+        If(
+            (
+                (
+                    equal(VERDICT, Ref(f"{AUTHENTICATION}.Unverified")),
+                    (
+                        Assign("Answer", _mac(message, own)),
+                        Do(
+                            f"{AUTHENTICATION}.Verify",
+                            arguments(state, setting, FRAME, VALUE, Ref("Answer"), VERDICT),
+                        ),
+                    ),
+                ),
+            )
+        ),
+        If(
+            (
+                (
+                    equal(VERDICT, Ref(f"{AUTHENTICATION}.Verified")),
+                    (Pragma("Assert", (known,)), *taken),
+                ),
+            ),
+            refused,
+        ),
+    )

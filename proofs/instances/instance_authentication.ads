@@ -1,0 +1,9 @@
+--  Authentication of messages: what is no generic is proved as it is.
+
+with Ravenchart.Can.Authentication;
+
+package Instance_Authentication
+  with SPARK_Mode
+is
+   package Authentication renames Ravenchart.Can.Authentication;
+end Instance_Authentication;
