@@ -27,6 +27,7 @@ PATIENCE = 300.0
 """Seconds of processor time for the rules of behaviour: here they shall come to their end."""
 
 EXAMPLES = (
+    "canopen_device",
     "cartesian_robot",
     "crossing",
     "pump",

@@ -50,7 +50,7 @@ CHILDREN = {
 }
 """Child packages that every system has, by lower-case name."""
 
-_HIDING = "ada system standard interfaces ravenchart boolean natural true false"
+_HIDING = "ada system standard interfaces ravenchart boolean natural positive string true false"
 HIDING = frozenset(_HIDING.split())
 """What the generated program names by itself everywhere: nothing in it can hide that."""
 

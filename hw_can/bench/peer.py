@@ -6,6 +6,7 @@ DBC's offsets do to the bits is the codec's business.
 
 from __future__ import annotations
 
+import copy
 import os
 import select
 import socket
@@ -30,6 +31,14 @@ TRAILER = "SecOC_"
 
 Value = int | str
 Values = dict[str, Value]
+
+
+Record = Callable[[can.Message], None]
+"""Gets a copy of each frame that goes over the bus, with its time."""
+
+
+def unrecorded(_frame: can.Message) -> None:
+    """Nothing is recorded."""
 
 
 class BenchError(Exception):
@@ -157,7 +166,13 @@ class Codec:
 class Peer:
     """One end of the bus, with counts of what went over it by message."""
 
-    def __init__(self, bus: can.BusABC, codec: Codec, link: socket.socket | None = None) -> None:
+    def __init__(
+        self,
+        bus: can.BusABC,
+        codec: Codec,
+        link: socket.socket | None = None,
+        record: Record = unrecorded,
+    ) -> None:
         """Speak on ``bus``, which is closed together with the peer; ``link`` is its socket."""
         self.codec = codec
         self.sent: Counter[str] = Counter()
@@ -166,11 +181,12 @@ class Peer:
         """Frames whose identifier the DBC does not know."""
         self._bus = bus
         self._link = link
+        self._record = record
         self._open = True
         self._closed = False
 
     @staticmethod
-    def connect(port: int, codec: Codec) -> Peer:
+    def connect(port: int, codec: Codec, record: Record = unrecorded) -> Peer:
         """A peer at the slcan server on this machine's TCP ``port``."""
         try:
             bus = can.Bus(
@@ -180,7 +196,7 @@ class Peer:
             raise BenchError(f"no slcan server on port {port}: {fault}") from None
         link = socket.socket(fileno=os.dup(bus.fileno()))
         link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return Peer(bus, codec, link)
+        return Peer(bus, codec, link, record)
 
     @staticmethod
     def join(channel: str, codec: Codec) -> Peer:
@@ -214,6 +230,9 @@ class Peer:
         except (can.CanError, OSError) as fault:
             raise BenchError(f"the controller left the bus: {fault}") from None
         self.sent[name] += 1
+        copied = copy.copy(frame)
+        copied.timestamp, copied.is_rx = time.time(), False
+        self._record(copied)
 
     def receive_until(self, deadline: float, take: Callable[[str, Values], None]) -> None:
         """Hand over what arrives until ``deadline``, a time of `time.monotonic`."""
@@ -252,6 +271,7 @@ class Peer:
                 if select.select([self._bus.fileno()], [], [], rest)[0]:
                     frame = self._bus.recv(timeout=0)
                     if frame is not None:
+                        self._record(copy.copy(frame))
                         return frame
             return None
         except (can.CanError, OSError) as fault:

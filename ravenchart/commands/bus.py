@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH, RESTART_LAST
-from ravenchart.running import bus_log, server
+from ravenchart.running import server
+
+from . import common
 
 FAULTS = (
     "disturbed_bit",
@@ -64,10 +65,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "end of frame, 8 .. 10 the intermission), the number of overload frames, the delay in ns, "
         "or the byte that MASK changes",
     )  # fmt: skip
-    sub.add_argument(
-        "--log", type=_log, metavar="FILE",
-        help=f"write all frames and error frames there, as its suffix says: {bus_log.suffixes()}",
-    )  # fmt: skip
+    common.add_log(sub)
     sub.add_argument(
         "--event", type=_words(4, EVENTS), action="append", default=[],
         metavar="NS:KIND[:NODE[:ID]]",
@@ -111,12 +109,6 @@ def _rate(first: int, last: int) -> Callable[[str], int]:
         return rate
 
     return read
-
-
-def _log(text: str) -> Path:
-    if Path(text).suffix not in bus_log.suffixes().split(", "):
-        raise argparse.ArgumentTypeError(f"{text!r} has no suffix of {bus_log.suffixes()}")
-    return Path(text)
 
 
 def _percent(text: str) -> float:

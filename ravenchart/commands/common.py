@@ -20,6 +20,23 @@ def add_model(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("model", type=Path, metavar="MODEL", help="the model's YAML file")
 
 
+def add_log(sub: argparse.ArgumentParser) -> None:
+    """Where what is on the bus is written."""
+    from ravenchart.running import bus_log
+
+    known = bus_log.suffixes()
+
+    def file(text: str) -> Path:
+        if Path(text).suffix not in known.split(", "):
+            raise argparse.ArgumentTypeError(f"{text!r} has no suffix of {known}")
+        return Path(text)
+
+    sub.add_argument(
+        "--log", type=file, metavar="FILE",
+        help=f"write all frames and error frames there, as its suffix says: {known}",
+    )  # fmt: skip
+
+
 def checked(
     options: argparse.Namespace, *, deadlines: bool = True, finish: bool = False
 ) -> Checked:

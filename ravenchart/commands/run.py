@@ -11,11 +11,13 @@ from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running import scenarios
 from ravenchart.running.result import RunResult
-from ravenchart.running.runs import RunRequest, controller, run_model
+from ravenchart.running.runs import RunRequest, controller, joins_a_server, run_model
 from ravenchart.terminal import progress
 
 from . import common, results
 from .answer import say
+
+ALONE = "without a scenario nobody is on the bus of one node"
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -29,6 +31,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--strict", action="store_true",
         help="exit status 3 where the run passed, but its timing could not be judged",
     )  # fmt: skip
+    common.add_log(sub)
     sub.add_argument("--report", type=Path, metavar="DIR", help="where the report goes")
 
 
@@ -37,10 +40,14 @@ def execute(options: argparse.Namespace) -> int:
     checked = common.checked(options)
     if options.scenario is not None:
         scenarios.checked(options.scenario, checked.system)
+    made_of = programs.programs_of(checked)
+    alone = options.scenario is None and not joins_a_server(checked.system, len(made_of))
+    if options.log is not None and alone:
+        raise Unusable(f"ravenchart: error: no log of {checked.system.name}: {ALONE}")
     common.tell_written(generation.write_program(checked), options.answer)
     controllers = []
     warn = partial(say, options.answer, severity="warning")
-    for made in programs.programs_of(checked):
+    for made in made_of:
         with progress(f"compile {made.node}"):
             controllers.append(controller(made, warn))
         print(f"built {controllers[-1].executable}")
@@ -52,6 +59,7 @@ def execute(options: argparse.Namespace) -> int:
         options.scenario,
         options.seconds,
         options.report or home / "report",
+        options.log,
     )
     try:
         outcome = run_model(request, refuse=options.answer.fail)

@@ -25,12 +25,13 @@ from ravenchart.analysis.system.observed import (
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.building.programs import Program, to_standard_error
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Cut, Hold, Mend, Scenario, ScenarioError, load_scenario
 
-from . import expected, judge, plots, result, server, summary
+from . import bus_log, expected, judge, plots, result, server, summary
 from .process import ControllerProcess, Ended, StartError, separate_cores
 from .result import RunResult
 
@@ -59,7 +60,7 @@ class RunRequest:
     """A built model to run: ``generated`` holds its DBC.
 
     Without a scenario the controllers run on their own for ``seconds``. The report
-    goes to ``folder``.
+    goes to ``folder``, and what is on the bus to ``log``.
     """
 
     analysis: Analysis
@@ -68,6 +69,12 @@ class RunRequest:
     scenario: Path | None
     seconds: float
     folder: Path
+    log: Path | None = None
+
+
+def joins_a_server(system: System, programs: int) -> bool:
+    """Do that many programs of the system run on a bus server?"""
+    return programs > 1 or any(one.by_priority for one in system.buses)
 
 
 def run_model(
@@ -83,8 +90,7 @@ def run_model(
     first = request.controllers[0]
     try:
         with terminal.progress("start the controller") as progress:
-            by_priority = any(one.by_priority for one in request.analysis.system.buses)
-            if len(request.controllers) > 1 or by_priority:
+            if joins_a_server(request.analysis.system, len(request.controllers)):
                 outcome = run_nodes(
                     request.controllers,
                     request.analysis,
@@ -93,6 +99,7 @@ def run_model(
                     request.seconds,
                     request.folder,
                     progress,
+                    log=request.log,
                 )
             elif request.scenario is None:
                 outcome = run_alone(
@@ -112,6 +119,7 @@ def run_model(
                     request.folder,
                     progress,
                     analysis=request.analysis,
+                    log=request.log,
                 )
     except (ScenarioError, BenchError, TraceError) as fault:
         out.print(str(fault), markup=False, soft_wrap=True)
@@ -136,6 +144,7 @@ def run_controller(
     progress: Progress = lambda text: None,
     *,
     analysis: Analysis | None = None,
+    log: Path | None = None,
 ) -> RunResult:
     """Run ``executable`` through ``scenario``, for at most ``duration`` seconds.
 
@@ -150,7 +159,7 @@ def run_controller(
     codec = Codec.from_file(dbc)
 
     def play(process: ControllerProcess, grace: float) -> ScenarioResult:
-        peer = Peer.connect(process.wait_for_port(), codec)
+        peer = Peer.connect(process.wait_for_port(), codec, record)
         return run_scenario(
             plan,
             peer,
@@ -159,7 +168,8 @@ def run_controller(
             ended=lambda: process.ask_to_end(grace),
         )
 
-    return _run(executable, trace_json, out_dir, plan.title, plan, play, analysis)
+    with bus_log.recorded(log, dbc.stem) as record:
+        return _run(executable, trace_json, out_dir, plan.title, plan, play, analysis)
 
 
 def run_alone(
@@ -357,6 +367,8 @@ def run_nodes(
     seconds: float,
     out_dir: Path,
     progress: Progress = lambda text: None,
+    *,
+    log: Path | None = None,
 ) -> RunResult:
     """Run the controllers of several nodes on one simulated bus, through ``scenario``.
 
@@ -376,7 +388,7 @@ def run_nodes(
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
     words = _bus_words(analysis, controllers, plan)
-    with separate_cores(), server.running("port=0", *words) as (_, channel):
+    with separate_cores(), server.running("port=0", *words, log=log) as (_, channel):
         running: list[ControllerProcess] = []
         try:
             for number, (one, trace) in enumerate(zip(controllers, traces, strict=True)):

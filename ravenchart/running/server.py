@@ -27,29 +27,46 @@ def built() -> Path:
 
 
 @contextmanager
-def running(*told: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A bus server for the time of a block, and its channel, ``host:port``."""
-    with children.running(
-        [built(), *told], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True
-    ) as server:
+def running(*told: str, log: Path | None = None) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A bus server for the time of a block, and its channel, ``host:port``.
+
+    With ``log`` all frames and error frames of the bus are written there; the file is complete
+    after the block. Raises OSError where that cannot be.
+    """
+    with (
+        _commanded(told, log) as (words, descriptors),
+        children.running(
+            words,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            text=True,
+            pass_fds=descriptors,
+        ) as server,
+    ):
         assert server.stdout is not None
         yield server, server.stdout.readline().split()[-1]
 
 
 def serve(told: Sequence[str], log: Path | None = None) -> int:
-    """Run the server until it is interrupted; its exit status.
+    """Run the server until it is interrupted; its exit status. ``log`` as of `running`."""
+    with (
+        _commanded(told, log) as (words, descriptors),
+        children.running(words, stdin=subprocess.DEVNULL, pass_fds=descriptors) as server,
+    ):
+        return server.wait()
 
-    With ``log`` all frames and error frames of the bus are written there. Raises OSError
-    where that cannot be.
-    """
+
+@contextmanager
+def _commanded(
+    told: Sequence[str], log: Path | None
+) -> Iterator[tuple[list[str | Path], tuple[int, ...]]]:
+    """The command, and the descriptors that it inherits."""
+    words: list[str | Path] = [built(), *told]
     if log is None:
-        with children.running([built(), *told], stdin=subprocess.DEVNULL) as server:
-            return server.wait()
-    program = built()
-    with bus_log.written(log) as descriptor:
-        words: list[str | Path] = [program, *told, f"log=/dev/fd/{descriptor}"]
-        with children.running(words, stdin=subprocess.DEVNULL, pass_fds=(descriptor,)) as server:
-            return server.wait()
+        yield words, ()
+    else:
+        with bus_log.written(log) as descriptor:
+            yield [*words, f"log=/dev/fd/{descriptor}"], (descriptor,)
 
 
 def uneven(rate: int) -> str:

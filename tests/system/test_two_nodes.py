@@ -8,11 +8,13 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import can
 import pytest
 from rich.console import Console
 
 from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
+from ravenchart.hw_can.bench.peer import Codec
 from ravenchart.paths import ROOT
 from ravenchart.running.runs import RunRequest, controller, run_model
 from tests.support.faults import shows
@@ -67,6 +69,22 @@ def test_both_nodes_do_what_the_scenario_expects(
 ) -> None:
     shown = played(checked, scenario, tmp_path)
     assert ("longest reactions of chains" in shown) == chains
+
+
+def test_a_run_of_several_nodes_writes_a_log_of_its_bus(
+    checked: checking.Checked, tmp_path: Path
+) -> None:
+    """Whether the run passes is not asked: the host may be slow."""
+    nodes = tuple(controller(made) for made in programs.programs_of(checked))
+    log, generated = tmp_path / "bus.blf", checked.folder / "generated"
+    request = RunRequest(checked.analysis, nodes, generated, None, 1.0, tmp_path, log)
+    assert run_model(request, Console(file=io.StringIO())) is not None
+    database = Codec.from_file(generated / "link.dbc")
+    with can.LogReader(log) as reader:
+        frames = list(reader)
+    named = {one[0] for one in map(database.decode, frames) if one is not None}
+    assert named == {"supervisor_order", "servo_report"}
+    assert [f.timestamp for f in frames] == sorted(f.timestamp for f in frames)
 
 
 def faults(to: Path, node: str) -> tuple[int, int]:

@@ -154,3 +154,10 @@ def test_the_codes_of_the_page_are_those_of_scenarios_and_events() -> None:
         *(f"RV-100{n}" for n in range(1, 10)),
         *(f"RV-130{n}" for n in range(1, 7)),
     }
+
+
+@pytest.mark.parametrize("name", ["canopen_device", "j1939_node"])
+def test_the_scenario_of_an_example_fits_its_model(name: str) -> None:
+    folder = ROOT / "examples" / name
+    system = checking.check(folder / "model.yaml").system
+    assert scenarios.checked(folder / "scenario.yaml", system).steps

@@ -102,6 +102,8 @@ class Coding:
         full = 1 << self.signal.width
         if high - low + 1 == full and within_width(raw, self.signal) is None:
             return TRUE
+        if low > 0 and high == full - 1 and within_width(raw, self.signal) is None:
+            return Chain(">=", (raw, number(low)))
         if low >= 0:
             return member(raw, f"{low:_} .. {high:_}") if low else Chain("<=", (raw, number(high)))
         if high < 0:
