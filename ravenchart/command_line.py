@@ -27,6 +27,10 @@ COMMANDS = {
         "allocate",
         "put the periodic rows of a model into processors anew, and check",
     ),
+    "check-certificate": (
+        "check_certificate",
+        "compare the generated program with the model, by independent code",
+    ),
     "run": ("run", "build and run the controller on this machine"),
     "draw": ("draw", "draw the charts and the component structure"),
     "loopback": (

@@ -338,6 +338,18 @@ class ExportResult(Result):
     """The database."""
 
 
+@dataclass(slots=True)
+class CertificateResult(Result):
+    """A generated program, compared with its model by independent code."""
+
+    agrees: bool
+    """Whether all comparisons agree; the diagnostics are those that do not."""
+    compared: dict[str, int]
+    """How many comparisons of each class were made."""
+    not_derived: dict[str, int]
+    """What was taken as it is, and how many numbers that are; 0: something else."""
+
+
 RESULTS: dict[str, type[Result]] = {
     "check": CheckResult,
     "generate": GenerateResult,
@@ -353,5 +365,6 @@ RESULTS: dict[str, type[Result]] = {
     "loopback": LoopbackResult,
     "import": ImportResult,
     "export-dbc": ExportResult,
+    "check-certificate": CertificateResult,
 }
 """Of each command with such an object; `analyse` and `simulate` have forms of their own."""

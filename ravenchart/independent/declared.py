@@ -1,0 +1,333 @@
+"""The declared form in the generated specs, against the charts of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from . import ada
+from .ada import Token, cases, enumeration, split, words
+from .chart import TOP, Chart, Line, Region, key_of
+from .findings import Report, UnusableError
+from .model import Model
+
+Words = tuple[str, ...]
+
+OTHERS = "and or not if then else abs min max clamp fresh stale neverreceived in event true false"
+KEYWORDS = frozenset(OTHERS.split())
+
+"""Words of the expression language that have other forms in Ada."""
+SIGNS = ("<", "<=", ">", ">=", "/=")
+
+
+def check_component(model: Model, component: str, folder: Path, report: Report) -> None:
+    """All charts of a component."""
+    form = model.section("components").map(component)
+    for name, region in form.map("regions").maps():
+        spec = _spec(folder, f"{model.name}-{component}")
+        chart = Chart(name, region, form.map("activities"))
+        _Comparison(chart, ada.read(spec), spec, report).states()
+        path = spec.with_name(f"{spec.stem}-{name.lower()}.ads")
+        _Comparison(chart, ada.read(path), path, report, ada.read(spec)).lines()
+
+
+def _spec(folder: Path, stem: str) -> Path:
+    """The spec of a component; its name may have got a kind where Ada needs it."""
+    for tail in ("", "_type"):
+        path = folder / f"{stem.lower()}{tail}.ads"
+        if path.is_file():
+            return path
+    raise UnusableError(f"{folder / stem.lower()}.ads is missing: generate the program again")
+
+
+class _Comparison:
+    """One chart and one file."""
+
+    def __init__(
+        self,
+        chart: Chart,
+        items: Sequence[Token],
+        path: Path,
+        report: Report,
+        states: Sequence[Token] | None = None,
+    ) -> None:
+        self.chart, self.items, self.path, self.report = chart, items, path, report
+        self.package = f"{chart.name}_States"
+        self.declared = _inside(items if states is None else states, self.package)
+        self.lanes = chart.lanes()
+        self.several = len(self.lanes) > 1
+        self.literals = {
+            token.low for lane in self.lanes for token in enumeration(self.declared, _type_of(lane))
+        } | {items[1].low for items in self._subtypes()}
+
+    def _subtypes(self) -> list[list[Token]]:
+        """`subtype NAME is TYPE range FIRST .. LAST` in the package of states."""
+        parts = split(self.declared, ";")
+        return [part for part in parts if len(part) == 8 and part[0].low == "subtype"]
+
+    def agree(self, kind: str, line: int, holds: bool, text: str) -> None:
+        """One comparison in this file."""
+        self.report.agree(kind, self.path, line, holds, text)
+
+    # --- states
+
+    def literal(self, vertex: str) -> str:
+        """A state as Ada names it."""
+        own = vertex.lower()
+        kind = f"{own}_state"
+        return kind if own not in self.literals and kind in self.literals else own
+
+    def states(self) -> None:
+        """The enumerations of leaves, and the composites as ranges of them."""
+        line = self.declared[0].line if self.declared else 1
+        for lane in self.lanes:
+            found = enumeration(self.declared, _type_of(lane))
+            at = found[0].line if found else line
+            said = [token.low for token in found]
+            wanted = [self.literal(name) for name in self.chart.leaves(lane)]
+            for name in wanted:
+                place = said.index(name) if name in said else 0
+                here = found[place].line if found else at
+                text = f"the state {name} is not among the leaves {_type_of(lane)}"
+                self.agree("states", here, name in said, text)
+            for token in found:
+                text = f"{token.text} is no state of the model in {self.chart.name}"
+                self.agree("states", token.line, token.low in wanted, text)
+            if sorted(said) == sorted(wanted):
+                text = f"the leaves are not in the order of the model: {', '.join(wanted)}"
+                self.agree("states", at, said == wanted, text)
+        ranges = {part[1].low: part for part in self._subtypes()}
+        composites = [v for v in self.chart.vertices.values() if v.is_range]
+        for vertex in composites:
+            leaves = [self.literal(name) for name in self.chart.leaves(vertex.inside[0])]
+            part = ranges.pop(self.literal(vertex.name), None)
+            said = [part[5].low, part[7].low] if part else []
+            text = f"{vertex.name} is {' .. '.join(said) or 'missing'}, by the model "
+            text += f"{leaves[0]} .. {leaves[-1]}"
+            at = part[0].line if part else line
+            self.agree("states", at, said == [leaves[0], leaves[-1]], text)
+        for part in ranges.values():
+            text = f"{part[1].text} is no composite state of the model"
+            self.agree("states", part[0].line, False, text)
+
+    # --- lines
+
+    def lines(self) -> None:
+        """The functions of the declared form, line by line."""
+        wanted = self.chart.lines()
+        tables = {name: cases(self.items, name) for name in ("Enabled", "In_Source", "Target")}
+        listed = enumeration(self.items, "Selection")
+        said = [token.low for token in listed]
+        names = [self._name(line, said) for line in wanted]
+        order = ["initial_entry", *names, "none"]
+        for token in listed:
+            text = f"{token.text} is no transition of {self.chart.name} in the model"
+            self.agree("transitions", token.line, token.low in order, text)
+        at = listed[0].line if listed else 1
+        for name, line in zip(names, wanted, strict=True):
+            where = f"{line.place.file}:{line.place.line}"
+            text = f"the transition {name} of the model ({where}) is missing"
+            self.agree("transitions", at, name in said, text)
+        if sorted(said) == sorted(order):
+            text = f"the order of precedence is not that of the model: {', '.join(order)}"
+            self.agree("transitions", at, said == order, text)
+        self._extra(tables, order)
+        start = tables["Target"].get("initial_entry")
+        begins = {name: self._line_of(table) for name, table in tables.items()}
+        self._target("initial_entry", start, self.chart.entered(TOP, []), begins["Target"])
+        for name, line in zip(names, wanted, strict=True):
+            source, enabled = tables["In_Source"].get(name), tables["Enabled"].get(name)
+            self._source(name, line, source, begins["In_Source"])
+            self._enabled(name, line, enabled, begins["Enabled"])
+            target = tables["Target"].get(name)
+            if line.restores:
+                self._restored(name, line, target, begins["Target"])
+            else:
+                self._target(name, target, line.target or {}, begins["Target"])
+        self._timers()
+
+    def _line_of(self, table: dict[str, tuple[Token, list[Token]]]) -> int:
+        """Where a function begins."""
+        first = next(iter(table.values()), None)
+        return 1 if first is None else first[0].line
+
+    def _name(self, line: Line, said: list[str]) -> str:
+        """A line as Ada names it."""
+        own = line.name.lower()
+        return f"{own}_transition" if own not in said and f"{own}_transition" in said else own
+
+    def _extra(
+        self, tables: dict[str, dict[str, tuple[Token, list[Token]]]], order: list[str]
+    ) -> None:
+        """Lines of functions that are no transitions; a chart without any has `None`."""
+        for name, table in tables.items():
+            for choice, (token, _) in table.items():
+                text = f"{name} has a line for {token.text}, which the model does not have"
+                empty = choice == "none" and len(order) == 2
+                holds = choice in order[:-1] or empty
+                self.agree("transitions", token.line, holds, text)
+
+    def active(self, holder: str, vertex: str) -> list[Words]:
+        """The conditions for a state to be active, or one inside it."""
+        at = self.chart.at(vertex)
+        lane = TOP if at.kind == "terminate" else self.chart.lane(vertex)
+        leaf = f"{holder}.{key_of(lane)}" if self.several else holder
+        sign = "in" if at.is_range else "="
+        own = words(f"{leaf} {sign} {self.package}.{self.literal(vertex)}")
+        return [*(self.active(holder, lane[0]) if lane[0] is not None else []), own]
+
+    def _sources(self, line: Line) -> set[Words]:
+        holder = "Place" if self.several else "Leaf"
+        return {one for source in line.sources for one in self.active(holder, source)}
+
+    def _source(
+        self, name: str, line: Line, found: tuple[Token, list[Token]] | None, at: int
+    ) -> None:
+        wanted = self._sources(line)
+        said = set(_conjuncts(found[1])) if found else set()
+        here = found[0].line if found else at
+        text = f"In_Source of {name} is {_shown(said)}, by the model {_shown(wanted)}"
+        self.agree("sources", here, said == wanted, text)
+
+    def _enabled(
+        self, name: str, line: Line, found: tuple[Token, list[Token]] | None, at: int
+    ) -> None:
+        parts = _conjuncts(found[1]) if found else []
+        here = found[0].line if found else at
+        sources = self._sources(line)
+        text = f"Enabled of {name} does not ask for its source: {_shown(sources)}"
+        self.agree("sources", here, sources <= set(parts), text)
+        now = [part for part in parts if part[:1] == ("now",)]
+        said = {word for part in now for word in part[2:] if word != "|"}
+        wanted = set(line.triggers)
+        text = f"Enabled of {name} has the trigger {', '.join(sorted(said)) or 'none'}, "
+        text += f"by the model {', '.join(sorted(wanted))}"
+        plain = len(now) == 1 and now[0][1] in ("=", "in")
+        self.agree("triggers", here, plain and said == wanted, text)
+        rest = [part for part in parts if part not in sources and part not in now]
+        text = f"Enabled of {name} has {'a' if rest else 'no'} guard, and the model "
+        text += "none" if rest else "one"
+        self.agree("triggers", here, bool(rest) == line.conditional, text)
+        self._guards(name, line, [word for part in rest for word in part], here)
+
+    def _guards(self, name: str, line: Line, said: list[str], at: int) -> None:
+        """Names, numbers and signs of guards; how they are put together is not compared."""
+        parts = [part for word in said for part in word.replace("_", "").split(".")]
+        guards = " and ".join(line.guards)
+        wanted = [w.replace("_", "") for word in words(guards) for w in word.split(".")]
+        names = [w for w in wanted if w[0].isalpha() and w not in KEYWORDS]
+        lost = [w for w in names if not any(part.startswith(w) for part in parts)]
+        counted = {w for w in wanted if w[0].isdigit() or w in SIGNS}
+        lost += [w for w in sorted(counted) if wanted.count(w) > parts.count(w)]
+        if guards:
+            text = f"the guard `{guards}` of {name}: Enabled does not have {', '.join(lost)}"
+            self.agree("guards", at, not lost, text)
+
+    def _target(
+        self,
+        name: str,
+        found: tuple[Token, list[Token]] | None,
+        leaves: dict[str, str],
+        at: int,
+    ) -> None:
+        wanted = {
+            lane if self.several else "top": words(f"{self.package}.{self.literal(leaf)}")
+            for lane, leaf in leaves.items()
+        }
+        said = self._configuration(found[1]) if found else None
+        if said is not None and self.chart.ends(leaves.get("top")):
+            said = {"top": said.get("top", ())}  # where all has ended, other leaves mean nothing
+            wanted = {"top": wanted["top"]}
+        here = found[0].line if found else at
+        shown = "missing" if found is None else " ".join(t.text for t in found[1])
+        by_model = ", ".join(f"{key} => {''.join(value)}" for key, value in wanted.items())
+        text = f"Target of {name} is {shown}, by the model {by_model or 'as before'}"
+        self.agree("targets", here, said == wanted, text)
+
+    def _configuration(self, items: list[Token]) -> dict[str, Words]:
+        """The leaves of an aggregate, or the one leaf; none where all is kept."""
+        low = [token.low for token in items]
+        if low == ["place" if self.several else "leaf"]:
+            return {}
+        if not self.several or low[0] != "(":
+            return {"top": tuple(low)}
+        inner = items[1:-1]
+        is_delta = low[1:4] == ["place", "with", "delta"]
+        found = {
+            part[0].low: tuple(token.low for token in part[2:])
+            for part in split(inner[3:] if is_delta else inner, ",")
+        }
+        whole = set(found) == {key_of(lane) for lane in self.lanes}
+        return found if is_delta != whole else {"incomplete": ()}
+
+    def _restored(
+        self, name: str, line: Line, found: tuple[Token, list[Token]] | None, at: int
+    ) -> None:
+        """The lane of a history is given by the function that restores it."""
+        here = found[0].line if found else at
+        said = self._configuration(found[1]) if found else {}
+        lane = key_of(self.chart.lane(line.sources[0])) if self.several else "top"
+        wanted = words(f"{line.restores} (Past)")
+        text = f"Target of {name} is not {line.restores} (Past) in {lane}"
+        self.agree("targets", here, said.get(lane) == wanted, text)
+
+    def _timers(self) -> None:
+        """Each time-out: its executions, and the state that it belongs to."""
+        table = cases(self.items, "Timer_After")
+        wanted = self.chart.timers()
+        for number, (one, counts) in enumerate(wanted, 1):
+            found = table.pop(str(number), None)
+            if found is None:
+                self.agree("timers", 1, False, f"the time-out of {one.name} is missing")
+                continue
+            parts = list(split(found[1][2:-1], ","))
+            started = tuple(t.low for t in parts[-1])
+            text = f"the time-out of {one.name} is not {counts[0]} executions"
+            listed = ", ".join(map(str, counts))
+            clean = tuple(word.replace("_", "") if word[0].isdigit() else word for word in started)
+            wanted_words = words(f"Ravenchart.Timers.Started ({listed})")
+            self.agree("timers", found[0].line, clean == wanted_words, text)
+            after = set(_conjuncts(parts[3])) if len(parts) == 5 else set()
+            states = set(self.active("After", one.source))
+            text = f"the time-out of {one.name} does not start with {one.source}"
+            self.agree("timers", found[0].line, after == states, text)
+        for choice, (token, _) in table.items():
+            if choice != "others":
+                self.agree("timers", token.line, False, "a time-out that the model does not have")
+
+
+def _type_of(lane: Region) -> str:
+    """The type of a lane's leaves."""
+    return "Leaf" if lane[0] is None else f"{lane[1]}_Leaf"
+
+
+def _inside(items: Sequence[Token], package: str) -> list[Token]:
+    """What stands in a nested package."""
+    for place in range(len(items)):
+        head = [t.low for t in items[place : place + 3]]
+        if head == ["package", package.lower(), "is"]:
+            end = next(
+                n
+                for n in range(place, len(items))
+                if items[n].low == "end" and items[n + 1].low == package.lower()
+            )
+            return list(items[place + 3 : end])
+    return []
+
+
+def _conjuncts(items: list[Token]) -> list[Words]:
+    """The operands of a conjunction."""
+    flat = [token for token in items if token.low != "then"]
+    depth = 0
+    parts: list[list[str]] = [[]]
+    for token in flat:
+        depth += {"(": 1, ")": -1}.get(token.text, 0)
+        if depth == 0 and token.low == "and":
+            parts.append([])
+        else:
+            parts[-1].append(token.low)
+    return [tuple(part) for part in parts]
+
+
+def _shown(conditions: set[Words]) -> str:
+    return " and ".join(sorted(" ".join(one) for one in conditions)) or "missing"

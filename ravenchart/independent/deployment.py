@@ -1,0 +1,475 @@
+"""What runs where, worked out from the model: tasks with their rows, messages with their frames.
+
+Follows docs/semantics.md ("Processors") and docs/architecture.md ("Several nodes"). Priorities
+that the model leaves open are deadline-monotonic (Leung and Whitehead 1982), and so are
+identifiers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .equipment import Equipment
+from .findings import UnusableError
+from .frames import Frame, length_of
+from .model import Mapping, Model, Text
+
+
+def ada(element: str) -> str:
+    """An element as a part of a name in the certificate."""
+    words = element.replace(".", "_").split("_")
+    return "_".join(word[:1].upper() + word[1:] for word in words)
+
+
+@dataclass(slots=True)
+class Row:
+    """One entry of a table."""
+
+    element: str
+    period: int
+    wcet: int
+    deadline: int
+    divisor: int = 1
+
+
+@dataclass(slots=True)
+class Task:
+    """One task: a processor, the driver's work on a message, a supervisor or a probe."""
+
+    element: str
+    node: str
+    period: int
+    deadline: int
+    wcet: int
+    priority: int = 0
+    offset: int = 0
+    rows: list[Row] = field(default_factory=list)
+    bus: str | None = None
+    """The bus that releases a processor."""
+    after: str | None = None
+    """What releases the driver: a task or a message."""
+
+    @property
+    def sporadic(self) -> bool:
+        """It waits for a frame, and for its least separation as well."""
+        return self.bus is not None
+
+    @property
+    def works(self) -> dict[int, int]:
+        """The WCET of the rows of every n-th release, by n; 1 is there always."""
+        found = {1: 0} if self.rows else {1: self.wcet}
+        for row in self.rows:
+            found[row.divisor] = found.get(row.divisor, 0) + row.wcet
+        return found
+
+
+@dataclass(slots=True)
+class Message:
+    """A frame on a bus."""
+
+    name: str
+    bus: str
+    period: int
+    deadline: int
+    length: int
+    frame: Frame
+    source: str | None = None
+    """`instance.port`."""
+    node: str | None = None
+    """The node that sends it."""
+    targets: list[str] = field(default_factory=list)
+    identifier: int | None = None
+    extended: bool = False
+
+    @property
+    def element(self) -> str:
+        """`bus.message`."""
+        return f"{self.bus}.{self.name}"
+
+    @property
+    def sending(self) -> str:
+        """The driver's work on sending it."""
+        return f"{self.bus}.driver_tx.{self.name}"
+
+    @property
+    def leading(self) -> int:
+        """The first 11 bits of the identifier."""
+        own = self.identifier or 0
+        return own >> 18 if self.extended else own
+
+    @property
+    def rank(self) -> tuple[int, bool, int]:
+        """The lesser wins the arbitration."""
+        return self.leading, self.extended, self.identifier or 0
+
+
+class Deployment:
+    """The tasks and messages of a model."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.nodes = model.section("nodes")
+        self.buses = model.section("buses")
+        self.instances = model.section("instances")
+        for name, node in self.nodes.maps():
+            if node.number("cores", 1) > 1:
+                raise UnusableError(f"{name} has several cores, and no program is generated")
+        self.equipment = Equipment(model, self.component_of)
+        self._refuse_calls()
+        self.messages = self._messages()
+        self._identify()
+        self.processors = self._processors()
+        self._prioritise()
+        self.tasks = [*self.processors, *self._drivers(), *self._watchers()]
+
+    # --- look-ups
+
+    def component_of(self, instance: str) -> Mapping:
+        """The component of an instance."""
+        name = self.instance(instance)
+        kind = self.instances.map(name).text("component") or ""
+        components = self.model.section("components")
+        own = components.name(kind)
+        if own is None:
+            raise UnusableError(f"{instance} has no component that is declared")
+        return components.map(own)
+
+    def instance(self, text: str) -> str:
+        """An instance as it is declared."""
+        name = self.instances.name(text)
+        if name is None:
+            raise UnusableError(f"`{text}` is no instance")
+        return name
+
+    def home(self, end: str) -> str:
+        """The node of `instance.port`."""
+        if len(self.nodes) == 1:
+            return next(iter(self.nodes))
+        text = self.instances.map(self.instance(end.partition(".")[0])).text("node") or ""
+        return self.nodes.name(text) or text
+
+    def receivers(self, message: Message) -> list[str]:
+        """The nodes that receive a message, in the order of its targets."""
+        return list(dict.fromkeys(self.home(end) for end in message.targets))
+
+    def heard(self, bus: str, node: str) -> list[tuple[Message, str]]:
+        """What a node receives from a bus, with the driver's work on it."""
+        found = []
+        for message in self.messages:
+            homes = self.receivers(message)
+            if message.bus == bus and node in homes:
+                tail = f"{message.name}.{node}" if len(homes) > 1 else message.name
+                found.append((message, f"{bus}.driver_rx.{tail}"))
+        return found
+
+    def joins(self, bus: str, node: str) -> bool:
+        """Whether a node sends or receives on a bus."""
+        sends = any(m.bus == bus and m.node == node for m in self.messages)
+        return sends or bool(self.heard(bus, node))
+
+    def _refuse_calls(self) -> None:
+        """Commands between nodes become messages, which are not derived again."""
+        for binding in self.model.bindings:
+            own = binding.text("from") or ""
+            for other in self.equipment.members(binding.text("to") or ""):
+                if "." in other and self.home(own) != self.home(other):
+                    where = f"{binding.file}:{binding.line}"
+                    raise UnusableError(f"{where}: commands between nodes are not derived again")
+
+    # --- messages
+
+    def _messages(self) -> list[Message]:
+        found = [self._message(name, form) for name, form in self.model.section("messages").maps()]
+        by_source = {m.source.lower(): m for m in found if m.source}
+        for wire in self.model.connections:
+            source, target = wire.text("from") or "", wire.text("to") or ""
+            source, target = self._end(source), self._end(target)
+            if self.home(source) == self.home(target):
+                continue
+            if source.lower() not in by_source:
+                by_source[source.lower()] = self._carried(source)
+                found.append(by_source[source.lower()])
+            by_source[source.lower()].targets.append(target)
+        return found
+
+    def _end(self, text: str) -> str:
+        """`instance.port` as both are declared."""
+        owner, _, port = text.partition(".")
+        ports = self.component_of(owner).map("ports")
+        return f"{self.instance(owner)}.{ports.name(port) or port}"
+
+    def _message(self, name: str, form: Mapping) -> Message:
+        bus = self.buses.name(form.text("bus") or "") or ""
+        source = form.text("from")
+        source = None if source is None else self._end(source)
+        targets = [self._end(text) for text in form.texts("to")]
+        period = form.time("period") if source is None else self._send_period(source)
+        fd = form.text("format") == "fd"
+        ends = [*([] if source is None else [source]), *targets]
+        kind = self._type_of(ends[0]) if ends else None
+        given = form.text("bytes")
+        length = length_of(self.model, kind, form, fd) if given is None else form.number("bytes", 0)
+        extended = form.true("extended")
+        identifier = None if form.text("id") is None else form.number("id", 0)
+        return Message(
+            name=name,
+            bus=bus,
+            period=period,
+            deadline=form.time("deadline", period),
+            length=length,
+            frame=Frame(length, extended, fd),
+            source=source,
+            node=None if source is None else self.home(source),
+            targets=targets,
+            identifier=identifier,
+            extended=extended,
+        )
+
+    def _carried(self, source: str) -> Message:
+        """The message that a connection between nodes becomes."""
+        bus = next(iter(self.buses), "")
+        kind, period = self._type_of(source), self._send_period(source)
+        form = Mapping()
+        length = length_of(self.model, kind, form, fd=False)
+        fd = "data_rate" in self.buses.map(bus) and length > 8
+        length = length_of(self.model, kind, form, fd=True) if fd else length
+        name = source.replace(".", "_")
+        frame = Frame(length, False, fd)
+        return Message(name, bus, period, period, length, frame, source, self.home(source))
+
+    def _type_of(self, end: str) -> str:
+        owner, _, port = end.partition(".")
+        form = self.component_of(owner).map("ports").map(port)
+        return form.text("in") or form.text("out") or ""
+
+    def rows_that_send(self, end: str) -> list[tuple[str, Mapping]]:
+        """The regions and activities that send on an output port."""
+        owner, _, port = end.partition(".")
+        component = self.component_of(owner)
+        rows = [*component.map("regions").maps(), *component.map("activities").maps()]
+        return [
+            (f"{self.instance(owner)}.{name}", row)
+            for name, row in rows
+            if _sends(row, port.lower())
+            or port.lower() in (text.lower() for text in row.texts("sends"))
+        ]
+
+    def _send_period(self, end: str) -> int:
+        periods = [row.time("period") for _, row in self.rows_that_send(end)]
+        if not periods:
+            raise UnusableError(f"nothing sends on {end}")
+        return min(periods)
+
+    def _identify(self) -> None:
+        """Identifiers that the model leaves open: counted from 1 by deadline, on each bus."""
+        taken = {(m.bus, m.leading) for m in self.messages if m.identifier is not None}
+        free = [m for m in self.messages if m.identifier is None]
+        for message in sorted(free, key=lambda m: m.deadline):
+            if self.buses.map(message.bus).text("identifiers") == "audsley":
+                continue
+            place = 1
+            while (message.bus, place) in taken:
+                place += 1
+            taken.add((message.bus, place))
+            message.identifier = place << 18 if message.extended else place
+
+    # --- tasks
+
+    def _processors(self) -> list[Task]:
+        found: list[Task] = []
+        for name, form in self.model.section("processors").maps():
+            homes = self._homes(form)
+            for node in homes:
+                task = self._processor(name, form, node, len(homes) > 1 and not form.text("node"))
+                if task.rows:
+                    found.append(task)
+        return found
+
+    def _homes(self, form: Mapping) -> list[str]:
+        """The nodes of a processor."""
+        given = form.text("node")
+        if given is not None:
+            return [self.nodes.name(given) or given]
+        owners = [text.partition(".")[0] for text in form.texts("activities")]
+        own = next((o for o in owners if self.instances.name(o)), None)
+        if own is not None:
+            return [self.home(own)]
+        bus = form.text("released_by")
+        if bus is not None:
+            bus = self.buses.name(bus) or bus
+            return [node for node in self.nodes if self.heard(bus, node)]
+        bus = self.buses.name(owners[0]) or owners[0]
+        return [node for node in self.nodes if self.joins(bus, node)]
+
+    def _processor(self, name: str, form: Mapping, node: str, several: bool) -> Task:
+        rows: list[Row] = []
+        ends: list[int] = []
+        periods: list[int] = []
+        for text in form.texts("activities"):
+            row = self._row(text, form, node)
+            owner, _, name_of = row.element.partition(".")
+            mine = self.instances.name(owner) is not None
+            watch = name_of == "watch" and not mine
+            ends.append(row.deadline)
+            if mine and name_of.lower() in self.equipment.idle(owner):
+                continue
+            row.wcet += self.equipment.time(owner, name_of) if mine else 0
+            if mine or watch:
+                periods.append(row.period)
+            joining = [n for n in self.nodes if self.joins(owner, n)]
+            if watch and not joining:
+                continue
+            if watch and len(joining) > 1:
+                row.element += f"_{node}"
+            if several and name_of == "receive" and not mine:
+                row.element += f"_{node}"
+            rows.append(row)
+        if not rows:
+            return Task(name, node, 1, 1, 0)
+        period = form.time("period") if form.text("period") else min(periods)
+        shortest = min(ends, default=period)
+        deadline = min(form.time("deadline", shortest), shortest, period)
+        for row in rows:
+            row.divisor = row.period // period
+        bus = form.text("released_by")
+        return Task(
+            element=f"{name}_{node}" if several else name,
+            node=node,
+            period=period,
+            deadline=deadline,
+            wcet=sum(row.wcet for row in rows),
+            priority=form.number("priority", 0),
+            offset=form.time("offset", 0),
+            rows=rows,
+            bus=None if bus is None else self.buses.name(bus),
+        )
+
+    def _row(self, text: str, form: Mapping, node: str) -> Row:
+        owner, _, name = text.partition(".")
+        if not self.instances.name(owner):
+            bus = self.buses.name(owner) or owner
+            own = self.buses.map(bus)
+            if name.lower() == "receive":
+                period = form.time("period")
+                deadline = form.time("deadline", period)
+                return Row(f"{bus}.receive", period, own.time("driver_wcet"), deadline)
+            watch = own.map("watch")
+            return _timed(f"{bus}.watch", watch)
+        component = self.component_of(owner)
+        if name.lower() == "ports":
+            return _timed(f"{self.instance(owner)}.ports", component.map("port_region"))
+        for section in ("regions", "activities"):
+            rows = component.map(section)
+            own_name = rows.name(name)
+            if own_name is not None:
+                return _timed(f"{self.instance(owner)}.{own_name}", rows.map(own_name))
+        raise UnusableError(f"{form.file}:{form.line}: `{text}` is no row")
+
+    def _prioritise(self) -> None:
+        """Open priorities: the shorter the deadline, the more urgent; of two, the earlier."""
+        taken = {task.priority for task in self.processors if task.priority}
+        order = list(enumerate(self.processors))
+        level = 0
+        for _, task in sorted(order, key=lambda one: (-one[1].deadline, -one[0])):
+            if task.priority:
+                continue
+            level += 1
+            while level in taken:
+                level += 1
+            task.priority = level
+
+    @property
+    def top(self) -> int:
+        """The highest priority of a processor; the drivers have one more."""
+        return max((task.priority for task in self.processors), default=0)
+
+    def _drivers(self) -> list[Task]:
+        found: list[Task] = []
+        for message in self.messages:
+            ways: list[tuple[str, str, str]] = []
+            if message.source is not None and message.node is not None:
+                rows = {row for row, _ in self.rows_that_send(message.source)}
+                sender = next(
+                    (t.element for t in self.processors for r in t.rows if r.element in rows), None
+                )
+                if sender is None:
+                    raise UnusableError(f"no table has the row that sends {message.element}")
+                ways.append((message.sending, message.node, sender))
+            for node in self.receivers(message):
+                driver = next(d for m, d in self.heard(message.bus, node) if m is message)
+                ways.append((driver, node, message.element))
+            wcet = self.buses.map(message.bus).time("driver_wcet")
+            found += [
+                Task(element, node, message.period, message.deadline, wcet, self.top + 1, after=by)
+                for element, node, by in ways
+            ]
+        return found
+
+    def _watchers(self) -> list[Task]:
+        """The supervisor and the probe of each node."""
+        above = self.top + (2 if any(m.source or m.targets for m in self.messages) else 1)
+        found: list[Task] = []
+        for name, node in self.nodes.maps():
+            level = above
+            for key, kind in (("supervision", "supervisor"), ("probe", "probe")):
+                form = node.map(key)
+                if form:
+                    row = _timed("", form)
+                    timing = row.period, row.deadline, row.wcet
+                    found.append(Task(f"{name}.{kind}", name, *timing, level))
+                    level += 1
+        return found
+
+    def blocking(self, task: Task) -> int:
+        """The longest section of a lower task, or of the main program, that may delay a task.
+
+        One is always as long as a critical section: the main program and all processors and
+        supervisors share the count of faults, drivers a queue with whom they serve, and a probe
+        its result with the main program. Devices may be longer.
+        """
+        least = self.nodes.map(task.node).time("critical_section")
+        longest = least
+        for device in self.equipment.devices:
+            users = [
+                one.priority
+                for one in self.processors
+                if any(device in self.equipment.called(*row.element.split(".")) for row in one.rows)
+                and one.node == task.node
+            ]
+            if not users:
+                continue
+            if self.equipment.begun(device):
+                users.append(0)  # the main program; in its place a supervisor makes it safe
+                if "make_safe" in self.equipment.kind(device):
+                    element = f"{task.node}.supervisor"
+                    users += [one.priority for one in self.tasks if one.element == element]
+            if len(users) > 1 and min(users) < task.priority <= max(users):
+                longest = max(longest, self.equipment.section(device, least))
+        return longest
+
+    def programs(self, generated: Path) -> list[tuple[Path, list[str]]]:
+        """The folder of each program, with the instances in it."""
+        if len(self.nodes) == 1:
+            return [(generated, list(self.instances))]
+        busy = dict.fromkeys(task.node for task in self.processors)
+        return [
+            (generated / node, [i for i in self.instances if self.home(i) == node])
+            for node in self.nodes
+            if node in busy
+        ]
+
+
+def _timed(element: str, form: Mapping) -> Row:
+    period = form.time("period")
+    return Row(element, period, form.time("wcet"), form.time("deadline", period))
+
+
+def _sends(value: object, port: str) -> bool:
+    """Whether an action below sends on a port."""
+    if isinstance(value, Mapping):
+        sent = value.get("send")
+        if isinstance(sent, Text) and sent.lower() == port:
+            return True
+        return any(_sends(one, port) for one in value.values())
+    return isinstance(value, list) and any(_sends(one, port) for one in value)
