@@ -25,7 +25,7 @@ COMMANDS = {
     "analyse": ("analyse", "response times against deadlines, of a model or of CSV or JSON"),
     "allocate": (
         "allocate",
-        "put the periodic rows of a model into processors anew, and check",
+        "allocate the periodic rows of a model to processors anew, and check",
     ),
     "check-certificate": (
         "check_certificate",

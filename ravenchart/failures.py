@@ -60,7 +60,7 @@ MEANINGS: Mapping[str, str] = {
     "3": "`run --strict`: the run passed, but its timing could not be judged",
     "70": "internal error: a fault of Ravenchart, shown with its traceback",
     "129, 130, 143": "stopped by SIGHUP, SIGINT (Ctrl-C) or SIGTERM",
-    "141": "nobody reads the output any more, as in `| head`",
+    "141": "the reader of the output has ended, as in `| head`",
 }
 """Every exit status with its meaning, for `--help`, the manual page and docs/command-line.md."""
 

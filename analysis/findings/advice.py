@@ -204,10 +204,10 @@ def figures(found: Advice | None) -> list[dict[str, object]]:
 def _not_enough(rest: Sequence[Change]) -> Iterator[str]:
     """What cannot do it alone, in a sentence for each kind."""
     words = {
-        Kind.ORDER: "No other order alone was found to do on",
-        Kind.COST: "However short, not alone",
-        Kind.PERIOD: f"Not alone with {changes.LONGEST} times its period",
-        Kind.PLACE: "Not alone, with the most urgent identifier",
+        Kind.ORDER: "Reordering alone was not found to be enough on",
+        Kind.COST: "Shortening one of these alone is not enough",
+        Kind.PERIOD: f"A longer period (up to {changes.LONGEST} times) of one alone is not enough",
+        Kind.PLACE: "Even the most urgent identifier for one of these alone is not enough",
     }
     for kind, text in words.items():
         names = [change.name or "the core" for change in rest if change.kind is kind]

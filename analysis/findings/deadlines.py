@@ -74,8 +74,8 @@ def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
     return error(
         MISSED,
         task.origin,
-        f"{task.element} needs over {duration(task.deadline)}: "
-        f"it may take {microseconds(response.bound)} us",
+        f"{task.element} misses its deadline: "
+        f"R = {microseconds(response.bound)} us > D = {duration(task.deadline)}",
         notes=_task_notes(response, analysis),
         hint="lengthen its period, or move an activity to a slower processor",
     )
@@ -85,7 +85,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
     """Its own time, the largest interferers and the blocker, each where it is declared."""
     tasks, blocking = analysis.tasks, response.blocking
     task = tasks[response.task.name]
-    notes = [(task.origin, f"it runs for up to {duration(task.budget)} itself")]
+    notes = [(task.origin, f"it runs for up to {duration(task.budget)} by itself")]
     if response.jitter:
         notes.append((task.origin, f"its release is late by up to {duration(response.jitter)}"))
     if response.bound is None:
@@ -154,8 +154,8 @@ def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
     return error(
         MISSED,
         message.origin,
-        f"message {message.name} needs over {duration(message.limit)}: "
-        f"it may take {microseconds(response.bound)} us",
+        f"message {message.name} misses its deadline: "
+        f"R = {microseconds(response.bound)} us > D = {duration(message.limit)}",
         notes=notes,
         hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
     )
@@ -194,8 +194,8 @@ def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
             yield error(
                 NO_BOUND,
                 processor.origin,
-                f"{processor.name} takes a frame every {duration(processor.period)}, and "
-                f"{percent(load)} of that are needed: {lost}",
+                f"{processor.name} takes a frame every {duration(processor.period)}, but "
+                f"its messages need {percent(load)} of that rate: {lost}",
                 notes=[
                     (m.origin, f"{m.name} comes every {duration(m.period)}") for m in taken_here
                 ],
@@ -206,10 +206,10 @@ def _of_receptions(analysis: Analysis) -> Iterator[Diagnostic]:
 def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
     """Queues that may lose what comes: a warning where no depth is known to hold all of it."""
     for one in analysis.short_queues:
-        lost = f"and `{one.key}` is {one.given}: what it does not hold is lost"
+        lost = f"but `{one.key}` is {one.given}: the queue can overflow"
         hint = "let it be read more often, or filled less often"
         if one.needed is not None:
-            message = f"up to {one.needed} {one.what} at once, {lost}"
+            message = f"up to {one.needed} {one.what}, {lost}"
             hint = f"give it `{one.key}: {one.needed}`, or {hint}"
             yield error(QUEUE_SHORT, one.origin, message, hint=hint)
         elif analysis.found.met:
@@ -227,7 +227,7 @@ def _of_chains(analysis: Analysis) -> Iterator[Diagnostic]:
             if event is not None:
                 name, source, region = event
                 hint = (
-                    f"the event {name} leads from {source} to {region}, and chains follow values: "
+                    f"the event {name} leads from {source} to {region}; a chain follows values: "
                     f"let {region} read what {source} holds or writes"
                 )
             yield error(NO_WAY, chain.origin, message, hint=hint)
@@ -248,7 +248,7 @@ def _late_chain(
     return error(
         CHAIN_LATE,
         chain.origin,
-        f"the {what} of {chain.name} {takes}, and its limit is {duration(limit)}",
+        f"the {what} of {chain.name} {takes}; its limit is {duration(limit)}",
         notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
         or [
             (chain.origin, f"{name} takes up to {microseconds(time)} us of it")
@@ -292,4 +292,4 @@ def _unbounded(found: Latency, what: str) -> Iterator[str]:
             many = f"{step.puts} values at once" if step.puts > 1 else "them faster"
             yield f"{step.name} takes one value in a job, and {before.step.name} may put {many} in"
         elif step.hop is Hop.SAMPLED and hop.wait is None:
-            yield f"{step.name} samples, and nothing says how often it runs"
+            yield f"{step.name} has no period, so the age of its output is unbounded"

@@ -95,14 +95,13 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
     room = "has no bound"
     if slack is not None:
         room = f"misses by {microseconds(-slack)} us" if slack < 0 else ""
-        room = room or f"comes first, with {microseconds(slack)} us left"
+        room = room or f"is the tightest, with a slack of {microseconds(slack)} us"
     parts = sorted(window_parts(analysis, name), key=lambda part: -part.time)
     if not parts:
         return (f"{name} {room}",)
     total = sum(part.time for part in parts)
-    return (
-        f"{name} {room}: {percent(Fraction(parts[0].time, total))} of its time is {parts[0].name}",
-    )
+    share = percent(Fraction(parts[0].time, total))
+    return (f"{name} {room}: {share} of its response is {parts[0].name}",)
 
 
 def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:
@@ -114,7 +113,7 @@ def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:
     jitter = response.late if isinstance(response, Response) else response.frame.jitter
     if jitter:
         releaser = analysis.network.released_by.get(name)
-        source = f"what leads to it, {releaser}" if releaser else "its late release"
+        source = f"the jitter inherited from {releaser}" if releaser else "its late release"
         parts.insert(0, Part("jitter", source, "", jitter))
     return tuple(part for part in parts if part.time)
 
@@ -129,7 +128,7 @@ def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
 
 def _task_parts(response: Response) -> list[Part]:
     jobs = response.worst_job + 1
-    parts = [Part("own", "its own work", f"{jobs} jobs" if jobs > 1 else "", response.own)]
+    parts = [Part("own", "its own execution", f"{jobs} jobs" if jobs > 1 else "", response.own)]
     if response.blocking is not None:
         inside = f"{response.blocking.user} in {response.blocking.resource}"
         parts.append(Part("blocking", inside, "", response.blocked))

@@ -68,7 +68,7 @@ def states_are_entered(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
         for transition in leading:
             if transition.name in fired:
                 continue
-            note = f"{transition.name} leads to it, and never fires"
+            note = f"{transition.name} leads to it, but is never taken"
             reason = None
             if _is_heard(reach, thread, transition, fired) and not transition.otherwise:
                 reason = _reason(reach, thread, transition, shut_out)
@@ -97,7 +97,7 @@ def transitions_fire(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
         ):
             continue
         reason = _reason(reach, thread, transition, shut_out)
-        message = f"{transition.name} never fires: {reason.text}"
+        message = f"{transition.name} is never taken: {reason.text}"
         joint = "; " if reason.removal.startswith("where") else ", or "
         hint = f"{reason.change}{joint}{reason.removal}"
         yield error("RV-1102", transition.origin, message, notes=reason.notes, hint=hint)
@@ -119,7 +119,7 @@ def _reason(
     transition: Transition,
     shut_out: Mapping[tuple[str, str], object],
 ) -> Reason:
-    """Why a transition never fires, although its source is active and its event comes."""
+    """Why a transition is never taken, although its source is active and its event comes."""
     tree = thread.tree
     earlier = [first for first, second in shut_out if second == transition.name]
     if earlier:
@@ -179,8 +179,8 @@ def guards_exclude_each_other(reach: Reach, thread: Thread) -> Iterator[Diagnost
             continue
         with_data = f" with {data}" if data else ""
         message = (
-            f"{first} and {second} can both fire in {one.source}{with_data}: "
-            f"{first} does, as the first in the model"
+            f"{first} and {second} can both be taken in {one.source}{with_data}: "
+            f"{first} is, as the first in the model"
         )
         notes = [
             (one.origin, f"{first} is here"),

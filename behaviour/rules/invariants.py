@@ -227,13 +227,13 @@ def _origin(thread: Thread, edge: Edge) -> Origin:
 
 
 def _violated(reach: Reach, invariant: Invariant, found: Violation) -> Diagnostic:
-    message = f"{invariant.name} of {reach.component.name} happens: {found.trace}"
+    message = f"the invariant {invariant.name} of {reach.component.name} is violated: {found.trace}"
     notes = [(invariant.origin, f"then {found.data}")] if found.data else []
     return error("RV-1108", invariant.origin, message, notes=notes)
 
 
 def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnostic:
-    message = f"{invariant.name} cannot be excluded: {broken.step} may lead to it"
+    message = f"the invariant {invariant.name} is not proved: {broken.step} may violate it"
     data = f"when {broken.data}" if broken.data else "whatever the data"
     notes = [(broken.origin, f"it does so {data}")]
     searched = (

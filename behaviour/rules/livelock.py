@@ -95,7 +95,7 @@ def _finding(reach: Reach, thread: Thread, cycle: Sequence[Edge], data: str) -> 
     starves = all(edge.outcome.occurrence.kind == "completion" for edge in cycle)
     circle = trace(thread.tree, cycle)
     told = f" with {data}" if data else ""
-    message = f"{region.name} goes round without event or time-out{told}: {circle}"
+    message = f"livelock in {region.name}{told}: a cycle without event or time-out: {circle}"
     notes = [(first.origin, reached(reach, thread, cycle[0]))]
     if starves:
         notes.append((region.origin, "completions come before events, so no event is ever taken"))

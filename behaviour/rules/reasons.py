@@ -23,7 +23,7 @@ Possible = Callable[[Edge, Term], bool]
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """What keeps a transition from firing, as ``NAME never fires: TEXT``."""
+    """What keeps a transition from firing, as ``NAME is never taken: TEXT``."""
 
     text: str
     change: str
@@ -52,14 +52,14 @@ def beaten(tree: Tree, transition: Transition, found: Sequence[Beaten]) -> Reaso
         text = f"while {source} is active, {' or '.join(states)} defers the event"
         return Reason(text, f"remove `defer` from {_and(states)}", f"remove {name}", notes)
     winners = [_transition(tree, one) for one in dict.fromkeys(b.by for b in found)]
-    notes = tuple((w.origin, f"{w.name} of an earlier region fires") for w in winners)
+    notes = tuple((w.origin, f"{w.name} of an earlier region is taken") for w in winners)
     change = "change the order of the regions or the guards"
     if all(b.why is Defeat.END for b in found):
-        text = f"{' or '.join(w.name for w in winners)} fires before it and ends the region"
+        text = f"{' or '.join(w.name for w in winners)} is taken before it and ends the region"
         return Reason(text, change, f"remove {name}", notes)
     removal = (
         f"where {name} is removed, the next transition of {source}, or of a state around it, "
-        "takes its place and may fire"
+        "takes its place and may be taken"
     )
     return Reason(f"it conflicts with {_and(w.name for w in winners)}", change, removal, notes)
 
@@ -115,7 +115,7 @@ def _inside(
         said.append(f"{' or '.join(deferring)} defers the event")
         changes.append(f"remove `defer` from {_and(deferring)}")
     if firing:
-        said.append(f"{' or '.join(firing)} fires first")
+        said.append(f"{' or '.join(firing)} is taken first")
         changes.append(f"change the guard of {_and(firing)}")
     notes = [(tree.states[state].origin, f"{state} is inside {source}") for state in deferring]
     for name in firing:

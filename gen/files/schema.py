@@ -46,7 +46,7 @@ class RangeType(Element):
         "First and last value, both included, within -2^62 .. 2^62 - 1.", min_length=2, max_length=2
     )
     unit: str | None = optional(
-        "What the values count, for example `um/s`. It has an Ada type of its own, here "
+        "The unit of the values, for example `um/s`. It has an Ada type of its own, here "
         "`Unit_Um_Per_S`; where only case or signs differ, the later unit is numbered.",
         max_length=20,
     )
@@ -182,7 +182,7 @@ class InputForm(Element):
         "Values that wait at most, 1 to 1024; `queued` needs it.", ge=1, le=1024
     )
     overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
-        "What a full queue loses; only for `queued`; `reject_newest` unless given."
+        "The value that a full queue loses; only for `queued`; `reject_newest` unless given."
     )
     max_age: PositiveSpan | None = optional("A value older than this is stale.")
     on_arrival: Reference | None = optional("Event raised when a value arrives.")
@@ -320,7 +320,7 @@ class RegionForm(Element):
         le=1024,
     )
     overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
-        "What a full queue loses; `reject_newest` unless given."
+        "The event that a full queue loses; `reject_newest` unless given."
     )
     on_overflow: Reference | None = optional("Event raised when the queue lost one.")
     steps: int = PydanticField(
@@ -366,7 +366,7 @@ class EventForm(Element):
 
     type: Reference | None = optional("The type of the value it carries; none unless given.")
     overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
-        "What a full queue loses when it comes; what the region says unless given."
+        "The event that a full queue loses when this one arrives; that of the region unless given."
     )
     external: bool | None = optional(
         "`true`: the event may also come from outside at any time, though the component raises it."
@@ -518,7 +518,7 @@ class ProcessorForm(Element):
 
 
 class ShutdownForm(Element):
-    """What a request to stop does."""
+    """The reaction to a request to stop."""
 
     raises: list[OwnedReference] = key("`instance.Event`s raised.")
     grace: Span = key("Time between these events and the end.")
@@ -551,7 +551,7 @@ class ModelFile(Element):
     commands: dict[Name, CommandForm] | None = optional("The command dictionary.")
     device_types: dict[Name, DeviceTypeForm] | None = optional("Types of devices.")
     devices: dict[Name, DeviceForm] | None = optional("Devices, and composites of them.")
-    bindings: list[BindingForm] | None = optional("What provides the required interfaces.")
+    bindings: list[BindingForm] | None = optional("Providers of the required interfaces.")
     components: dict[Name, ComponentForm] | None = optional("Components.")
     nodes: dict[Name, NodeForm] | None = optional("Nodes: one or several, and a program for each.")
     buses: dict[Name, BusForm] | None = optional("The CAN bus: at most one.")
@@ -562,4 +562,4 @@ class ModelFile(Element):
     messages: dict[Name, MessageForm] | None = optional("Messages on buses.")
     processors: dict[Name, ProcessorForm] | None = optional("Processors: the tasks.")
     chains: dict[Name, ChainForm] | None = optional("Limits of latencies from end to end.")
-    shutdown: ShutdownForm | None = optional("What a request to stop does; nothing unless given.")
+    shutdown: ShutdownForm | None = optional("Reaction to a request to stop; none unless given.")

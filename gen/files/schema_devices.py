@@ -25,7 +25,7 @@ class CommandForm(Element):
 
     kind: Literal["void", "write", "read", "qualified_read", "event"] = key(
         "`void` takes nothing, `write` an argument, `read` gives a reply, `qualified_read` gives "
-        "one to an argument; an `event` comes from whoever provides it, with an argument."
+        "one to an argument; an `event` comes from the provider, with an argument."
     )
     argument: Reference | None = optional("The type of its argument.")
     reply: Reference | None = optional("The type of its reply; `void` and `write` may have one.")
@@ -40,8 +40,8 @@ class NeedForm(Element):
     """A command of a required interface; with `else` it is optional."""
 
     else_: str | None = optional(
-        "What stands in where nothing provides it: `activity.item`, the data item that this "
-        "activity keeps up for it, or `nothing`.",
+        "Fallback where nothing provides it: `activity.item`, the data item that "
+        "this activity updates for it, or `nothing`.",
         alias="else",
     )
     on_reply: Reference | None = optional("Event raised with the reply of a call.")
@@ -58,7 +58,7 @@ class RequiredForm(Element):
     commands: Annotated[
         Annotated[list[Reference], Tag("<list>")]
         | Annotated[dict[Reference, NeedForm], Tag("<map>")],
-        shaped("a list of commands, or a mapping from commands to what is said of them"),
+        shaped("a list of commands, or a mapping from commands to their properties"),
     ] = key("The commands; in the component they are called by their names.")
     events: dict[Reference, Reference] | None = optional(
         "Events of the provider, each with the input port that it comes to."
@@ -97,7 +97,7 @@ class RegisterForm(Element):
     offset: int = key("Bytes from the address of the device; a multiple of its own size.", ge=0)
     width: Literal[8, 16, 32] = PydanticField(default=32, description="Its bits: 8, 16 or 32.")
     access: Literal["read", "write", "read_write"] = key(
-        "What the driver may do with it: `read`, `write` or `read_write`."
+        "Access of the driver: `read`, `write` or `read_write`."
     )
 
 
@@ -111,8 +111,8 @@ class DeviceTypeForm(Element):
         "a first version is written.",
     )
     provides: dict[Reference, PositiveSpan] = key(
-        "Its commands, each with its worst-case execution time; an event of it is asked for "
-        "by whoever hears it.",
+        "Its commands, each with its worst-case execution time; a component that "
+        "requires an event polls the device for it.",
         min_length=1,
     )
     parameters: dict[Name, DeviceParameterForm] | None = optional(

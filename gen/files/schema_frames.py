@@ -41,11 +41,11 @@ RECOVERY = Discriminator(
 
 
 class ErrorsForm(Element):
-    """What errors of a bus are reckoned with."""
+    """The errors of a bus that the analysis assumes."""
 
     period: PositiveSpan = key("Least time from one error to the next.")
     burst: int = PydanticField(
-        default=1, ge=1, le=1000, description="Errors that may come at once besides, 1 to 1000."
+        default=1, ge=1, le=1000, description="Further errors that may occur at once, 1 to 1000."
     )
 
 
@@ -136,11 +136,11 @@ class BusForm(Element):
     identifiers: Literal["deadline", "audsley"] = PydanticField(
         default="deadline",
         description="How messages without `id` get one. `deadline`: the shortest deadline first. "
-        "`audsley`: an order in which the bus meets all deadlines: where no message has an `id` "
-        "of its own, whenever there is one; of several that fit a place the longest deadline "
-        "goes there. Messages count as they are "
-        "declared, sent without delay: what delays the sender is found later and may depend on "
-        "the identifiers. The analysis of the whole then checks what was chosen.",
+        "`audsley`: an order in which the bus meets all deadlines. Where no message "
+        "has an `id` of its own, it is found whenever there is one. Of several messages that "
+        "fit a place, the one with the longest deadline takes it. The search takes each "
+        "message as sent without delay, since the delay of a sender may depend on the "
+        "identifiers. The analysis of the whole system then checks the chosen order.",
     )
 
 
@@ -154,7 +154,7 @@ class SignalForm(Element):
         ge=0,
         le=511,
     )
-    width: int | None = optional("Bits, 1 to 64; as few as do unless given.", ge=1, le=64)
+    width: int | None = optional("Bits, 1 to 64; the fewest possible unless given.", ge=1, le=64)
     order: Literal["intel", "motorola"] = PydanticField(
         default="intel",
         description="`intel`: the least significant byte goes first; `motorola`: the most "
@@ -286,26 +286,28 @@ class MessageForm(Element):
         "outside, the others have the period of what sends them."
     )
     sporadic: Flag | None = optional(
-        "Of a message from outside: `yes` (unless given) where `period` is only the least time "
-        "between two frames, so that the next one may never come; `no` where its sender queues "
-        "one every `period` exactly. Reactions to a sporadic message are bounded, the age of "
-        "what is made of it is not."
+        "For a message from outside. `yes` (unless given): `period` is only the "
+        "least time between two frames, and the next one may never come. `no`: its sender "
+        "queues one every `period` exactly. Reactions to a sporadic message are bounded; the "
+        "age of values made from it is not."
     )
     bytes: int | None = PydanticField(
         default=None,
         ge=0,
         le=64,
-        description="Data bytes, 0 to 8, of CAN FD up to 64; as few as do unless given. A frame "
+        description="Data bytes, 0 to 8, of CAN FD up to 64; the fewest possible "
+        "unless given. A frame "
         "with neither `from` nor `to` needs it: other nodes exchange it, and here it only takes "
         "its time on the bus.",
     )
     signals: dict[Name, SignalForm] | None = optional(
-        "Where fields stand in the frame and how they are coded, by name (`value` where the type "
-        "has no fields); for others, and unless given, as few bits as do, one behind the other.",
+        "Position and coding of the fields in the frame, by name (`value` where the "
+        "type has no fields). All other fields take the fewest bits possible, one behind the "
+        "other.",
         min_length=1,
     )
     multiplexor: Reference | None = optional(
-        "The field that tells which of the signals with `when` are in the frame."
+        "The field whose value selects the signals with `when` that are in the frame."
     )
     protection: ProtectionForm | None = optional(
         "End-to-end protection: counter and CRC in the frame; none unless given."

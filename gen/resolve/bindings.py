@@ -129,7 +129,7 @@ def event_wires(
                 for need in instance.component.needs
             )
             if form is None and not needed:
-                message = f"nothing provides {wanted}, which hears {heard.name}"
+                message = f"nothing provides {wanted}, which requires the event {heard.name}"
                 notes = [(heard.origin, f"{heard.name} is required here")]
                 hint = f"add `- {{from: {wanted}, to: ...}}` under `bindings:`"
                 findings.error("RV-1203", instance.origin, message, notes=notes, hint=hint)
@@ -146,7 +146,7 @@ def event_wires(
                     findings.error("RV-1204", form.at("to"), message, notes=notes, hint=near)
                 elif len(told) > 1:
                     first, second = (name_of(teller) for teller, _ in told[:2])
-                    message = f"{first} and {second} of {name_of(provider)} both tell {heard.name}"
+                    message = f"{first} and {second} of {name_of(provider)} both raise {heard.name}"
                     hint = f"say which is meant: `choose: {{{heard.name}: {first}}}`"
                     findings.error("RV-1212", form.at("to"), message, notes=notes, hint=hint)
                 else:
@@ -171,7 +171,7 @@ def _check_type(
     taken = instance.component.port(poll.port).type
     if event.argument is not None and event.argument != taken:
         message = (
-            f"{poll.device.name} tells {event.name} as {event.argument.name}, and "
+            f"{event.name} of {poll.device.name} carries {event.argument.name}, but "
             f"{instance.name}.{poll.port} takes {taken.name}"
         )
         findings.error("RV-1205", form.at("to"), message, hint="change `axes` of one of them")
@@ -207,14 +207,14 @@ def _bound(
         else:
             message = f"{own} does not provide {need.name}, which {instance.name} requires"
             near = meant(need.name, offered(provider))
-            hint = near or "provide it, or say what stands in: `else: ...`"
+            hint = near or "provide it, or name a fallback: `else: ...`"
             report("RV-1204", message, hint)
     if found is not None and need.command.per_axis:
         axes = provided_axes(found, need.name)
         if axes != need.axes and (need.interface, name_of(found)) not in uneven:
             uneven.add((need.interface, name_of(found)))
             message = (
-                f"{name_of(found)} has {_axes(axes)}, and {instance.name}.{need.interface} works "
+                f"{name_of(found)} has {_axes(axes)}, but {instance.name}.{need.interface} works "
                 f"on {need.axes}"
             )
             report("RV-1205", message, "join devices by `array`, or change `axes`")

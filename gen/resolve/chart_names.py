@@ -105,7 +105,7 @@ class States(Scope[str]):
         vertex = self.vertices.look_up(name, origin, findings)
         if vertex is None or vertex.is_state:
             return None if vertex is None else vertex.name
-        message = f"`{vertex.name}` is a {vertex.what}, and here a state is wanted"
+        message = f"expected a state, found the {vertex.what} `{vertex.name}`"
         hint = REGION_HINT if vertex.pseudo is None else "nothing rests there: name a state"
         findings.error("RV-0514", origin, message, hint=hint)
         return None
@@ -115,7 +115,7 @@ class States(Scope[str]):
         found = self.vertices.look_up(name, origin, findings)
         if found is None or found.is_state or found.pseudo is not None:
             return found
-        message = f"`{found.name}` is a {found.what}, and here a state or pseudostate is wanted"
+        message = f"expected a state or pseudostate, found the {found.what} `{found.name}`"
         findings.error("RV-0514", origin, message, hint=REGION_HINT)
         return None
 

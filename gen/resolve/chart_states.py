@@ -142,7 +142,9 @@ def initial_of(
     if target is not None:
         inside = {inner.name.lower() for inner in walk(form.states)}
         if target.lower() not in inside:
-            message = f"`{target}` is not inside {around}, whose initial state it shall be"
+            message = (
+                f"`{target}` cannot be the initial state of {around}: it is not inside {around}"
+            )
             setting.findings.error("RV-0501", origin, message)
             target = None
     return Initial(target or _first(form.states), effect)
@@ -155,6 +157,6 @@ def _defers(row: Row, setting: Setting) -> tuple[str, ...]:
         origin = row.form.item_at("defer", index)
         event = setting.targets.events.look_up(text, origin, setting.findings)
         if event is not None and not names.declare(event.name, origin, event):
-            message = f"`{event.name}` stands twice in `defer`"
+            message = f"`{event.name}` appears twice in `defer`"
             setting.findings.error("RV-0303", origin, message, hint="remove one of them")
     return tuple(event.name for event in names.sound())

@@ -122,13 +122,13 @@ def _check_local(
     """A local transition leads from a composite state to something inside it."""
     message = hint = None
     if not source.is_composite:
-        message = f"{name} is local, and {source.name} has no states inside"
+        message = f"{name} is local, but {source.name} has no states inside"
         hint = "leave `local` out: it leaves its source"
     elif target.name in setting.states.around(source.name):
         message = f"{name} is local: a local transition to an enclosing state is refused"
         hint = f"leave `local` out: {target.name} is then left and entered again"
     elif source.name not in setting.states.around(target.name):
-        message = f"{name} is local, and {target.name} is not inside {source.name}"
+        message = f"{name} is local, but {target.name} is not inside {source.name}"
         hint = "leave `local` out, or name a target inside"
         if target is source:
             message = f"{name} is local and leads from {source.name} to itself"

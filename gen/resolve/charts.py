@@ -103,7 +103,7 @@ def _check_room(name: str, form: RegionForm, states: list[State], findings: Find
         waits.append((deferring.origin, deferring.defers[0]))
     if form.queue is None and not form.lost("queue"):
         if waits:
-            message = f"{name} waits for events and has no queue for them"
+            message = f"{name} waits for events, but has no `queue`"
             notes = [(waits[0][0], f"`{waits[0][1]}` is one of them")]
             hint = "give the depth of the queue, such as `queue: 8`"
             findings.error("RV-0504", form.origin, message, notes=notes, hint=hint)
@@ -112,7 +112,7 @@ def _check_room(name: str, form: RegionForm, states: list[State], findings: Find
                 message = f"`{key}` has no meaning without `queue`"
                 findings.error("RV-0210", form.at_key(key), message)
     if deferring is not None and form.deferred is None and not form.lost("deferred"):
-        message = f"{name} defers events and has no room for them"
+        message = f"{name} defers events, but has no `deferred`"
         notes = [(deferring.origin, f"{deferring.name} defers `{deferring.defers[0]}`")]
         hint = "give the number of deferred events that may wait, such as `deferred: 4`"
         findings.error("RV-0526", form.origin, message, notes=notes, hint=hint)

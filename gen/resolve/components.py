@@ -244,7 +244,7 @@ def _state_ref(text: str, origin: Origin, words: Vocabulary, findings: Findings)
     found = None if states is None else states.look_up(state, origin, findings)
     vertex = states.vertices.find(state) if isinstance(states, States) else None
     if found is not None and vertex is not None and vertex.is_final:
-        message = f"`{found}` is a final state, and here a plain state is wanted"
+        message = f"expected a plain state, found the final state `{found}`"
         findings.error("RV-0514", origin, message, hint="nothing is done in a final state")
     return None if found is None else StateRef(words.regions.items[region.lower()][0], found)
 
@@ -281,13 +281,13 @@ def _lists(
                 need = called(name, origin, words, targets, findings)
                 declared = None if need is None else need.name
             elif key in ("reads", "sends") and targets.calls.find(name) is not None:
-                message = f"`{name}` is a command that is called, and here it stands in `{key}`"
+                message = f"`{name}` is a command to call, so it cannot stand in `{key}`"
                 findings.error("RV-1206", origin, message, hint="name it under `calls`")
                 declared = None
             else:
                 declared = _declared(name, kind, scopes, origin, findings)
             if declared is not None and not names.declare(declared, origin, declared):
-                message = f"`{declared}` stands twice in `{key}`"
+                message = f"`{declared}` appears twice in `{key}`"
                 findings.error("RV-0303", origin, message, hint="remove one of them")
         lists[key] = names.sound()
     return lists
@@ -341,9 +341,9 @@ def _agreed(
         if not form.has(key):
             continue
         for item in (one for one in done if one not in lists[key]):
-            message = f"the flow of {name} does {verb} `{item}`, and `{key}` does not name it"
+            message = f"the flow of {name} can {verb} `{item}`, but `{key}` does not name it"
             findings.error("RV-0414", form.at(key), message, hint=f"add it, or leave `{key}` out")
         for item in (one for one in lists[key] if one not in done):
-            message = f"the flow of {name} does not {verb} `{item}`, and `{key}` names it"
+            message = f"the flow of {name} does not {verb} `{item}`, but `{key}` names it"
             findings.error("RV-0414", form.at(key), message, hint=f"remove it from `{key}`")
     return agreed

@@ -247,7 +247,7 @@ def event_at(text: str, origin: Origin, site: Site) -> tuple[str, str] | None:
     named.open = parts.members.events.open
     event = named.look_up(pair[1], origin, site.findings)
     if event is not None and event.type is not None:
-        message = f"the event {event.name} carries {event.type.name}, and here is no value for it"
+        message = f"the event {event.name} needs a value of type {event.type.name}"
         site.findings.error("RV-0528", origin, message, hint="name an event without a type")
     return None if event is None else (instance.name, event.name)
 

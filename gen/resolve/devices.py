@@ -157,7 +157,8 @@ class Devices:
         lost = any(form.lost(key) for key in ("type", "array", "facade"))
         if len(given) != 1 and not lost:
             told = " and ".join(f"`{key}`" for key in given) or "none"
-            message = f"the device {name} has one of `type`, `array` and `facade`, and here {told}"
+            wanted = "must have exactly one of `type`, `array`, `facade`"
+            message = f"the device {name} {wanted}; found {told}"
             at = form.at_key(given[1]) if given else form.origin
             hint = "a piece of equipment has a type; composites are devices of their own"
             self.findings.error("RV-1210", at, message, hint=hint)
@@ -200,7 +201,7 @@ class Devices:
             if member is None:
                 continue
             if any(name_of(one) == name_of(member) for one in found):
-                message = f"{name_of(member)} stands twice in `{key}`"
+                message = f"{name_of(member)} appears twice in `{key}`"
                 self.findings.error("RV-1210", at, message, hint="remove one of them")
             found.append(member)
         whole = len(found) == len(texts) and not form.list_damaged(key)
@@ -216,17 +217,17 @@ class Devices:
                 first = places.setdefault(leaf.name, name_of(member))
                 if first != name_of(member):
                     where = f"in {first}, {name_of(member)}"
-                    message = f"{leaf.name} stands twice in `array`: {where}"
+                    message = f"{leaf.name} appears twice in `array`: {where}"
                     hint = "a piece of equipment has its axes once: remove one of them"
                     self.findings.error("RV-1210", at, message, hint=hint)
             if not isinstance(member, Device):
                 what = "a facade" if isinstance(member, Facade) else "a task's interface"
-                message = f"{name_of(member)} is {what}, and an array is made of devices"
+                message = f"{name_of(member)} is {what}; the members of an array are devices"
                 hint = "join devices of one kind by `array`, and what differs by `facade`"
                 self.findings.error("RV-1211", at, message, hint=hint)
             elif pieces and _kind(member) is not _kind(pieces[0]):
                 message = (
-                    f"{member.name} is of the type {_kind(member).name}, and {pieces[0].name} of "
+                    f"{member.name} is of the type {_kind(member).name}, but {pieces[0].name} of "
                     f"{_kind(pieces[0]).name}"
                 )
                 hint = "an array has one kind of device; join several kinds by `facade`"

@@ -85,7 +85,7 @@ def _set(form: SetForm, words: Vocabulary, targets: Targets, findings: Findings)
     hint: str | None
     if not targets.data.knows(item):
         if words.readable.knows(item) or targets.outputs.knows(item):
-            message = f"`{item}` is no data item, and only those can be set"
+            message = f"`{item}` is not a data item; only a data item can be set"
             is_output = targets.outputs.knows(item)
             hint = "send on an output port by `send:` and `with:`" if is_output else None
         else:
@@ -129,7 +129,7 @@ def _send(form: SendForm, words: Vocabulary, targets: Targets, findings: Finding
     origin = form.at("send")
     if not targets.outputs.knows(form.send):
         kind = "an input port" if words.inputs.knows(form.send) else "no output port"
-        message = f"`{form.send}` is {kind}, and only output ports can be sent on"
+        message = f"`{form.send}` is {kind}; `send` needs an output port"
         hint = meant(form.send, targets.outputs.names())
         if targets.calls.find(form.send) is not None:
             hint = f"a command is called: `call: {form.send}`"
@@ -157,7 +157,7 @@ def _call(form: CallForm, words: Vocabulary, targets: Targets, findings: Finding
         return Send(origin, need.name, ((None, Literal("True", BOOLEAN)),))
     if form.with_ is None:
         if not form.lost("with"):
-            message = f"the command {need.name} takes {need.argument.name}, and here is no argument"
+            message = f"the command {need.name} needs an argument of type {need.argument.name}"
             findings.error("RV-1206", form.at("call"), message, hint="give it by `with: ...`")
         findings.lose()
         return None
@@ -204,7 +204,7 @@ def _raise(
         return Raise(form.at_key("raise"), event.name)
     if form.with_ is None:
         if not form.lost("with"):
-            message = f"the event {event.name} carries {event.type.name}, and here is no value"
+            message = f"the event {event.name} needs a value of type {event.type.name}"
             hint = "give it by `with: ...`"
             findings.error("RV-0528", origin, message, hint=hint)
         findings.lose()

@@ -50,7 +50,7 @@ def command_of(
             other = "write" if kind is CommandKind.VOID else "qualified_read"
             hint = f"make it `kind: {other}`, or remove `{key}`"
             if kind is CommandKind.EVENT:
-                message, hint = "an event has no reply: nobody asked", "remove `reply`"
+                message, hint = "an event cannot declare `reply`", "remove `reply`"
             findings.error("RV-1201", form.at_key(key), message, hint=hint)
     kinds = [type_ for type_ in sides.values() if type_ is not None]
     if form.per_axis and findings.count() == before:
@@ -58,7 +58,7 @@ def command_of(
             message = f"{name} has neither argument nor reply that there could be one of per axis"
             findings.error("RV-1202", form.at_key("per_axis"), message, hint="remove `per_axis`")
         for record in (type_ for type_ in kinds if isinstance(type_, RecordType)):
-            message = f"{name} is per axis, and {record.name} is a record"
+            message = f"{name} is per axis, but {record.name} is a record"
             hint = "name the type of one axis's value: a range or an enumeration"
             findings.error("RV-1202", form.at_key("per_axis"), message, hint=hint)
     if findings.count() > before or form.damaged:
@@ -193,7 +193,7 @@ def _check_carried(
     if event is None or event.type is None or event.type is given:
         return
     told = "no value" if given is None else given.name
-    message = f"{event.name} carries {event.type.name}, and `{key}` of {command.name} gives {told}"
+    message = f"{event.name} carries {event.type.name}, but `{key}` of {command.name} gives {told}"
     hint = "name an event without a type" + ("" if given is None else ", or of that one")
     findings.error("RV-0528", form.at(key), message, hint=hint)
 
@@ -210,12 +210,12 @@ def _stand_in(
     is_read = command.kind is CommandKind.READ
     if text == NOTHING:
         if is_read or reply is not None:
-            message = f"{command.name} gives a reply, and `{NOTHING}` stands in for none"
+            message = f"{command.name} gives a reply, so its fallback cannot be `{NOTHING}`"
             hint = "name what keeps the value up: `else: activity.item`" if is_read else None
             findings.error("RV-1207", at, message, hint=hint)
         return None
     if not is_read:
-        message = f"`{text}` cannot stand in for {command.name}, which is called and not read"
+        message = f"`{text}` cannot be the fallback of {command.name}, which is called and not read"
         hint = f"write `else: {NOTHING}`: then a call does nothing"
         findings.error("RV-1207", at, message, hint=hint)
         return None
@@ -228,7 +228,7 @@ def _stand_in(
         return None
     if data.type is not reply:
         expected = "" if reply is None else reply.name
-        message = f"{data.name} is of type {data.type.name}, and {command.name} gives {expected}"
+        message = f"{data.name} is of type {data.type.name}, but {command.name} gives {expected}"
         notes = [(data.origin, f"`{data.name}` is declared here")]
         findings.error("RV-1207", at, message, notes=notes, hint=f"make it `type: {expected}`")
     return StandIn(activity, data.name)
@@ -291,7 +291,7 @@ def stand_ins_agree(form: ComponentForm, component: Component, findings: Finding
                 hint = f"let {reader.name} read {need.name}, and write all else elsewhere"
                 findings.error("RV-1207", at, message, notes=notes, hint=hint)
         for does in (*activity.sends, *activity.raises)[:1]:
-            message = f"{own} does more than stand in for {need.name}: {does}"
+            message = f"{own} does more than the fallback of {need.name} needs: {does}"
             hint = "let another activity send, call and raise"
             findings.error("RV-1207", at, message, notes=notes, hint=hint)
 
@@ -307,7 +307,7 @@ def _else_at(form: RequiredForm, name: str) -> Origin:
 def _is_event(command: Command, origin: Origin, findings: Findings) -> bool:
     """Whether what stands among commands is an event, which is reported."""
     if command.kind is CommandKind.EVENT:
-        message = f"{command.name} is an event, and here is a command wanted"
+        message = f"expected a command, found the event {command.name}"
         hint = f"write `events: {{{command.name}: <port>}}`"
         findings.error("RV-1215", origin, message, hint=hint)
     return command.kind is CommandKind.EVENT
@@ -353,11 +353,11 @@ def _events(
             findings.error("RV-1215", at, message, hint=hint)
         elif port.direction is not direction or port.is_command:
             way = "comes to an input" if direction is Direction.IN else "is sent on an output"
-            message = f"{command.name} {way} port, and {port.name} is none"
+            message = f"{command.name} {way} port, but {port.name} is not one"
             findings.error("RV-1215", value, message, notes=notes)
         elif port.type is not argument:
             told = "" if argument is None else argument.name
-            message = f"{port.name} is of type {port.type.name}, and {command.name} tells {told}"
+            message = f"{port.name} is of type {port.type.name}, but {command.name} carries {told}"
             hint = f"make it `type: {told}`"
             findings.error("RV-1215", value, message, notes=notes, hint=hint)
         else:
@@ -427,7 +427,7 @@ def provided_of(
         elif data.type is not reply:
             expected = "" if reply is None else reply.name
             message = (
-                f"{data.name} is of type {data.type.name}, and {command.name} gives {expected}"
+                f"{data.name} is of type {data.type.name}, but {command.name} gives {expected}"
             )
             notes = [(data.origin, f"`{data.name}` is declared here")]
             findings.error("RV-1209", at, message, notes=notes)

@@ -98,7 +98,7 @@ def size_of(
         findings.error(SIZE, form.at("bytes"), message, hint=hint)
         return None
     if form.bytes < needed:
-        message = f"{name} needs {needed} bytes, and {form.bytes} are given"
+        message = f"{name} needs {needed} bytes, but `bytes` is {form.bytes}"
         if trailer:
             message += f"; freshness value and MAC take {trailer}"
         findings.error(SIZE, form.at("bytes"), message, hint="leave `bytes` out, or give more")
@@ -196,20 +196,20 @@ class _Maker:
         low, high = made.raw_range
         if low < 0 and not form.signed:
             hint = "write `signed: true`, or another offset"
-            message = f"the raw values of `{key}` are {low} .. {high}, and it is not signed"
+            message = f"the raw values of `{key}` are {low} .. {high}, but it is not signed"
             self.wrong(key, None, message, hint)
             return made
         needed = width_for(low, high, signed=form.signed)
         width = needed if form.width is None else form.width
         if width < needed:
             hint = f"write `width: {needed}`, or leave it out"
-            message = f"`{key}` has {width} bits, and its raw values {low} .. {high} need {needed}"
+            message = f"`{key}` has {width} bits, but its raw values {low} .. {high} need {needed}"
             self.wrong(key, "width", message, hint)
         elif (form.signed and width > SIGNED_BITS) or high >= RAW_LIMIT:
             message = f"`{key}` has {width} bits" if form.signed else f"`{key}` has raw values"
-            message += f", and a signed signal has {SIGNED_BITS} at most"
+            message += f"; a signed signal has {SIGNED_BITS} at most"
             if not form.signed:
-                message = f"`{key}` has raw values up to {high}, and 2^62 - 1 is the last"
+                message = f"`{key}` has raw values up to {high}; the limit is 2^62 - 1"
             self.wrong(key, None, message)
         return replace(made, width=width)
 
@@ -218,7 +218,7 @@ class _Maker:
             return ()
         if selector is None:
             if not self.form.lost("multiplexor") and self.form.multiplexor is None:
-                hint = "write `multiplexor:` and the field that tells"
+                hint = "write `multiplexor:` and the field that selects the page"
                 self.wrong(key, "when", f"{self.name} has no multiplexor", hint)
             else:
                 self.findings.lose()
@@ -255,7 +255,7 @@ class _Maker:
             key = keys.get(signal.name.lower())
             if last >= room and key is not None:
                 message = (
-                    f"`{signal.name}` of {self.name} reaches to bit {last}, and the frame has "
+                    f"`{signal.name}` of {self.name} reaches to bit {last}, but the frame has "
                     f"{room} bits"
                 )
                 hint = "another `start`, a longer frame (`bytes`), or `format: fd`"

@@ -223,7 +223,7 @@ def _check_carried(
     if event.type is None or (key == "on_arrival" and event.type is type_):
         return
     if key == "on_arrival":
-        message = f"{event.name} carries {event.type.name}, and {port} takes {type_.name}"
+        message = f"{event.name} carries {event.type.name}, but {port} takes {type_.name}"
         hint = "name an event of the port's type, or one without"
     else:
         message = f"`{key}` has no value for {event.name}, which carries {event.type.name}"

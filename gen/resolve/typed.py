@@ -131,7 +131,7 @@ class Checker:
             message = f"`{term.word}` is no data item, parameter or input port of the component"
             self.refuse("RV-0403", term, message, meant(term.word, known))
         elif expected is None and term.word.lower() in self.vocabulary.literals:
-            message = f"the type of the literal `{term.word}` cannot be told here"
+            message = f"the type of the literal `{term.word}` cannot be determined here"
             self.refuse("RV-0410", term, message, "compare it with a name of its type")
         elif expected is None or expected is BOOLEAN:
             message = f"`{term.word}` is no data item, parameter or input port of the component"
@@ -219,7 +219,7 @@ class Checker:
         wrong = False
         for operand, item in zip(operands, sound, strict=True):
             if item.type is not None:
-                message = f"`{term.word}` takes numbers, and this is {described(item)}"
+                message = f"`{term.word}` takes numbers, but this is {described(item)}"
                 self.refuse("RV-0404", operand, message)
                 wrong = True
         return None if wrong else sound
@@ -290,7 +290,7 @@ class Checker:
         """A condition."""
         checked = self.check(term, BOOLEAN)
         if checked is not None and checked.type is not BOOLEAN:
-            message = f"{taker} takes a condition, and this is {described(checked)}"
+            message = f"{taker} takes a condition, but this is {described(checked)}"
             self.refuse("RV-0404", term, message)
             return None
         return checked
@@ -399,7 +399,7 @@ def condition(
     if checked is None:
         return None
     if checked.type is not BOOLEAN:
-        message = f"`{taker}` takes a condition, and this is {described(checked)}"
+        message = f"`{taker}` takes a condition, but this is {described(checked)}"
         findings.error("RV-0404", place.origin, message)
         return None
     return checked.expression
@@ -421,12 +421,12 @@ def fitting(
     if isinstance(type_, EnumerationType) or checked.type is not None:
         if checked.type is type_:
             return checked.expression
-        message = f"`{target}` is of type {type_.name}, and this is {described(checked)}"
+        message = f"`{target}` is of type {type_.name}, but this is {described(checked)}"
         findings.error("RV-0404", place.origin, message)
         return None
     if not checked.bare and checked.unit != type_.unit:
         units = type_.unit or "no unit", checked.unit or "no unit"
-        message = f"`{target}` counts {units[0]}, and this counts {units[1]}"
+        message = f"`{target}` counts {units[0]}, but this counts {units[1]}"
         findings.error("RV-0405", place.origin, message)
         return None
     low, high = checked.bounds
@@ -435,9 +435,9 @@ def fitting(
     wanted, given = range_of((type_.first, type_.last), type_.unit), range_of(checked.bounds)
     shown = str(text) if len(str(text)) <= 60 and "\n" not in str(text) else "..."
     if low == high:
-        message, hint = f"`{target}` takes {wanted}, and this is {low}", None
+        message, hint = f"`{target}` takes {wanted}, but this is {low}", None
     else:
-        message = f"`{target}` takes {wanted}, and this may be {given}"
+        message = f"`{target}` takes {wanted}, but this may be {given}"
         limited = f"clamp({shown}, {type_.first}, {type_.last})"
         if type_.first <= low:
             limited = f"min({shown}, {type_.last})"

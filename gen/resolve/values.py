@@ -143,7 +143,7 @@ def constant(
     for literal in type_.literals:
         if literal.lower() == str(value).lower():
             return literal
-    message = f"`{what}` must be of type {type_.name}, and `{value}` is no literal of it"
+    message = f"`{what}` must be of type {type_.name}, which has no literal `{value}`"
     hint = meant(str(value), type_.literals)
     findings.error("RV-0312", place.origin, message, hint=hint)
     return None

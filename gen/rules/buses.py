@@ -63,7 +63,7 @@ def bus_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
         for instance, event in dict.fromkeys((*bus.raises, *bus.recovers_on)):
             home = system.instance(instance).node
             if home not in joining:
-                message = f"{bus.name} names {instance}.{event}, and {instance} is on {home}, "
+                message = f"{bus.name} names {instance}.{event}, but {instance} is on {home}, "
                 message += f"which neither sends nor receives on {bus.name}"
                 hint = f"name an event of an instance on {' or '.join(joining)}"
                 yield error(FAULTS, bus.origin, message, hint=hint)
@@ -81,7 +81,7 @@ def protected_messages_differ(resolved: Resolved) -> Iterator[Diagnostic]:
     for index, message in enumerate(kept):
         clash = next((other for other in kept[:index] if _passes(message, other)), None)
         if clash is not None:
-            text = f"the CRC of {message.name} cannot tell its data identifier from that of "
+            text = f"the CRC of {message.name} cannot distinguish its data identifier from that of "
             text += clash.name
             notes = [(clash.origin, f"`{clash.name}` is declared here")]
             hint = "give one of them another data identifier"
@@ -119,7 +119,7 @@ def refusal_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
         for instance, event in () if message.check is None else message.check.on_error:
             home = system.instance(instance).node
             if home not in homes:
-                text = f"{message.name} names {instance}.{event}, and {instance} is on {home}, "
+                text = f"{message.name} names {instance}.{event}, but {instance} is on {home}, "
                 text += f"which does not receive {message.name}"
                 where = " or ".join(sorted(homes)) or "a node that receives it"
                 hint = f"name an event of an instance on {where}"

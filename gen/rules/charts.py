@@ -1,4 +1,4 @@
-"""Validity rules of charts: what is never reached, never fires, or is in another's way.
+"""Validity rules of charts: what is never reached, is never taken, or is in another's way.
 
 Guards are not looked into, but for the literals ``true`` and ``false``.
 """
@@ -51,7 +51,8 @@ def steps_stay_within_bounds(component: Component, resolved: Resolved) -> Iterat
         for what, tally in (*single, *shared):
             raised = tally.get(RAISED, ())
             if len(raised) > RAISED_PER_STEP:
-                message = f"{what} may raise {len(raised)} events, and {RAISED_PER_STEP} fit"
+                message = f"{what} raises up to {len(raised)} events in one step"
+                message += f"; the limit is {RAISED_PER_STEP}"
                 hint = "raise fewer, or spread them over several steps"
                 yield error("RV-0530", raised[RAISED_PER_STEP], message, hint=hint)
                 break
@@ -114,7 +115,7 @@ def _incomplete(component: Component, region: Region) -> Iterator[Diagnostic]:
             continue
         reason = _endless(component, region, tree, transition.source)
         if reason is not None:
-            message = f"{transition.name} never fires: {transition.source} never completes"
+            message = f"{transition.name} is never taken: {transition.source} never completes"
             notes = [(tree.origin(transition.source), reason[0])]
             hint = f"{reason[1]}; or name a trigger (`on`, `after`, `every`, `when`)"
             yield error("RV-0524", transition.origin, message, notes=notes, hint=hint)
@@ -131,7 +132,7 @@ def completions_can_come(component: Component, resolved: Resolved) -> Iterator[D
             continue
         waiting = regions[place.region].outgoing(place.state)
         if not any(isinstance(t.trigger, Completion) for t in waiting):
-            message = f"{activity.name} raises `{DONE}`, and nothing waits for it"
+            message = f"{activity.name} raises `{DONE}`, but nothing waits for it"
             notes = [
                 (
                     regions[place.region].state(place.state).origin,
@@ -165,7 +166,7 @@ def states_are_reachable(component: Component, resolved: Resolved) -> Iterator[D
                 continue  # what leads to it is reported
             message = f"no transition ever leads to the {what} {name} of {region.name}"
             notes = [
-                (t.origin, f"so {t.name} never fires")
+                (t.origin, f"so {t.name} is never taken")
                 for t in region.transitions
                 if t.source == name or name in tree.above(t.source)
             ]
@@ -205,7 +206,7 @@ def transitions_can_fire(component: Component, resolved: Resolved) -> Iterator[D
             met = trigger.condition if isinstance(trigger, When) else None
             if is_literal(transition.guard, "False") or is_literal(met, "False"):
                 what = "trigger" if is_literal(met, "False") else "guard"
-                message = f"{transition.name} never fires: its {what} is false"
+                message = f"{transition.name} is never taken: its {what} is false"
                 yield error("RV-0508", transition.origin, message, hint="remove it")
         for leaving in tree.outgoing.values():
             yield from _shut_out(tree, leaving)
@@ -220,7 +221,7 @@ def _shut_out(tree: Tree, leaving: tuple[Transition, ...]) -> Iterator[Diagnosti
             continue
         if taken in always:
             first = always[taken]
-            message = f"{transition.name} never fires: {first.name} always {taken}"
+            message = f"{transition.name} is never taken: {first.name} always {taken}"
             notes = [(first.origin, f"{first.name} has no guard")]
             hint = f"give {first.name} a guard, or remove {transition.name}"
             yield error("RV-0507", transition.origin, message, notes=notes, hint=hint)
@@ -263,12 +264,13 @@ def firings_agree(component: Component, resolved: Resolved) -> Iterator[Diagnost
                     other = second if leaver is first else first
                     early, late = sorted((first, second), key=lambda t: rank[t.name])
                     message = (
-                        f"on {event}, {leaver.name} leaves {state} while {other.name} fires in it"
+                        f"on {event}, {leaver.name} leaves {state} while {other.name} is taken"
                     )
+                    message += " in it"
                     notes = [(other.origin, f"{other.name} is here")]
                     hint = (
-                        f"where both are enabled, {early.name} fires and {late.name} is dropped: "
-                        "let guards exclude each other, or use two events"
+                        f"where both are enabled, {early.name} is taken and {late.name} is "
+                        "dropped: let guards exclude each other, or use two events"
                     )
                     yield warning("RV-0529", leaver.origin, message, notes=notes, hint=hint)
 
@@ -290,6 +292,6 @@ def deferred_events_are_taken(component: Component, resolved: Resolved) -> Itera
         taken = {t.trigger.event for t in region.transitions if isinstance(t.trigger, OnEvent)}
         for state in region.states:
             for event in (one for one in state.defers if one not in taken):
-                message = f"{state.name} defers {event}, and {region.name} never takes it"
+                message = f"{state.name} defers {event}, but {region.name} never takes it"
                 hint = f"add a transition on {event}, or take it out of `defer`"
                 yield warning("RV-0532", state.origin, message, hint=hint)

@@ -101,7 +101,7 @@ def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iter
     for event in component.events:
         is_raised, is_used = event.name in raised, event.name in used
         if is_raised and not is_used:
-            message = f"no region of {component.name} waits for {event.name}: it is lost"
+            message = f"no region of {component.name} handles {event.name}: each is lost"
             yield warning("RV-0510", event.origin, message)
         elif not is_raised:
             message = f"nothing raises {event.name}"

@@ -83,7 +83,7 @@ def cores_exist(resolved: Resolved) -> Iterator[Diagnostic]:
     for processor in resolved.system.processors:
         last = cores.get(processor.node)
         if last is not None and processor.core > last:
-            text = f"{processor.name} is on core {processor.core}, and {processor.node} has {last}"
+            text = f"{processor.name} is on core {processor.core}, but {processor.node} has {last}"
             hint = f"give the node `cores: {processor.core}`, or the processor another core"
             yield error("RV-0710", processor.origin, text, hint=hint)
 
@@ -96,10 +96,10 @@ def raised_events_are_near(resolved: Resolved) -> Iterator[Diagnostic]:
             home = system.instance(instance).node
             if home != processor.node:
                 text = (
-                    f"{processor.name} is on {processor.node}, and {instance}, of which it raises "
-                    f"{event}, on {home}"
+                    f"{processor.name} is on {processor.node}, but raises {event} of {instance}, "
+                    f"which is on {home}"
                 )
-                hint = "raise an event of an instance there; a port can tell others"
+                hint = "raise an event of an instance there; a port can notify others"
                 yield error("RV-0707", processor.origin, text, hint=hint)
 
 
@@ -166,15 +166,15 @@ def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
         if not bus.by_priority:
             continue
         if bus.transmit_depth > BUFFERS:
-            text = f"{bus.name} has {bus.transmit_depth} transmit buffers by priority, and a"
-            text += f" controller {BUFFERS} at most"
+            text = f"{bus.name} has {bus.transmit_depth} transmit buffers by priority; "
+            text += f"a controller has at most {BUFFERS}"
             hint = f"write `transmit_depth: {BUFFERS}` or less"
             yield error(ROOM, bus.origin, text, hint=hint)
         sent = [m for m in system.messages if m.bus == bus.name and m.source is not None]
         for node in system.nodes:
             own = [m for m in sent if system.sender(m) == node.name]
             if len(own) > bus.transmit_depth:
-                text = f"{node.name} sends {len(own)} messages on {bus.name}, and its controller"
+                text = f"{node.name} sends {len(own)} messages on {bus.name}, but its controller"
                 text += f" has {bus.transmit_depth} transmit buffers by priority"
                 hint = "raise `transmit_depth`, or write `buffers: fifo`"
                 yield error(ROOM, bus.origin, text, hint=hint)

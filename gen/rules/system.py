@@ -97,12 +97,12 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
         taken = target.component.port(connection.target.port).type
         if sent != taken:
             message = (
-                f"{connection.source} sends {sent.name}, and {connection.target} takes {taken.name}"
+                f"{connection.source} sends {sent.name}, but {connection.target} takes {taken.name}"
             )
             yield error("RV-0605", connection.origin, message)
         if source.node != target.node:
             message = (
-                f"{connection.source} is on {source.node}, and {connection.target} is on "
+                f"{connection.source} is on {source.node}, but {connection.target} is on "
                 f"{target.node}"
             )
             if system.buses:
@@ -122,7 +122,7 @@ def messages_agree(resolved: Resolved) -> Iterator[Diagnostic]:
             instance = system.instance(target.instance)
             taken = instance.component.port(target.port).type
             if taken != item.type:
-                message = f"{item.name} carries {item.type.name}, and {target} takes {taken.name}"
+                message = f"{item.name} carries {item.type.name}, but {target} takes {taken.name}"
                 yield error("RV-0605", item.origin, message)
             source = None if item.source is None else system.instance(item.source.instance)
             if source is not None and source.node == instance.node:
@@ -168,7 +168,8 @@ def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
     for instance in resolved.system.instances:
         for port in instance.component.outputs():
             if (instance.name, port.name) not in used and not port.is_command:
-                message = f"{instance.name}.{port.name} leads nowhere: what it sends is lost"
+                unused = f"{instance.name}.{port.name}"
+                message = f"{unused} is not connected: the values that it sends are lost"
                 notes = [(port.origin, f"`{port.name}` is declared here")]
                 yield warning("RV-0604", instance.origin, message, notes=notes)
 
@@ -201,7 +202,7 @@ def payloads_fit(resolved: Resolved) -> Iterator[Diagnostic]:
         if bits > room:
             widths = ", ".join(f"{one.field or item.name} {one.width}" for one in item.signals)
             shortened = widths if len(widths) <= 200 else widths[:197] + "..."
-            message = f"{item.name} needs {bits} bits for {item.type.name}, and a frame has {room}"
+            message = f"{item.name} needs {bits} bits for {item.type.name}; a frame has {room}"
             larger = "" if item.fd else ", or let its bus carry CAN FD (`format: fd`, `data_rate`)"
             hint = f"narrow its ranges or split it{larger}; bits by field: {shortened}"
             notes = [(item.type.origin, f"{item.type.name} is declared here")]
@@ -312,7 +313,7 @@ def rows_are_on_their_node(resolved: Resolved) -> Iterator[Diagnostic]:
         instance = system.instance(slot.owner)
         if instance.node != processor.node:
             message = (
-                f"{slot.element} is on {instance.node}, and {processor.name} on {processor.node}"
+                f"{slot.element} is on {instance.node}, but {processor.name} is on {processor.node}"
             )
             yield error("RV-0707", slot.origin, message)
 
@@ -329,7 +330,7 @@ def periods_are_multiples(resolved: Resolved) -> Iterator[Diagnostic]:
         base = shortest.timing.period
         if processor.period != base and "processors" in resolved.sound_sections:
             message = (
-                f"the period of {processor.name} is given as {shown(processor.period)}, and the "
+                f"the period of {processor.name} is given as {shown(processor.period)}, but the "
                 f"shortest in its table is {shown(base)}"
             )
             notes = [(shortest.origin, f"{shortest.element} has it")]
@@ -375,7 +376,7 @@ def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
                 not is_reception or slot.owner != processor.released_by
             ):
                 message = (
-                    f"{processor.name} is released by {processor.released_by}, and holds "
+                    f"{processor.name} is released by {processor.released_by}, but holds "
                     f"{slot.element}"
                 )
                 hint = f"its table is `- {processor.released_by}.receive`, and nothing else"

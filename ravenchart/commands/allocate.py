@@ -287,10 +287,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     common.add_model(sub)
     sub.add_argument(
         "--strategy", choices=tuple(STRATEGIES), required=True,
-        help="a processor for each period; for each instance where rates fit; as few as do; "
-        "as much slack as there is",
+        help="period: a processor for each period; locality: for each instance where "
+        "rates fit; fewest: as few as possible; slack: as much slack as possible",
     )  # fmt: skip
-    sub.add_argument("--yaml", action="store_true", help="print it for the model")
+    sub.add_argument("--yaml", action="store_true", help="print the result in the form of a model")
 
 
 def execute(options: argparse.Namespace) -> int:

@@ -16,8 +16,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
     sub.add_argument(
         "--observed", type=Path, metavar="FILE",
-        help="hold the execution times in the trace of a run, or of a plain file in a plain file, "
-        "against the budgets",
+        help="compare measured execution times (the trace of a run, or a plain file "
+        "for a plain file) with the budgets",
     )  # fmt: skip
     output = sub.add_mutually_exclusive_group()
     output.add_argument("--json", action="store_true", help="print everything as JSON")

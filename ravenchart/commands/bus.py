@@ -69,7 +69,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--event", type=_words(4, EVENTS), action="append", default=[],
         metavar="NS:KIND[:NODE[:ID]]",
-        help=f"what happens then, in the order of time: {', '.join(EVENTS)}",
+        help=f"an event on the bus at that time, in order of time: {', '.join(EVENTS)}",
     )  # fmt: skip
 
 

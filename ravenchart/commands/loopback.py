@@ -25,13 +25,15 @@ _STYLES = {Verdict.PASSED: "", Verdict.FAILED: "bold red", Verdict.SKIPPED: "dim
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
-    sub.add_argument("--interface", required=True, metavar="NAME", help="as python-can names it")
-    sub.add_argument("--channel", required=True, help="as that interface names it")
     sub.add_argument(
-        "--receive-interface", metavar="NAME", help="of the other end (default: the same)"
+        "--interface", required=True, metavar="NAME", help="name of the interface in python-can"
+    )
+    sub.add_argument("--channel", required=True, help="name of the channel of that interface")
+    sub.add_argument(
+        "--receive-interface", metavar="NAME", help="that of the other end (default: the same)"
     )
     sub.add_argument(
-        "--receive-channel", metavar="CHANNEL", help="of the other end (default: the same)"
+        "--receive-channel", metavar="CHANNEL", help="that of the other end (default: the same)"
     )
     sub.add_argument(
         "--echo",

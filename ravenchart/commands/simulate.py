@@ -184,7 +184,7 @@ def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: boo
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument("--events", type=Path, metavar="FILE", required=True, help="stimuli")
+    sub.add_argument("--events", type=Path, metavar="FILE", required=True, help="the stimuli")
     sub.add_argument(
         "--interpreter", action="store_true", help="by the interpreter, not the generated program"
     )

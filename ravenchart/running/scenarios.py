@@ -226,7 +226,7 @@ class _Check:
         if name not in leaves:
             known = any(state.name == name for state in region.states)
             told = f"{shown} has no state `{name}`"
-            told = f"`{name}` has states inside, and a trace tells of these" if known else told
+            told = f"`{name}` has states inside; a trace records those" if known else told
             self.source.wrong(UNKNOWN, path, told, f"name one of {', '.join(leaves)}")
 
     def region(self, text: str, path: Place) -> Region | None:

@@ -16,13 +16,13 @@ from typing import TypeVar
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "faults.md"
 HEAD = """\
-# Faults, and the tests that show what follows
+# Faults, reactions and tests
 
-For an assessor: each row is a fault that a test brings about, what finds it, what the controller or
-the tool does then, and the time within which the test wants it. The tests themselves say this; the
-page is made of them by `make docs`, and `make test` fails where the two differ.
+For assessors. Each row is a fault that a test injects, with its detection, the reaction of the
+controller or the tool, and the time limit of the test. `make docs` writes this page from the tests,
+and `make test` fails where the two differ.
 
-| fault | found by | what follows | within | test |
+| fault | found by | reaction | within | test |
 | --- | --- | --- | --- | --- |
 """
 

@@ -234,7 +234,7 @@ def test_a_node_that_recovers_on_request_is_bus_off_until_then(echo: Path) -> No
 @shows(
     "bus-off, with recovery on request only",
     found_by="the driver",
-    reaction="the node stays off the bus until it is asked",
+    reaction="the node stays bus-off until recovery is requested",
 )
 def test_a_node_that_nobody_asks_to_recover_stays_bus_off(echo: Path) -> None:
     with (

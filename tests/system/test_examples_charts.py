@@ -126,7 +126,8 @@ def _found(name: str, old: str, new: str) -> list[str]:
 
 def test_a_crossing_that_forgets_a_condition_is_refused_with_the_way_to_it() -> None:
     found = _found("crossing", "when: road_free and not requested", "when: road_free")
-    assert any(one.startswith("green_for_both of Crossing happens: Blinking") for one in found)
+    start = "the invariant green_for_both of Crossing is violated: Blinking"
+    assert any(one.startswith(start) for one in found)
 
 
 def test_a_pump_without_else_gets_stuck_and_check_says_so() -> None:

@@ -174,7 +174,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Stimuli], list[Re
     "stands still or meets a limit, frames lost, queues filled",
     found_by="stale input, guards of the charts",
     reaction="each joint concerned and the mission are in their safe states, once, and home again "
-    "when they are reset; nobody is where it is no fault",
+    "when they are reset; no other joint is in its safe state",
     within="80 ms from silence, 40 ms from a report, 60 ms more for the mission, in virtual time",
 )
 def test_every_fault_of_a_soak_leads_to_the_safe_state(

@@ -163,7 +163,7 @@ def test_a_bus_that_is_held_recessive_makes_both_bus_off_again_and_again(
 @shows(
     "the bus is held recessive, and the chart has to request recovery",
     found_by="the state of the CAN controller, read by `watch`",
-    reaction="both nodes recover when the charts request it, and no oftener",
+    reaction="both nodes recover when the charts request it, and no more often",
     within="200 ms between requests",
 )
 def test_charts_that_request_recovery_bring_both_nodes_back(tmp_path: Path) -> None:

@@ -53,8 +53,8 @@ def late() -> System:
 def test_a_missed_deadline_reads_like_a_compilers_error() -> None:
     first, second = findings(analyse(late()))
     assert render_diagnostic(second, {}) == (
-        "model.yaml:41:3: error: control needs over 9 ms: it may take 9800 us [RV-0901]\n"
-        "model.yaml:41:3: note: it runs for up to 4300 us itself\n"
+        "model.yaml:41:3: error: control misses its deadline: R = 9800 us > D = 9 ms [RV-0901]\n"
+        "model.yaml:41:3: note: it runs for up to 4300 us by itself\n"
         "model.yaml:12:3: note: it is preempted by can_rx, period 2 ms: 5 x 700 us = 3500 us\n"
         "model.yaml:20:3: note: it is preempted by trajectory, period 5 ms: 2 x 1 ms = 2 ms\n"
         "model.yaml:41:3: hint: lengthen its period, or move an activity to a slower processor"
@@ -83,7 +83,7 @@ def test_a_message_that_is_late_says_what_goes_before_it() -> None:
     messages = [message("a", 1, period=500_000), message("b", 2, length=0, period=10_000_000)]
     slow = replace(messages[1], deadline=Ns(300_000))
     (only,) = findings(analyse(system([], (), [bus()], [messages[0], slow])))
-    assert only.message == "message b needs over 300 us: it may take 380 us"
+    assert only.message == "message b misses its deadline: R = 380 us > D = 300 us"
     assert "a goes before it: 1 x 270 us = 270 us" in [
         text.removeprefix("bus.") for _, text in only.notes
     ]
@@ -100,7 +100,7 @@ def test_chains_that_are_broken_or_late_are_findings() -> None:
     assert gap.message == "the chain flow is broken: no values go from pump.drive to raw_level"
     (late,) = findings(analyse(chain("raw_level", "valve_position", reaction=1_000_000)))
     assert late.code == "RV-0905"
-    assert re.fullmatch(r"the reaction of flow may take \d+(\.\d)? us, .* is 1 ms", late.message)
+    assert re.fullmatch(r"the reaction of flow may take \d+(\.\d)? us; .* is 1 ms", late.message)
     assert findings(analyse(chain("raw_level", "valve_position", reaction=10**9))) == ()
 
 
@@ -108,21 +108,25 @@ def test_a_reception_that_loses_frames_is_a_finding() -> None:
     change = ("released_by: can_bus, period: 1 ms", "released_by: can_bus, period: 11 ms")
     (only,) = findings(analyse(system_of(change)))
     assert only.message == (
-        "reception takes a frame every 11 ms, and 110.0 % of that are needed: frames will be lost"
+        "reception takes a frame every 11 ms, but its messages need 110.0 % of that rate: "
+        "frames will be lost"
     )
     change = ("released_by: can_bus, period: 1 ms", "released_by: can_bus, period: 10 ms")
     analysis = analyse(system_of(change))
     assert not analysis.schedulable
     (only,) = findings(analysis)
-    assert only.message.endswith("100.0 % of that are needed: a frame may wait without bound")
+    assert only.message.endswith("100.0 % of that rate: a frame may wait without bound")
 
 
 def test_what_limits_a_system_is_said_in_a_sentence() -> None:
     tasks = [task("plan", 2, 620_000, 2_000_000), task("axis", 1, 510_000, 2_000_000, 1_000_000)]
     (line,) = binding_lines(analyse(system(tasks)))
-    assert line == "axis misses by 130 us: 54.9 % of its time is plan"
+    assert line == "axis misses by 130 us: 54.9 % of its response is plan"
     (line,) = binding_lines(analyse(system(tasks[:1])))
-    assert line == "plan comes first, with 1380 us left: 100.0 % of its time is its own work"
+    assert line == (
+        "plan is the tightest, with a slack of 1380 us: "
+        "100.0 % of its response is its own execution"
+    )
 
 
 def inverted() -> System:
@@ -136,7 +140,7 @@ def test_what_to_change_is_said_on_the_terminal_and_in_the_report() -> None:
         "priorities of cpu in this order: high, low",
         "execution time of low less by 5.9 %: 1700 to 1599.7 us",
         "execution time of high less by 25.0 %: 400 to 300 us",
-        "Not alone with 10 times its period: high, low.",
+        "A longer period (up to 10 times) of one alone is not enough: high, low.",
     )
     for text in (printed(inverted()), Page(render(analyse(inverted()))).text):
         places = [text.index(line) for line in expected]
@@ -154,7 +158,7 @@ def test_where_nothing_suffices_alone_it_is_told_what_helps_most() -> None:
         "  without b, all else must still shrink by 28.7 %",
         "  without c, all else must still shrink by 41.2 %",
     )
-    assert "However short, not alone: a, b, c." in lines
+    assert "Shortening one of these alone is not enough: a, b, c." in lines
 
 
 def test_a_tight_system_is_told_what_gives_it_room_and_one_with_room_nothing() -> None:

@@ -101,7 +101,7 @@ def test_second_transition_that_never_gets_its_turn_is_an_error() -> None:
         )
     )
     assert (found.code, found.severity) == ("RV-1102", Severity.ERROR)
-    assert found.message == "lower never fires: low always comes before it"
+    assert found.message == "lower is never taken: low always comes before it"
 
 
 def test_guard_that_no_data_meet_is_an_error() -> None:
@@ -112,7 +112,7 @@ def test_guard_that_no_data_meet_is_an_error() -> None:
     )
     found = only(model(region("Main", BOTH, transitions % 60)))
     assert found.code == "RV-1102"
-    assert found.message == "go never fires: its guard never holds in A"
+    assert found.message == "go is never taken: its guard never holds in A"
     assert not said(model(region("Main", BOTH, transitions % 58)))
 
 
@@ -153,7 +153,7 @@ def test_event_of_a_completed_state_never_comes() -> None:
     transitions += "late: {from: A, to: A, on: Go}"
     found = only(model(region("Main", BOTH, transitions % "")))
     assert found.code == "RV-1102"
-    assert found.message == "late never fires: A is left at once, as it is complete when entered"
+    assert found.message == "late is never taken: A is left at once, as it is complete when entered"
     assert not said(model(region("Main", BOTH, transitions % ", guard: level > 3")))
 
 
@@ -208,7 +208,9 @@ def test_completions_in_a_circle_are_an_error() -> None:
     transitions = "there: {from: A, to: B}\nback: {from: B, to: A%s}"
     found = only(model(region("Main", BOTH, transitions % "")))
     assert (found.code, found.severity) == ("RV-1107", Severity.ERROR)
-    assert found.message == ("Main goes round without event or time-out: A -there-> B -back-> A")
+    assert found.message == (
+        "livelock in Main: a cycle without event or time-out: A -there-> B -back-> A"
+    )
     assert not said(model(region("Main", BOTH, transitions % ", on: Stop")))
 
 
@@ -256,7 +258,7 @@ def test_safe_state_behind_a_guard_that_never_holds_is_an_error() -> None:
     found = said(model(region("Main", states % 2, transitions, head=safe)))
     assert found == [
         "RV-1106 error: no way leads from B to C, the safe state of Main",
-        "RV-1102 error: bc never fires: its guard never holds in B",
+        "RV-1102 error: bc is never taken: its guard never holds in B",
     ]
     assert not said(model(region("Main", states % 1, transitions, head=safe)))
 
@@ -297,7 +299,7 @@ def test_deferral_in_another_region_is_the_reason_that_is_named() -> None:
     )
     found = only(defers)
     assert found.code == "RV-1102"
-    assert found.message == "go never fires: while L is active, R defers the event"
+    assert found.message == "go is never taken: while L is active, R defers the event"
     assert not said(model(region("Main", states % "", transitions, initial="O")))
 
 
@@ -314,7 +316,7 @@ def test_reason_is_named_where_a_transition_would_lead_to_a_state_that_is_never_
     states = REGIONS % ("defer: [Go]", "")
     found = only(model(region("Main", states, moves, head="deferred: 1\n", initial="O")))
     assert found.code == "RV-1101"
-    reason = "go leads to it, and never fires: while R is active, L defers the event"
+    reason = "go leads to it, and is never taken: while R is active, L defers the event"
     assert [text for _, text in found.notes] == [reason, "L is here"]
     assert found.hint == "remove `defer` from L, or remove S"
     assert not said(model(region("Main", REGIONS % ("", ""), moves, initial="O")))
@@ -323,7 +325,7 @@ def test_reason_is_named_where_a_transition_would_lead_to_a_state_that_is_never_
 @pytest.mark.parametrize(
     ("beside", "to", "reason"),
     [
-        (", T: {kind: terminate}", "T", "stop_it fires before it and ends the region"),
+        (", T: {kind: terminate}", "T", "stop_it is taken before it and ends the region"),
         (", C: {kind: choice}", "C", "it conflicts with stop_it"),
     ],
 )
@@ -336,15 +338,15 @@ def test_region_that_ends_or_is_left_behind_a_choice_is_the_reason(
     if to == "C":
         moves += "lead: {from: C, to: Away, guard: else}\n"
     found = only(model(region("Main", REGIONS % ("", beside), moves, initial="O")))
-    assert found.message == f"turn never fires: {reason}"
-    assert [text for _, text in found.notes] == ["stop_it of an earlier region fires"]
+    assert found.message == f"turn is never taken: {reason}"
+    assert [text for _, text in found.notes] == ["stop_it of an earlier region is taken"]
 
 
 @pytest.mark.parametrize(
     ("inside", "moves", "reason", "hint"),
     [
         ("defer: [Go]", "", "S defers the event", "remove `defer` from S, or remove go"),
-        ("", "stay: {from: S, on: Go}\n", "stay fires first", "change the guard of stay"),
+        ("", "stay: {from: S, on: Go}\n", "stay is taken first", "change the guard of stay"),
     ],
 )
 def test_state_inside_that_takes_the_event_is_the_reason(
@@ -354,7 +356,7 @@ def test_state_inside_that_takes_the_event_is_the_reason(
     moves += "go: {from: A, to: Away, on: Go}\nleave: {from: A, to: Away, on: Stop}\n"
     moves += "back: {from: Away, to: A, on: Go}\n"
     found = only(model(region("Main", states, moves, head="deferred: 1\n" if inside else "")))
-    assert found.message == f"go never fires: while A is active, {reason}"
+    assert found.message == f"go is never taken: while A is active, {reason}"
     assert found.hint is not None and found.hint.startswith(hint)
 
 
@@ -371,5 +373,5 @@ def test_lost_conflict_is_named_with_what_removal_would_do() -> None:
     )
     found = only(model(region("Main", states, transitions, initial="O")))
     assert found.code == "RV-1102"
-    assert found.message == "leave never fires: it conflicts with turn and home"
+    assert found.message == "leave is never taken: it conflicts with turn and home"
     assert found.hint is not None and "takes its place" in found.hint

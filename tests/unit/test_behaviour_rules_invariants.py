@@ -24,7 +24,8 @@ def test_regions_that_meet_violate_the_invariant_with_a_trace() -> None:
     found = only(model(LEFT, RIGHT % "true", never=NEVER_BOTH))
     assert (found.code, found.severity) == ("RV-1108", Severity.ERROR)
     assert found.message == (
-        "both of Unit happens: Left: A; Right: A; Left: A -Go-> B; Right: A -Go-> B"
+        "the invariant both of Unit is violated: "
+        "Left: A; Right: A; Left: A -Go-> B; Right: A -Go-> B"
     )
 
 
@@ -34,7 +35,7 @@ def test_data_set_on_entry_violate_the_invariant() -> None:
     never = '{full: "in(Main.B) and count > %s"}'
     found = only(model(region("Main", states, transitions), never=never % 59))
     assert found.code == "RV-1108"
-    assert found.message == "full of Unit happens: A -Go-> B"
+    assert found.message == "the invariant full of Unit is violated: A -Go-> B"
     assert not said(model(region("Main", states, transitions), never=never % 60))
 
 

@@ -177,4 +177,4 @@ def test_regions_agree_when_only_their_state_leaves() -> None:
     moves = GO + "left: {from: L1, to: L2, on: Stop}\nright: {from: R1, to: R2, on: Stop}\n"
     assert found(chart_text(SIDES, moves + "back: {from: Both, to: A, on: Stop}\n")) == []
     conflict = found(chart_text(SIDES, moves + "back: {from: R2, to: A, on: Stop}\n"))
-    assert conflict == [("RV-0529", "on Stop, back leaves Both while left fires in it")]
+    assert conflict == [("RV-0529", "on Stop, back leaves Both while left is taken in it")]

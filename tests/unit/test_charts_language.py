@@ -243,7 +243,7 @@ def test_event_may_be_passed_on_as_a_whole() -> None:
     ("effect", "on", "message"),
     [
         ("{set: place, to: event}", "Stop", "`event` has no value: the event Stop carries none"),
-        ("{raise: Go}", "Go", "the event Go carries Distance, and here is no value"),
+        ("{raise: Go}", "Go", "the event Go needs a value of type Distance"),
         ("{raise: Stop, with: 3}", "Go", "the event Stop carries no value"),
         (
             "{raise: Turn, with: 3}",
@@ -254,7 +254,7 @@ def test_event_may_be_passed_on_as_a_whole() -> None:
         (
             "{raise: Go, with: event + 1}",
             "Go",
-            "`Go` takes 0 .. 100 mm, and this may be 1 .. 101",
+            "`Go` takes 0 .. 100 mm, but this may be 1 .. 101",
         ),
     ],
 )
@@ -312,7 +312,7 @@ def test_invariants_speak_of_states_and_data() -> None:
     assert isinstance(invariant.condition, Operation)
     assert invariant.condition.operands[0] == InState("Motion", "R21")
     refused = found(chart_text(BOTH, MOVES, more="never: {far: place + 1}"))
-    assert refused == [("RV-0404", "`far` takes a condition, and this is a number")]
+    assert refused == [("RV-0404", "`far` takes a condition, but this is a number")]
 
 
 def test_lane_begins_in_the_orthogonal_state_around_its_initial_target() -> None:

@@ -170,13 +170,13 @@ def test_a_simulation_has_both_on_one_node() -> None:
         ),
         (
             [("servo.control, servo.tell]\n\n", "servo.control, servo.tell, supervisor.plan]\n\n")],
-            "supervisor.plan is on panel, and control on drive",
+            "supervisor.plan is on panel, but control is on drive",
         ),
         (
             [("  control:\n", "  control:\n    on_deadline_miss: [supervisor.Servo_Lost]\n")],
-            "of which it raises Servo_Lost, on panel",
+            "but raises Servo_Lost of",
         ),
-        ([("  control:\n", "  control:\n    core: 2\n")], "control is on core 2, and drive has 1"),
+        ([("  control:\n", "  control:\n    core: 2\n")], "control is on core 2, but drive has 1"),
         (
             [("{released_by: link,", "{node: panel, released_by: link,")],
             "no processor receives the messages of link on drive",

@@ -82,7 +82,7 @@ def test_a_chain_that_goes_by_an_event_names_it_and_its_hint_mends_it(tmp_path: 
     said = _refused(tmp_path, model(", on_arrival: Go"))
     assert "[RV-0904]" in said
     assert (
-        "hint: the event Go leads from one.level to one.Main, and chains follow values: "
+        "hint: the event Go leads from one.level to one.Main; a chain follows values: "
         "let one.Main read what one.level holds or writes"
     ) in said
     mended = model(", on_arrival: Go", right=", guard: level > 3")

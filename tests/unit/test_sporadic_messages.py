@@ -190,7 +190,7 @@ def test_a_message_from_outside_is_sporadic_unless_the_model_says_more(tmp_path:
     assert bounded.age is not None and open_.age is None
     assert bounded.reaction == open_.reaction is not None
     (one,) = findings(rare)
-    assert one.message == "the age of cmd has no bound, and its limit is 200 ms"
+    assert one.message == "the age of cmd has no bound; its limit is 200 ms"
     assert [note for _, note in one.notes] == [
         "can0.cmd is sporadic: its next value may come at any later time"
     ]

@@ -129,12 +129,12 @@ def test_queues_that_may_be_full_are_errors_with_the_depth_that_holds_all() -> N
     short = ("receive_depth: 8, transmit_depth: 8", "receive_depth: 1, transmit_depth: 1")
     found = analysed(QUEUE, two, port, fast, short)
     assert said(found) == [
-        "RV-0906 up to 2 frames of can0 may wait for reception at once, and `receive_depth` is 1: "
-        "what it does not hold is lost"
+        "RV-0906 up to 2 frames of can0 may wait for reception, but `receive_depth` is 1: "
+        "the queue can overflow"
     ]
     assert not found.schedulable and "queues too short: receive_depth" in verdict_line(found)
     (one,) = said(analysed(QUEUE, two, port, fast, ("depth: 2", "depth: 1")))
-    assert one.startswith("RV-0906 up to 2 values may wait in d.j at once, and `depth` is 1")
+    assert one.startswith("RV-0906 up to 2 values may wait in d.j, but `depth` is 1")
     slow = analysed(QUEUE, two, port)
     (one,) = said(slow)
     assert one.startswith("RV-0907 any number of values may wait in d.j, and `depth` is 2")

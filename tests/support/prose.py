@@ -1,0 +1,153 @@
+"""The English of the project, sentence by sentence, with the place where each stands."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravenchart.command_line import whole_parser
+from ravenchart.gen.diagnostics import CODES
+from ravenchart.paths import ROOT
+
+GENERATED = ("model-reference.md", "errors.md", "faults.md")
+PAGES = (
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")),
+    *(path for path in sorted((ROOT / "docs").glob("*.md")) if path.name not in GENERATED),
+    ROOT / "proofs/assumptions.md",
+    *sorted((ROOT / "examples").glob("*/README.md")),
+)
+SPOKEN = (
+    *("gen/files", "gen/language", "gen/model", "gen/resolve", "gen/rules", "gen/derive"),
+    *("analysis", "behaviour", "hw_can/bench", "ravenchart/commands", "ravenchart/running"),
+    *("ravenchart/databases", "ravenchart/building", "ravenchart/proof"),
+)
+"""Folders whose texts reach a user."""
+
+SENTENCE = re.compile(r"(?<=[.?!])\)? (?=[\"(`*A-Z0-9]|gnatprove)")
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """One sentence: its file, with the line or the key, and its words."""
+
+    location: str
+    text: str
+
+    @property
+    def length(self) -> int:
+        """How many words it has; a piece of code is one."""
+        return sum(1 for word in self.text.split() if re.search(r"\w", word))
+
+
+def sentences(location: str, text: str) -> Iterator[Sentence]:
+    """The sentences of a paragraph of Markdown or of a message."""
+    text = re.sub(r"``[^`]+``|`[^`]*`", "`x`", text)
+    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
+    text = " ".join(text.replace("**", "").split())
+    for part in SENTENCE.split(text):
+        if part:
+            yield Sentence(location, part)
+
+
+def of_page(path: Path) -> Iterator[Sentence]:
+    """The sentences of a page: of paragraphs, list items and cells, without listings."""
+    name = str(path.relative_to(ROOT))
+    block: list[str] = []
+    first, listing = 1, False
+    lines = [*path.read_text(encoding="utf-8").splitlines(), ""]
+    for number, line in enumerate(lines, 1):
+        fence = line.lstrip().startswith("```")
+        listing ^= fence
+        starts = re.match(r"\s*([-*#]+|\d+\.) |\||\s*$", line)
+        if block and (fence or starts):
+            yield from sentences(f"{name}:{first}", " ".join(block))
+            block = []
+        if fence or listing or line.startswith("    "):
+            continue
+        if line.startswith("|"):
+            for cell in re.split(r"(?<!\\)\|", line):
+                yield from sentences(f"{name}:{number}", cell)
+            continue
+        if not block:
+            first = number
+        if said := re.sub(r"^\s*([-*#]+|\d+\.) ", "", line).strip():
+            block.append(said)
+
+
+def of_schema() -> Iterator[Sentence]:
+    """The sentences of the descriptions of the file format."""
+    whole = json.loads((ROOT / "docs/model.schema.json").read_text(encoding="utf-8"))
+
+    def walk(at: str, node: object) -> Iterator[Sentence]:
+        if isinstance(node, dict):
+            if isinstance(said := node.get("description"), str):
+                yield from sentences(f"schema {at}", said)
+            for key, value in node.items():
+                yield from walk(f"{at}/{key}", value)
+        elif isinstance(node, list):
+            for value in node:
+                yield from walk(at, value)
+
+    yield from walk("", whole)
+
+
+def of_help(parser: argparse.ArgumentParser | None = None) -> Iterator[Sentence]:
+    """The sentences of every help text."""
+    parser = parser or whole_parser()
+    for said in (parser.description, parser.epilog):
+        yield from sentences(parser.prog, said or "")
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for one in {id(it): it for it in action.choices.values()}.values():
+                yield from of_help(one)
+        elif action.help and action.help != argparse.SUPPRESS:
+            location = f"{parser.prog} {'/'.join(action.option_strings) or action.dest}"
+            yield from sentences(location, action.help)
+
+
+def of_messages() -> Iterator[Sentence]:
+    """The sentences of messages and hints, as they stand in the sources."""
+    for code, said in CODES.items():
+        yield from sentences(code, said)
+    for folder in SPOKEN:
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            for node in _texts(tree):
+                yield from _of_text(str(path.relative_to(ROOT)), node)
+
+
+def _texts(node: ast.AST) -> Iterator[ast.expr]:
+    """Text literals that are not docstrings; those of an f-string as a whole."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant):
+            continue
+        if isinstance(child, ast.JoinedStr) or (
+            isinstance(child, ast.Constant) and isinstance(child.value, str)
+        ):
+            yield child
+        else:
+            yield from _texts(child)
+
+
+def _of_text(name: str, node: ast.expr) -> Iterator[Sentence]:
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+    text = "".join(
+        part.value if isinstance(part, ast.Constant) and isinstance(part.value, str) else "x"
+        for part in parts
+    )
+    if text.count(" ") >= 2:
+        yield from sentences(f"{name}:{node.lineno}", text)
+
+
+def of_explanations() -> Iterator[Sentence]:
+    """The sentences of the reasons that `explain` prints."""
+    for path in sorted((ROOT / "gen/explanations").glob("*.yaml")):
+        name = str(path.relative_to(ROOT))
+        text = path.read_text(encoding="utf-8")
+        for found in re.finditer(r"^ *why: (?:[|>]-?\n)?(.*(?:\n    +\S.*)*)", text, re.M):
+            yield from sentences(f"{name}:{text[: found.start()].count(chr(10)) + 1}", found[1])
