@@ -28,6 +28,11 @@ COMMANDS = {
         "put the periodic rows of a model into processors anew, and check",
     ),
     "run": ("run", "build and run the controller on this machine"),
+    "requirements": (
+        "requirements",
+        "trace requirements to elements, code, claims and tests, and back",
+    ),
+    "evidence": ("evidence", "write the evidence for an assessor as a folder"),
     "draw": ("draw", "draw the charts and the component structure"),
     "loopback": (
         "loopback",
