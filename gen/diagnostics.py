@@ -34,6 +34,7 @@ GROUPS: Mapping[str, str] = {
     "11": "Behaviour",
     "12": "Commands and devices",
     "13": "Scenarios",
+    "14": "Requirements",
 }
 
 CODES: Mapping[str, str] = {
@@ -60,6 +61,7 @@ CODES: Mapping[str, str] = {
     "RV-0208": "A value is not one of the words that the key allows.",
     "RV-0209": "A list or mapping has too few or too many elements.",
     "RV-0210": "A key has no meaning together with, or without, another one.",
+    "RV-0211": "A requirement id is not well-formed, or an element names it twice.",
     "RV-0301": "A name is not an Ada identifier of at most 60 letters, digits and underscores.",
     "RV-0302": "A name is a reserved word of Ada.",
     "RV-0303": "Two elements of one scope have the same name; case does not count.",
@@ -211,6 +213,12 @@ CODES: Mapping[str, str] = {
     "RV-1304": "A scenario names what neither it nor the system has.",
     "RV-1305": "A value in a scenario is not one of the field of its message.",
     "RV-1306": "Parts of a scenario do not fit together.",
+    "RV-1401": "A list of requirements cannot be read.",
+    "RV-1402": "An id in a list of requirements is not well-formed, or given twice.",
+    "RV-1403": "No element of the model names a requirement.",
+    "RV-1404": "An element, scenario or test names a requirement that the list lacks.",
+    "RV-1405": "No scenario or test names a requirement, or none of its tests passed.",
+    "RV-1406": "A claim about the elements of a requirement is not met, or there is none.",
 }
 """Every code with what it says; docs/errors.md is written from this table."""
 

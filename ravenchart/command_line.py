@@ -32,6 +32,11 @@ COMMANDS = {
         "compare the generated program with the model, by independent code",
     ),
     "run": ("run", "build and run the controller on this machine"),
+    "requirements": (
+        "requirements",
+        "trace requirements to elements, code, claims and tests, and back",
+    ),
+    "evidence": ("evidence", "write the evidence for an assessor as a folder"),
     "draw": ("draw", "draw the charts and the component structure"),
     "loopback": (
         "loopback",

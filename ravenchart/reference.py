@@ -1,6 +1,7 @@
 """The pages about the command line that are made of the command line itself.
 
-`python -m ravenchart.reference` writes docs/answer.schema.json and docs/ravenchart.1.
+`python -m ravenchart.reference` writes docs/answer.schema.json, docs/evidence.schema.json and
+docs/ravenchart.1.
 """
 
 from __future__ import annotations
@@ -12,12 +13,13 @@ from . import manual
 from .command_line import COMMANDS, WITHOUT_JSON, whole_parser
 from .commands.answer import FORMAT, Found
 from .commands.results import RESULTS
+from .evidence.documents import Evidence
 from .failures import MEANINGS
 from .gen.files.reference import write
 from .grammar import grammar
 from .paths import ROOT, version
 
-SCHEMA, MANUAL = "answer.schema.json", "ravenchart.1"
+SCHEMA, MANUAL, EVIDENCE = "answer.schema.json", "ravenchart.1", "evidence.schema.json"
 
 
 def answer_schema() -> dict[str, Any]:
@@ -41,6 +43,20 @@ def answer_schema() -> dict[str, Any]:
         "$defs": shared["$defs"],
     }
     untitled = _untitled(schema)
+    assert isinstance(untitled, dict)
+    return untitled
+
+
+def evidence_schema() -> dict[str, Any]:
+    """The JSON Schema of evidence.json."""
+    from pydantic import TypeAdapter
+
+    made = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **TypeAdapter(Evidence).json_schema(),
+        "title": "Ravenchart: evidence.json",
+    }
+    untitled = _untitled(made)
     assert isinstance(untitled, dict)
     return untitled
 
@@ -101,6 +117,7 @@ def pages() -> dict[str, str]:
     """File name to text of each page."""
     return {
         SCHEMA: json.dumps(answer_schema(), indent=2) + "\n",
+        EVIDENCE: json.dumps(evidence_schema(), indent=2) + "\n",
         MANUAL: manual.page(grammar(whole_parser()), version()),
     }
 

@@ -17,6 +17,7 @@ from ravenchart.gen.origins import Origin
 
 from .located import Map, Seq, scalar
 from .schema import ModelFile
+from .schema_base import REQUIREMENTS
 
 Path = tuple[str | int, ...]
 
@@ -205,7 +206,7 @@ class Place:
         if "(" in name or ")" in name or " " in name:
             hint = "inside { }, put an expression that has a comma into quotes"
             return error("RV-0201", origin, f"the key `{name}` is unknown here", hint=hint)
-        near = meant(name, allowed)
+        near = meant(name, [*allowed, REQUIREMENTS])
         listed = f"the keys here: {', '.join(allowed)}"
         hint = f"{near} {listed}" if near and near.startswith("did") else listed
         return error("RV-0201", origin, f"the key `{name}` is unknown here", hint=hint)
@@ -216,11 +217,14 @@ SHAPES = ("range", "values", "fields", "set", "send", "call", "raise", "if", "in
 
 
 def _allowed(loc: Iterable[str | int]) -> list[str]:
-    """The keys that the form at the end of ``loc``, without its last step, may have."""
+    """The keys that the form at the end of ``loc``, without its last step, may have.
+
+    Without `req`, which every form may have.
+    """
     form = _form_at(ModelFile, list(loc)[:-1])
     if form is None:
         return []
-    return [field.alias or name for name, field in form.model_fields.items()]
+    return [f.alias or name for name, f in form.model_fields.items() if name != REQUIREMENTS]
 
 
 def _form_at(form: type[BaseModel], steps: list[str | int]) -> type[BaseModel] | None:

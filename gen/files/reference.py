@@ -15,6 +15,7 @@ from typing import Any
 from ravenchart.gen import explanations
 
 from .schema import ModelFile
+from .schema_base import REQUIREMENTS
 
 SCHEMA, REFERENCE, ERRORS = "model.schema.json", "model-reference.md", "errors.md"
 
@@ -30,6 +31,7 @@ TITLES: Mapping[str, str] = {
     "PortRegionForm": "Port region",
     "EventForm": "Event",
     "DataForm": "Data item",
+    "InvariantForm": "Invariant",
     "RegionForm": "Region",
     "InitialForm": "Initial transition",
     "StateForm": "State",
@@ -84,6 +86,11 @@ aliases, tags and tabs are refused. Names are Ada identifiers of at most 60 char
 does not count; one of more than 24 may be refused where a generated line would not fit 79 columns.
 A *duration* is a number with `ns`, `us`, `ms` or `s`, exact in nanoseconds and at
 most one hour; a *size* has `B`, `KiB` or `MiB`; a *bit rate* `bit/s`, `kbit/s` or `Mbit/s`.
+
+Every mapping of a model that is an element may have the key `req`, also a state or an action: the
+list of the ids of the requirements that it implements, `req: [R-12, R-13]`. An id has letters,
+digits and `- _ . : /`, at most 64. The ids change neither program nor timing;
+[Evidence](evidence.md) says what is made of them. The tables below do not repeat the key.
 
 ## Expressions
 
@@ -175,7 +182,8 @@ def reference() -> str:
         required = form.get("required", [])
         text = form["description"].split("\n\n")[0].replace("\n", " ")
         lines = [f"## {title}", "", text, "", "| key | value | meaning |", "| --- | --- | --- |"]
-        for key, value in form["properties"].items():
+        own = {key: v for key, v in form["properties"].items() if key != REQUIREMENTS}
+        for key, value in own.items():
             need = " (required)" if key in required else ""
             meaning = value.get("description", "").replace("|", "\\|")
             if "default" in value:

@@ -373,6 +373,19 @@ class EventForm(Element):
     )
 
 
+class InvariantForm(Element):
+    """An invariant of `never` with more than its condition."""
+
+    condition: ExpressionText = key("The condition that shall never hold.")
+
+
+NeverForm = Annotated[
+    Annotated[ExpressionText, Tag("<one>")] | Annotated[InvariantForm, Tag("<map>")],
+    shaped("a condition, or a mapping with the keys `condition` and `req`"),
+]
+"""What shall never hold."""
+
+
 class ComponentForm(Element):
     """A component: what its instances have in common."""
 
@@ -393,7 +406,7 @@ class ComponentForm(Element):
     data: dict[Name, DataForm] | None = optional("Data items.")
     regions: dict[Name, RegionForm] | None = optional("State machines, run side by side.")
     activities: dict[Name, ActivityForm] | None = optional("Activities.")
-    never: dict[Name, ExpressionText] | None = optional(
+    never: dict[Name, NeverForm] | None = optional(
         "Invariants: conditions over states of any region and data that shall never hold."
     )
 

@@ -5,6 +5,7 @@ The forms themselves are in `schema`.
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, TypeVar
 
 from pydantic import (
@@ -22,7 +23,13 @@ from pydantic import (
 from pydantic import Field as PydanticField
 from pydantic_core import PydanticCustomError
 
-from ravenchart.gen.language.names import IDENTIFIER, LONGEST_NAME, problem_of
+from ravenchart.gen.language.names import (
+    IDENTIFIER,
+    LONGEST_NAME,
+    LONGEST_REQUIREMENT,
+    REQUIREMENT,
+    problem_of,
+)
 from ravenchart.gen.language.quantities import (
     BITS_PER_SECOND,
     BYTES,
@@ -138,6 +145,28 @@ BitRate = Annotated[int, BeforeValidator(_bit_rate), WithJsonSchema(_bit_rate_sc
 DataRate = Annotated[int, BeforeValidator(_data_rate), WithJsonSchema(_bit_rate_schema)]
 
 
+def _requirement(value: object) -> object:
+    well_formed = isinstance(value, str) and re.match(REQUIREMENT, value)
+    if not well_formed or len(str(value)) > LONGEST_REQUIREMENT:
+        raise _coded("RV-0211", "must be the id of a requirement such as `R-12`")
+    return value
+
+
+def _each_once(ids: list[str]) -> list[str]:
+    twice = next((one for number, one in enumerate(ids) if one in ids[:number]), None)
+    if twice is not None:
+        raise _coded("RV-0211", f"the requirement {twice} is named twice")
+    return ids
+
+
+RequirementId = Annotated[
+    str,
+    BeforeValidator(_requirement),
+    WithJsonSchema({"type": "string", "pattern": REQUIREMENT, "maxLength": LONGEST_REQUIREMENT}),
+]
+"""The id of a requirement in a list of requirements."""
+
+
 def _scalar(value: object) -> int | bool | str:
     if not isinstance(value, int | str):
         raise _coded("RV-0203", "must be a single value")
@@ -171,6 +200,9 @@ def shaped(what: str) -> Discriminator:
     )
 
 
+REQUIREMENTS = "req"
+"""The key that every element may have."""
+
 # --- Elements ------------------------------------------------------------------
 
 E = TypeVar("E", bound="Element")
@@ -181,6 +213,10 @@ class Element(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
     _raw: Map = PrivateAttr(default_factory=lambda: Map(Origin("", 1, 1)))
+
+    req: Annotated[list[RequirementId], AfterValidator(_each_once)] | None = optional(
+        "Ids of the requirements that the element implements.", min_length=1
+    )
 
     @model_validator(mode="wrap")
     @classmethod

@@ -13,6 +13,9 @@ from ravenchart.gen.origins import Origin
 
 IDENTIFIER = r"^[A-Za-z](_?[A-Za-z0-9])*$"
 LONGEST_NAME = 60
+REQUIREMENT = r"^[A-Za-z0-9]([-A-Za-z0-9_.:/]*[A-Za-z0-9])?$"
+"""The id of a requirement, as a list of requirements has it."""
+LONGEST_REQUIREMENT = 64
 LONG_NAME = 24
 """Names up to this length always fit the lines of the generated program."""
 

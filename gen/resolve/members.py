@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ravenchart.gen.files.schema import ComponentForm, InputForm, OutputForm
+from ravenchart.gen.files.schema import ComponentForm, InputForm, InvariantForm, OutputForm
 from ravenchart.gen.language.names import HIDING, Findings, Scope
 from ravenchart.gen.language.terms import Ns, Reading, Type
 from ravenchart.gen.model.component import (
@@ -259,7 +259,11 @@ def invariants_of(
     scope: Scope[Invariant] = Scope("invariant")
     for name, text in (form.never or {}).items():
         origin = form.entry_at("never", name)
-        met = condition(text, form.place("never", name), words, findings, name)
+        place = form.place("never", name)
+        if isinstance(text, InvariantForm):
+            place = text.place("condition")
+            text = text.condition
+        met = condition(text, place, words, findings, name)
         made = None if met is None else Invariant(name, origin, met)
         scope.declare(name, origin, made, findings)
     return scope.sound()

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from ravenchart.gen.diagnostics import Diagnostic, error, in_order, render_all
 from ravenchart.gen.files.located import Map, Seq, lines_of
+from ravenchart.gen.language.names import REQUIREMENT
 from ravenchart.gen.origins import Origin
 
 Path = tuple[int | str, ...]
@@ -84,7 +85,7 @@ class Source:
     ) -> None:
         """One thing that does not fit, in words."""
         assert isinstance(context, dict) and isinstance(item, dict)
-        names = [one.alias or name for name, one in form.model_fields.items()]
+        names = [one.alias or name for name, one in form.model_fields.items() if name != "req"]
         inside = self._inside((*path, *place))
         if kind == "missing":
             shown = ", ".join(f"`{name}`" for name in names)
@@ -101,6 +102,8 @@ class Source:
             self.wrong(VALUES, inside, told if name else told.replace("`` ", "this "))
 
     def _wanted(self, kind: str, context: dict[str, object], item: dict[str, object]) -> str:
+        if kind == "string_pattern_mismatch" and context["pattern"] == REQUIREMENT:
+            return "the id of a requirement such as `R-12`"
         if kind == "value_error":
             return str(context["error"])
         if kind == "literal_error":

@@ -17,6 +17,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from ravenchart.gen.diagnostics import error, render
 from ravenchart.gen.files.located import grow
+from ravenchart.gen.language.names import LONGEST_REQUIREMENT, REQUIREMENT
 from ravenchart.gen.origins import Origin
 
 from .plant import Axis
@@ -54,10 +55,17 @@ Element = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``owner.name``: a region or port of the controller."""
 
 
+Requirement = Annotated[str, Field(pattern=REQUIREMENT, max_length=LONGEST_REQUIREMENT)]
+"""The id of a requirement."""
+
+
 class _Form(BaseModel):
     """Unknown keys are mistakes."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    req: Annotated[tuple[Requirement, ...], Field(min_length=1)] = ()
+    """Ids of the requirements that this tests."""
 
 
 class DriveForm(_Form):

@@ -16,12 +16,13 @@ from dataclasses import asdict, dataclass, field
 from os import devnull
 from typing import Any, Literal
 
+from ravenchart.described import Described
 from ravenchart.failures import INTERNAL, INTERNAL_TEXT
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import version
 
-from .results import Described, Result
+from .results import Result
 
 FORMAT = 1
 """The version of the object: raised when a key goes or changes its meaning."""

@@ -6,17 +6,8 @@ Times are whole ns. A change of these classes changes docs/answer.schema.json (`
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
 
-
-class Described:
-    """A part of the object: the text below a key describes it, and there are no other keys."""
-
-    __slots__ = ()
-    __pydantic_config__: ClassVar[dict[str, Any]] = {
-        "use_attribute_docstrings": True,
-        "extra": "forbid",
-    }
+from ravenchart.described import Described
 
 
 @dataclass(slots=True)
@@ -350,6 +341,62 @@ class CertificateResult(Result):
     """What was taken as it is, and how many numbers that are; 0: something else."""
 
 
+@dataclass(slots=True)
+class TracedRequirement(Described):
+    """A requirement with all that belongs to it."""
+
+    id: str
+    """Its id in the list."""
+    text: str
+    """Its text."""
+    elements: list[str]
+    """Elements of the model that name it."""
+    code: list[str]
+    """Generated files of these elements."""
+    claims: dict[str, str]
+    """Claims about these elements, each with its verdict."""
+    tests: dict[str, str]
+    """Tests and scenarios that name it, each with its outcome."""
+
+
+@dataclass(slots=True)
+class TracedElement(Described):
+    """An element of the model that names requirements."""
+
+    element: str
+    """Its name."""
+    kind: str
+    """What it is."""
+    requirements: list[str]
+    """The ids."""
+    code: list[str]
+    """Its generated files."""
+    claims: list[str]
+    """Claims about it."""
+
+
+@dataclass(slots=True)
+class RequirementsResult(Result):
+    """Traceability both ways; its findings are the diagnostics."""
+
+    requirements: list[TracedRequirement]
+    """In the order of the list."""
+    elements: list[TracedElement]
+    """In the order of the model."""
+
+
+@dataclass(slots=True)
+class EvidenceResult(Result):
+    """A folder of evidence, written."""
+
+    folder: str
+    """Where it is."""
+    files: list[str]
+    """Below that folder."""
+    claims: dict[str, int]
+    """How many claims have each verdict."""
+
+
 RESULTS: dict[str, type[Result]] = {
     "check": CheckResult,
     "generate": GenerateResult,
@@ -366,5 +413,7 @@ RESULTS: dict[str, type[Result]] = {
     "import": ImportResult,
     "export-dbc": ExportResult,
     "check-certificate": CertificateResult,
+    "requirements": RequirementsResult,
+    "evidence": EvidenceResult,
 }
 """Of each command with such an object; `analyse` and `simulate` have forms of their own."""

@@ -145,6 +145,7 @@ def record_text(proof: Proof) -> str:
         f"justified = {found.justified}",
         f"assumed = {found.assumed}",
         f"outside = {json.dumps([o.name for o in found.outside])}",
+        f"tool = {json.dumps(proof.tool)}",
         "",
         "[sources]",
         *(f'"{path}" = "{digest}"' for path, digest in proof.sources),

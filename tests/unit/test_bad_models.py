@@ -32,5 +32,7 @@ def test_nearly_every_code_is_shown_by_a_bad_model() -> None:
     stimuli = [f"RV-{number}" for number in range(1001, 1011)]
     # and so have scenarios
     scenarios = [f"RV-{number}" for number in range(1301, 1307)]
+    # and lists of requirements
+    lists = [f"RV-{number}" for number in range(1401, 1407)]
     read = ["RV-0102", "RV-0103", "RV-0113"]
-    assert unshown == [*read, *unready, *late, *stimuli, "RV-1110", *scenarios]
+    assert unshown == [*read, *unready, *late, *stimuli, "RV-1110", *scenarios, *lists]

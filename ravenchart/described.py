@@ -1,0 +1,15 @@
+"""Objects that are written as JSON and described by a JSON Schema."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+
+class Described:
+    """A part of the object: the text below a key describes it, and there are no other keys."""
+
+    __slots__ = ()
+    __pydantic_config__: ClassVar[dict[str, Any]] = {
+        "use_attribute_docstrings": True,
+        "extra": "forbid",
+    }

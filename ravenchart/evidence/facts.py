@@ -1,0 +1,187 @@
+"""What is at hand about a model: checked, generated anew, and held against what is on disk.
+
+Files are named from the checkout or from the model's folder, never by where that folder is: so
+equal inputs give equal facts.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ravenchart.analysis.findings.deadlines import findings
+from ravenchart.building import checking, generation, programs
+from ravenchart.building.checking import Checked
+from ravenchart.building.programs import Program
+from ravenchart.failures import Refused
+from ravenchart.gen.emit.program import generate
+from ravenchart.gen.files.links import Link, links
+from ravenchart.gen.files.load import read_file, read_model
+from ravenchart.paths import ROOT
+from ravenchart.proof import outside_spark
+
+from . import records
+from .records import Record
+from .results import Test, junit
+
+PATIENCE = 300.0
+"""Seconds of processor time for the rules of behaviour."""
+FIRST_DRIVER = "loopback"
+"""With it all of the runtime is proved; with another only what differs."""
+OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
+"""What may be outside SPARK in the runtime, with the entry of the ledger."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """The program of a node: its record, and what of its files is not what the model gives."""
+
+    program: Program
+    record: Record | None
+    differences: tuple[str, ...]
+    files: tuple[tuple[str, str], ...]
+    """(name, SHA-256) of each of its files on disk."""
+
+    @property
+    def name(self) -> str:
+        """The name of the node."""
+        return self.program.node
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """All that the claims are made of."""
+
+    checked: Checked
+    """The model as it is here, names of files from its own folder."""
+    driver: str
+    nodes: tuple[Node, ...]
+    runtime: tuple[Record, ...]
+    """Of the runtime and the HAL with this driver; none where they are not at hand."""
+    reasons: tuple[tuple[str, str], ...]
+    """What the user says may be outside SPARK, with the reason."""
+    runtime_reasons: tuple[tuple[str, str], ...]
+    ungenerated: str
+    """Why no program can be generated of the model; "" where one can."""
+    sources: tuple[tuple[str, str], ...]
+    """(name, SHA-256) of the files of the model."""
+    links: tuple[Link, ...]
+    tests: tuple[Test, ...] | None
+    """Results of tests, where some were given."""
+
+
+def gather(
+    model: Path,
+    driver: str | None = None,
+    given: Sequence[Path] = (),
+    tests: Path | None = None,
+    patience: float = PATIENCE,
+) -> Facts:
+    """What is at hand of a model; Refused where it has errors other than missed deadlines."""
+    folder = model.parent
+
+    def read(path: Path, limit: int) -> bytes:
+        return read_file(folder / path, limit)
+
+    main = Path(model.name)
+    found = checking.check(main, deadlines=False, patience=patience, finish=True, read=read)
+    checked = replace(found, path=model)
+    chosen = driver or programs.default_driver(checked)
+    programs.check_driver(checked, chosen)
+    files, why = _generated(checked)
+    made = programs.programs_of(checked)
+    _refuse_foreign(given, made)
+    nodes = tuple(_node(program, files, why, given) for program in made)
+    runtime, reasons = _runtime(chosen, folder)
+    sources = tuple((name, _sha(folder / name)) for name in found.sources)
+    return Facts(
+        checked,
+        chosen,
+        nodes,
+        runtime,
+        tuple(outside_spark.reasons_for_model(folder).items()),
+        reasons,
+        why,
+        sources,
+        links(read_model(main, read).forms),
+        None if tests is None else junit(tests),
+    )
+
+
+def _generated(checked: Checked) -> tuple[dict[str, str], str]:
+    """The files that the model gives; none and the reason where it gives none."""
+    late = next((one for one in findings(checked.analysis) if one.is_error), None)
+    if late is not None:
+        return {}, late.message
+    try:
+        generation.without_clashes(checked)
+        return generate(checked.system, generation.claims(checked)), ""
+    except Refused as refused:
+        found = [str(getattr(one, "message", "")) for one in refused.found]
+        return {}, next(iter(found), "") or "the model cannot be certified"
+
+
+def _refuse_foreign(given: Sequence[Path], made: Sequence[Program]) -> None:
+    """Refused where a record that is given is that of no program of the model."""
+    for path in given:
+        if not path.is_file():
+            raise Refused(f"{path}: error: there is no such record")
+        if len(made) > 1 and not any(records.belongs(path, program) for program in made):
+            raise Refused(
+                f"{path}: error: this is the record of no program of the model\n"
+                f"{path}: hint: write one with `ravenchart prove MODEL --record FILE`"
+            )
+
+
+def _node(program: Program, files: dict[str, str], why: str, given: Sequence[Path]) -> Node:
+    """The facts of one program; ``why`` there are no files, where there are none."""
+    folder = program.checked.folder
+    path = next((one for one in given if records.belongs(one, program)), None)
+    if path is None and given:
+        path = given[0]  # of another place, or damaged: its problems say so
+    if path is None:
+        path = records.of_example(program)
+    record = None
+    if path is not None:
+        record = records.read(path, path.name, folder)
+        record = records.judged(record, records.missing(program, record))
+    within = f"{program.folder}/" if program.folder else ""
+    wanted = {
+        name.removeprefix(within): text
+        for name, text in files.items()
+        if not program.folder or name.startswith(within)
+    }
+    there = {
+        path.relative_to(program.generated).as_posix(): path
+        for path in sorted(program.generated.rglob("*"))
+        if path.is_file() and path.suffix in (*records.ADA, ".gpr", ".adc", ".json", ".dbc")
+    }
+    differences = [] if files else [f"it gives none: {why}"]
+    differences += [f"{name} is not there" for name in wanted if name not in there]
+    for name, path in there.items():
+        if name not in wanted and files:
+            differences.append(f"{name} is not generated of this model")
+        elif files and path.read_bytes() != wanted[name].encode("utf-8"):
+            differences.append(f"{name} is not what the model gives")
+    pairs = tuple((records.shown(path, folder), _sha(path)) for path in there.values())
+    return Node(program, record, tuple(differences), pairs)
+
+
+def _runtime(driver: str, folder: Path) -> tuple[tuple[Record, ...], tuple[tuple[str, str], ...]]:
+    """The records of runtime and HAL, and what may be outside SPARK in them."""
+    found: list[Record] = []
+    reasons: dict[str, str] = {}
+    for name in dict.fromkeys((FIRST_DRIVER, driver)):
+        target = f"runtime-{name}"
+        path = records.RECORDS / f"{target}.toml"
+        if path.is_file():
+            found.append(records.read(path, path.name, folder))
+        if OUTSIDE.is_file():
+            reasons |= outside_spark.reasons_for_target(OUTSIDE, target)
+    return tuple(found), tuple(reasons.items())
+
+
+def _sha(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

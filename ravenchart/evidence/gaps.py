@@ -1,0 +1,113 @@
+"""What is not shown about a controller: the first page of the folder."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from ravenchart.analysis.units import duration
+
+from . import ledger
+from .claim import Claim, Shown
+from .documents import Gap
+from .facts import Facts
+from .records import UNKNOWN_TOOL
+from .results import PASSED
+
+ORDER = (Shown.NOT_MET, Shown.NOT_SHOWN, Shown.PARTLY, Shown.USERS)
+
+LIMITS = (
+    ("object code", "Proof is about source code. The compiler and its run-time library are taken "
+     "as correct (ASM-006, ASM-009)."),
+    ("invariants", "`never` is checked on the model. It is no contract of the generated code."),
+    ("effects", "No postcondition states what an effect or a user's body does to the data."),
+    ("coverage", "No structural coverage is measured here."),
+    ("mutation", "No mutation score is part of this folder."),
+    ("records", "A proof record is a text file: whoever can write it can lie. Who does not trust "
+     "it runs `ravenchart prove MODEL --fresh` and compares."),
+    ("requirements", "An id at an element says that somebody saw a connection. That the element "
+     "implements the text needs a review."),
+)  # fmt: skip
+"""What no folder shows."""
+
+
+def gaps(facts: Facts, claims: Sequence[Claim]) -> tuple[Gap, ...]:
+    """All of them, the worst first."""
+    return (
+        *_claims(claims),
+        *_assumptions(facts),
+        *_outside(facts),
+        *_budgets(facts),
+        *_tests(facts),
+        *_tools(facts),
+        *(Gap("limit", what, why) for what, why in LIMITS),
+    )
+
+
+def _claims(claims: Sequence[Claim]) -> Iterator[Gap]:
+    for verdict in ORDER:
+        for claim in claims:
+            if claim.verdict is verdict:
+                reason = claim.reasons[0] if claim.reasons else claim.theorem
+                more = f" (and {len(claim.reasons) - 1} more)" if len(claim.reasons) > 1 else ""
+                yield Gap("claim", claim.id, f"{verdict.value}: {reason}{more}")
+
+
+def _assumptions(facts: Facts) -> Iterator[Gap]:
+    found = ledger.in_use(facts.checked.system, facts.driver)
+    for one in found:
+        yield Gap("assumption", one.id, f"{one.title[:1].upper()}{one.title[1:]}. {one.text}")
+    if not found:
+        yield Gap("assumption", "ledger", "the ledger of assumptions is not at hand")
+
+
+def _outside(facts: Facts) -> Iterator[Gap]:
+    for name, reason in (*facts.runtime_reasons, *facts.reasons):
+        yield Gap("outside", name, f"no check of its body is made: {reason}")
+
+
+def _budgets(facts: Facts) -> Iterator[Gap]:
+    system = facts.checked.system
+    given = "is given by the model, and not measured"
+    for processor in system.processors:
+        for slot in processor.slots:
+            yield Gap("budget", slot.element, f"wcet {duration(slot.timing.wcet)} {given}")
+    for node in system.nodes:
+        figures = [
+            ("context_switch", node.context_switch),
+            ("critical_section", node.critical_section),
+            ("release", node.release),
+        ]
+        told = ", ".join(f"{name} {duration(value)}" for name, value in figures)
+        yield Gap("budget", node.name, f"{told}: {given}")
+    for device in system.devices:
+        if device.type is not None:
+            told = f"the execution times of the commands of {device.type.name}"
+            yield Gap("budget", device.name, f"{told} are given by the model, and not measured")
+    for bus in system.buses:
+        yield Gap("budget", bus.name, f"driver_wcet {duration(bus.driver_wcet)} {given}")
+        if bus.errors is None:
+            yield Gap("budget", bus.name, "bounds hold for a bus without errors: `errors` is empty")
+        else:
+            every = duration(bus.errors.period)
+            yield Gap(
+                "budget", bus.name,
+                f"bounds hold for {bus.errors.burst} errors at once and one every {every}",
+            )  # fmt: skip
+
+
+def _tests(facts: Facts) -> Iterator[Gap]:
+    if facts.tests is None:
+        yield Gap("test", "tests", "no results of tests are given, so none is shown to pass")
+        return
+    for test in facts.tests:
+        if test.outcome != PASSED:
+            yield Gap("test", test.name, f"{test.outcome}: {test.why}")
+
+
+def _tools(facts: Facts) -> Iterator[Gap]:
+    held = [node.record for node in facts.nodes if node.record is not None]
+    names = [one.name for one in (*held, *facts.runtime) if one.tool == UNKNOWN_TOOL]
+    if names:
+        told = re.sub(r", ([^,]*)$", r" and \1", ", ".join(dict.fromkeys(names)))
+        yield Gap("limit", "prover", f"the version of gnatprove is not recorded in {told}")
