@@ -77,7 +77,7 @@ def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
         return
     for one in findings(analysis.for_all_offsets, but=by_offsets(analysis)):
         if one.is_error:
-            text = f"{one.message} but for offsets, which the certificate cannot show yet"
+            text = f"without offsets, {one.message}; the certificate cannot show offsets here yet"
             hint = "choose times or priorities that do without offsets"
             yield error(UNREADY, one.origin, text, notes=one.notes, hint=hint)
 

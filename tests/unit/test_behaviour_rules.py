@@ -316,7 +316,7 @@ def test_reason_is_named_where_a_transition_would_lead_to_a_state_that_is_never_
     states = REGIONS % ("defer: [Go]", "")
     found = only(model(region("Main", states, moves, head="deferred: 1\n", initial="O")))
     assert found.code == "RV-1101"
-    reason = "go leads to it, and is never taken: while R is active, L defers the event"
+    reason = "go leads to it, but is never taken: while R is active, L defers the event"
     assert [text for _, text in found.notes] == [reason, "L is here"]
     assert found.hint == "remove `defer` from L, or remove S"
     assert not said(model(region("Main", REGIONS % ("", ""), moves, initial="O")))

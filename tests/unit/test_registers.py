@@ -135,7 +135,7 @@ def test_an_event_of_another_number_of_axes_is_refused() -> None:
             "{axis_1: 10, axis_2: -10}": "{axis_1: 1, axis_2: 1, axis_3: 1, axis_4: 1}",
         }
     )
-    assert "[RV-1205]" in told and "Limit_Reached as Angle_X2" in told
+    assert "[RV-1205]" in told and "Limit_Reached of Left carries Angle_X2" in told
 
 
 @pytest.mark.parametrize("supervised", [True, False])

@@ -31,7 +31,7 @@ MISTAKES = [
     ("joint_x.Motion, reaches: Limit}", "joint_x.Motion, reaches: Limitt}",
      "Limitt}", "joint_x.Motion has no state `Limitt` [RV-1304]"),
     ("joint_x.Motion, reaches: Limit}", "joint_x.Motion, reaches: Operational}",
-     "Operational}", "`Operational` has states inside, and a trace tells of these [RV-1304]"),
+     "Operational}", "`Operational` has states inside; a trace records those [RV-1304]"),
     ("region: coordinator.Mission", "region: coordinator.Missing",
      "coordinator.Missing", "coordinator has no region `Missing` [RV-1304]"),
     ("region: coordinator.Mission", "region: boss.Mission",

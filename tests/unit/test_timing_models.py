@@ -137,7 +137,7 @@ def test_queues_that_may_be_full_are_errors_with_the_depth_that_holds_all() -> N
     assert one.startswith("RV-0906 up to 2 values may wait in d.j, but `depth` is 1")
     slow = analysed(QUEUE, two, port)
     (one,) = said(slow)
-    assert one.startswith("RV-0907 any number of values may wait in d.j, and `depth` is 2")
+    assert one.startswith("RV-0907 any number of values may wait in d.j, but `depth` is 2")
     assert slow.schedulable
     expected = ("depth: 2}", "depth: 2, overflow: drop_oldest}")
     assert said(analysed(QUEUE, two, port, expected)) == []

@@ -69,7 +69,7 @@ def test_a_buffer_for_each_message_is_needed() -> None:
     assert "transmit buffers by priority [RV-0617]" in text
     assert "panel sends" in text
     many = (LINK, LINK.replace("depth: 8}", "depth: 9, buffers: priority}"))
-    assert "link has 9 transmit buffers by priority, and a controller 8 at most" in said(
+    assert "link has 9 transmit buffers by priority; a controller has at most 8" in said(
         loaded(many)
     )
 
