@@ -119,6 +119,7 @@ class _Comparison:
         listed = enumeration(self.items, "Selection")
         said = [token.low for token in listed]
         names = [self._name(line, said) for line in wanted]
+        domains = [line.domain for line in wanted]
         order = ["initial_entry", *names, "none"]
         for token in listed:
             text = f"{token.text} is no transition of {self.chart.name} in the model"
@@ -144,6 +145,7 @@ class _Comparison:
                 self._restored(name, line, target, begins["Target"])
             else:
                 self._target(name, target, line.target or {}, begins["Target"])
+        self._domains({"initial_entry": "beginning"} | dict(zip(names, domains, strict=True)))
         self._timers()
 
     def _line_of(self, table: dict[str, tuple[Token, list[Token]]]) -> int:
@@ -270,6 +272,19 @@ class _Comparison:
         wanted = words(f"{line.restores} (Past)")
         text = f"Target of {name} is not {line.restores} (Past) in {lane}"
         self.agree("targets", here, said.get(lane) == wanted, text)
+
+    def _domains(self, wanted: dict[str, str]) -> None:
+        """The regions in which transitions leave and enter, where the program asks for them."""
+        table = cases(self.items, "Domain_Of")
+        for name, domain in wanted.items() if table else ():
+            found = table.pop(name, None)
+            said = " ".join(token.low for token in found[1]) if found else "missing"
+            at = found[0].line if found else 1
+            text = f"Domain_Of of {name} is {said}, by the model {domain}"
+            self.agree("domains", at, said == domain, text)
+        for choice, (token, _) in table.items():
+            text = f"Domain_Of has a line for {token.text}, which the model does not have"
+            self.agree("domains", token.line, choice in ("none", "others"), text)
 
     def _timers(self) -> None:
         """Each time-out: its executions, and the state that it belongs to."""

@@ -24,6 +24,7 @@ CLASSES = {
     "triggers": "transitions: trigger, presence of a guard",
     "guards": "transitions: names and numbers of the guard",
     "targets": "transitions: target",
+    "domains": "transitions: region that holds what is left and entered",
     "timers": "time-outs: executions, state",
 }
 """Each class of comparisons, in the order of the output."""
