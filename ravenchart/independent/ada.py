@@ -44,9 +44,12 @@ def tokens(text: str) -> tuple[Token, ...]:
 def read(path: Path) -> Sequence[Token]:
     """The words of a file."""
     try:
-        return tokens(path.read_text(encoding="utf-8"))
+        found = tokens(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as problem:
         raise UnusableError(f"cannot read {path}: {problem}") from problem
+    if len(found) < 3 or (found[-3].low, found[-1].text) != ("end", ";"):
+        raise UnusableError(f"{path} is not a whole package")
+    return found
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -276,6 +279,7 @@ def cases(items: Sequence[Token], function: str) -> dict[str, tuple[Token, list[
             if len(part) > 3 and part[0].low == "when":
                 arrow = next(n for n, t in enumerate(part) if t.text == "=>")
                 for choice in split(part[1:arrow], "|"):
-                    found[choice[0].low] = choice[0], part[arrow + 1 :]
+                    again = " again" if choice[0].low in found else ""
+                    found[f"{choice[0].low}{again}"] = choice[0], part[arrow + 1 :]
         return found
     return {}

@@ -85,6 +85,8 @@ class Line:
     restores: str = ""
     """The function that restores a history."""
     guards: tuple[str, ...] = ()
+    domain: str = "nothing"
+    """The innermost region that holds all it leaves and enters, as the declared form names it."""
 
 
 class Chart:
@@ -244,13 +246,16 @@ class Chart:
             how = f"{'deep' if vertex.kind == 'deep_history' else 'shallow'}_{label}".lower()
             line = Line(f"Restore_{vertex.name}", own, ("passing",), {}, vertex.form)
             line.conditional, line.restores = True, how
+            line.domain = domain_of(vertex.region)
             found.append(line)
         for segment in out:
             found += self._ways((segment,))
         if vertex.kind != "choice" and not out:
             target = self.entered(vertex.region, [])
             name = f"Default_Of_{vertex.name}"
-            found.append(Line(name, own, ("passing",), target, vertex.form))
+            line = Line(name, own, ("passing",), target, vertex.form)
+            line.domain = domain_of(vertex.region)
+            found.append(line)
         return found
 
     def _out(self, name: str) -> list[Transition]:
@@ -284,9 +289,12 @@ class Chart:
             waits = (bool(self.at(s).inside) or s.lower() in self.working for s in sources)
             conditional = conditional or any(waits)
         triggers = tuple(self._trigger(t) for t in first)
-        target = None if main.kind == "internal" else self._target(main, sources, last)
+        region, targets = self._way(main, sources, last)
+        target = None if main.kind == "internal" else self.entered(region, targets)
         line = Line("_Then_".join(names), sources, triggers, target, main.form, conditional)
         guards = [t.form.text("guard") for t in path if t.guarded] + [main.form.text("when")]
+        if target is not None:
+            line.domain = "ending" if self.ends(last.target) else domain_of(region)
         line.guards = tuple(guard for guard in guards if guard is not None)
         return line
 
@@ -302,18 +310,17 @@ class Chart:
             return "conditions"
         return f"completion_of_{one.source}".lower()
 
-    def _target(
+    def _way(
         self, main: Transition, sources: tuple[str, ...], last: Transition
-    ) -> dict[str, str]:
+    ) -> tuple[Region, list[str]]:
+        """The innermost region that holds all that is left and entered, and the targets."""
         targets = [last.target]
         if self.at(last.target).kind == "fork":
             targets = [t.target for t in self._out(last.target)]
         if main.kind == "local":
-            region = next(r for r in self.around(targets[0]) if r[0] == main.source)
-        else:
-            others = [self.around(v) for v in (*sources, *targets)]
-            region = next(r for r in others[0] if all(r in other for other in others))
-        return self.entered(region, targets)
+            return next(r for r in self.around(targets[0]) if r[0] == main.source), targets
+        others = [self.around(v) for v in (*sources, *targets)]
+        return next(r for r in others[0] if all(r in other for other in others)), targets
 
     def timers(self) -> list[tuple[Transition, tuple[int, ...]]]:
         """Transitions with a time-out, each with its executions, twice where it repeats."""
@@ -334,6 +341,12 @@ def _is_done(value: object) -> bool:
         raised = (value.text("raise") or "").lower() == "done"
         return raised or "done" in listed or any(_is_done(one) for one in value.values())
     return isinstance(value, list) and any(_is_done(one) for one in value)
+
+
+def domain_of(region: Region) -> str:
+    """A region as the declared form names it."""
+    owner, nested = region
+    return "everything" if owner is None else f"inside_{nested or owner}".lower()
 
 
 def key_of(lane: Region) -> str:

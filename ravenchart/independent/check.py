@@ -13,31 +13,50 @@ from .timing import Timing
 ALWAYS = (
     "who shares objects other than devices: each task counts as blocked for a critical section",
     "how guards are put together, and all effects, entries and exits",
-    "leaves that histories restore",
+    "leaves that histories restore, selection, deferral, and all contracts",
     "bodies of the program: gnatprove proves them against the declared form",
     "use of the certificate's facts by the program: the compiler compares them",
 )
 """What this checker does not look at."""
 
 
+MALFORMED = (LookupError, ValueError, StopIteration, RecursionError)
+"""What reading a text raises that is not of the form in question."""
+
+
 def checked(main: Path, generated: Path | None = None) -> Report:
     """The report on a model and its generated program."""
     report = Report()
     model = read(main)
-    deployment = Deployment(model)
     usual = main.name.lower() == "model.yaml"
     name = "generated" if usual else f"generated-{main.name.removesuffix('.yaml')}"
     folder = main.parent / name if generated is None else generated
-    for program, instances in deployment.programs(folder):
+    try:
+        deployment = Deployment(model)
+        programs = deployment.programs(folder)
+    except MALFORMED as problem:
+        raise UnusableError(f"{main} is no valid model: {problem}") from problem
+    if not programs or not deployment.tasks:
+        raise UnusableError(f"{main} has no processors: there is nothing to compare")
+    for program, instances in programs:
         if not program.is_dir():
             raise UnusableError(f"{program} is missing: generate the program first")
-        path = program / f"{model.name.lower()}-timing_certificate.ads"
-        Timing(deployment, path, report).check()
-        kinds = model.section("components")
-        here = (deployment.instances.map(one).text("component") or "" for one in instances)
-        for component in dict.fromkeys(kinds.name(kind) for kind in here):
-            if component is not None:
-                check_component(model, component, program, report)
+        try:
+            _check(deployment, program, instances, report)
+        except MALFORMED as problem:
+            raise UnusableError(f"{program} cannot be compared: {problem}") from problem
     for what in ALWAYS:
         report.skip(what, 0)
     return report
+
+
+def _check(deployment: Deployment, program: Path, instances: list[str], report: Report) -> None:
+    """The program of one node."""
+    model = deployment.model
+    path = program / f"{model.name.lower()}-timing_certificate.ads"
+    Timing(deployment, path, report).check()
+    kinds = model.section("components")
+    here = (deployment.instances.map(one).text("component") or "" for one in instances)
+    for component in dict.fromkeys(kinds.name(kind) for kind in here):
+        if component is not None:
+            check_component(model, component, program, report)

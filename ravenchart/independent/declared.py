@@ -7,7 +7,7 @@ from pathlib import Path
 
 from . import ada
 from .ada import Token, cases, enumeration, split, words
-from .chart import TOP, Chart, Line, Region, key_of
+from .chart import TOP, Chart, Line, Region, domain_of, key_of
 from .findings import Report, UnusableError
 from .model import Model
 
@@ -119,6 +119,7 @@ class _Comparison:
         listed = enumeration(self.items, "Selection")
         said = [token.low for token in listed]
         names = [self._name(line, said) for line in wanted]
+        domains = [line.domain for line in wanted]
         order = ["initial_entry", *names, "none"]
         for token in listed:
             text = f"{token.text} is no transition of {self.chart.name} in the model"
@@ -144,7 +145,9 @@ class _Comparison:
                 self._restored(name, line, target, begins["Target"])
             else:
                 self._target(name, target, line.target or {}, begins["Target"])
+        self._domains({"initial_entry": "beginning"} | dict(zip(names, domains, strict=True)))
         self._timers()
+        self._occurrences(wanted)
 
     def _line_of(self, table: dict[str, tuple[Token, list[Token]]]) -> int:
         """Where a function begins."""
@@ -271,10 +274,40 @@ class _Comparison:
         text = f"Target of {name} is not {line.restores} (Past) in {lane}"
         self.agree("targets", here, said.get(lane) == wanted, text)
 
+    def _occurrences(self, lines: list[Line]) -> None:
+        """Each event of the queue is the occurrence of its name, any other is none."""
+        table = cases(self.items, "To_Occurrence")
+        events = {one for line in lines for one in line.triggers if one.startswith("on_")}
+        for choice, (token, result) in table.items():
+            event = choice.rpartition(".")[2]
+            said = " ".join(t.low for t in result)
+            own = {f"on_{event}", f"on_{event.removesuffix('_event')}"}
+            text = f"To_Occurrence makes {said} of {token.text}"
+            holds = said == "conditions" if choice == "others" else said in own
+            self.agree("triggers", token.line, holds, text)
+            events.discard(said)
+        text = f"To_Occurrence has no line for {', '.join(sorted(events))}"
+        at = self._line_of(table)
+        self.agree("triggers", at, not events, text)
+
+    def _domains(self, wanted: dict[str, str]) -> None:
+        """The regions in which transitions leave and enter, where the program asks for them."""
+        table = cases(self.items, "Domain_Of")
+        for name, domain in wanted.items() if table else ():
+            found = table.pop(name, None)
+            said = " ".join(token.low for token in found[1]) if found else "missing"
+            at = found[0].line if found else 1
+            text = f"Domain_Of of {name} is {said}, by the model {domain}"
+            self.agree("domains", at, said == domain, text)
+        for choice, (token, _) in table.items():
+            text = f"Domain_Of has a line for {token.text}, which the model does not have"
+            self.agree("domains", token.line, choice in ("none", "others"), text)
+
     def _timers(self) -> None:
         """Each time-out: its executions, and the state that it belongs to."""
         table = cases(self.items, "Timer_After")
         wanted = self.chart.timers()
+        domains = {token.low for token in enumeration(self.items, "Domain")}
         for number, (one, counts) in enumerate(wanted, 1):
             found = table.pop(str(number), None)
             if found is None:
@@ -291,6 +324,14 @@ class _Comparison:
             states = set(self.active("After", one.source))
             text = f"the time-out of {one.name} does not start with {one.source}"
             self.agree("timers", found[0].line, after == states, text)
+            before = set(_conjuncts(parts[2])) if len(parts) == 5 else set()
+            states = {words("D /= Beginning"), *self.active("Before", one.source)}
+            around = {domain_of(region) for region in self.chart.around(one.source)} & domains
+            wanted_ends = around | {"everything", "beginning"}
+            said = {t.low for t in parts[1]} - {"d", "=", "or", "else"}
+            text = f"the time-out of {one.name} does not end with {one.source}: wanted "
+            text += ", ".join(sorted(wanted_ends))
+            self.agree("timers", found[0].line, before == states and said == wanted_ends, text)
         for choice, (token, _) in table.items():
             if choice != "others":
                 self.agree("timers", token.line, False, "a time-out that the model does not have")

@@ -21,9 +21,10 @@ CLASSES = {
     "states": "states of charts",
     "transitions": "transitions: presence, order of precedence",
     "sources": "transitions: source",
-    "triggers": "transitions: trigger, presence of a guard",
+    "triggers": "transitions: trigger, presence of a guard; events",
     "guards": "transitions: names and numbers of the guard",
     "targets": "transitions: target",
+    "domains": "transitions: region that holds what is left and entered",
     "timers": "time-outs: executions, state",
 }
 """Each class of comparisons, in the order of the output."""

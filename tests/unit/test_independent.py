@@ -220,6 +220,20 @@ def test_a_program_that_is_not_there_is_no_agreement(tmp_path: Path) -> None:
     assert main(["check-certificate", str(model)]) == 2
 
 
+def test_text_that_cannot_be_read_is_no_agreement(tmp_path: Path) -> None:
+    home = _copied(THREE, tmp_path)
+    for path in (home / "model.yaml", home / "generated/three_components-station-handling.ads"):
+        text = path.read_text(encoding="utf-8")
+        for end in range(0, len(text), 800):
+            path.write_text(text[:end], encoding="utf-8")
+            try:
+                assert checked(home / "model.yaml").disagreements
+            except UnusableError as problem:
+                assert str(home) in str(problem)
+        path.write_text(text, encoding="utf-8")
+    assert checked(home / "model.yaml").agrees
+
+
 # --- The two command lines -----------------------------------------------------------
 
 
