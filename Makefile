@@ -4,6 +4,8 @@ RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
 # A warning stops a build of our own; it does not stop a user's.
 export RAVENCHART_WARNINGS := errors
+# The results of the last `make test`, for the evidence of the examples.
+RESULTS    := build/tests.xml
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
 .PHONY: help setup demo test test-long hw-test check prove generate bench bench-proof mutate docs site
@@ -30,7 +32,7 @@ demo: setup
 	@$(RAVENCHART) run examples/cartesian_robot/model.yaml --scenario examples/cartesian_robot/scenario.yaml --report build/demo
 
 test: setup
-	@$(PYTHON) -P -m pytest -q
+	@$(PYTHON) -P -m pytest -q --junit-xml=$(RESULTS)
 
 test-long: setup
 	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q
@@ -70,6 +72,9 @@ docs: setup
 	   $(RAVENCHART) draw $$e/model.yaml --out docs/pictures/$$(basename $$e) || exit 1; done
 
 site: setup
+	@for e in pump cartesian_robot two_nodes; do \
+	   $(RAVENCHART) evidence examples/$$e/model.yaml --out build/site_extra/evidence/$$e \
+	      $(if $(wildcard $(RESULTS)),--tests $(RESULTS)) || test $$? -eq 1 || exit 1; done
 	@.venv/bin/sphinx-build -q -W --keep-going -b html -c docs/site . build/site
 	@echo build/site/docs/index.html
 

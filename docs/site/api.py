@@ -1,5 +1,7 @@
 """The API pages of the documentation: one for each Ada package, one for each Python package.
 
+And one that leads to the evidence of the examples.
+
 They are made of the sources at each build, below build/, so that none of them is ever old.
 """
 
@@ -40,6 +42,22 @@ def write() -> None:
     (HOME / "ada.md").write_text(_index("Ada packages", pages), encoding="utf-8")
     pages = [_python_package(name, text) for name, text in PYTHON.items()]
     (HOME / "python.md").write_text(_index("Python packages", pages), encoding="utf-8")
+    (HOME / "evidence.md").write_text(_evidence(), encoding="utf-8")
+
+
+EVIDENCE = ROOT / "build" / "site_extra" / "evidence"
+"""Folders of evidence that `make site` wrote; the site has them as they are."""
+
+
+def _evidence() -> str:
+    """A page that leads to the evidence of the examples: raw links, for these are no pages."""
+    names = sorted(one.parent.name for one in EVIDENCE.glob("*/index.html"))
+    items = "\n".join(
+        f'<li><a href="../../evidence/{name}/index.html">{name}</a></li>' for name in names
+    )
+    listed = f"<ul>\n{items}\n</ul>\n" if names else "`make site` writes it.\n"
+    text = "What is shown of the examples and what is not, as an assessor gets it; see"
+    return f"# Evidence of the examples\n\n{text} [Evidence](../../docs/evidence.md).\n\n{listed}"
 
 
 def _index(title: str, pages: list[str]) -> str:

@@ -42,6 +42,7 @@ html_theme = "furo"
 html_title = f"Ravenchart {release}"
 html_show_copyright = False
 html_copy_source = False
+html_extra_path = [str(one) for one in [ROOT / "build" / "site_extra"] if one.is_dir()]
 
 
 def setup(app: Sphinx) -> None:

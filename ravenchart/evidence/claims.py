@@ -41,6 +41,10 @@ def _on(facts: Facts, node: Node) -> str:
     return f" on {node.name}" if len(facts.nodes) > 1 else ""
 
 
+def _several(count: int, what: str) -> str:
+    return f"{count:,} {what}" if count == 1 else f"{count:,} {what}s"
+
+
 def _id(word: str, facts: Facts, node: Node) -> str:
     return f"{word}-{node.name}" if len(facts.nodes) > 1 else word
 
@@ -134,7 +138,8 @@ def _proved_unit(
         if not count:
             return Shown.NOT_MET, (f"the record has no check of {unit}",), ""
         provers = sorted({name for one in found for name in one.provers})
-        told = f" {count:,} checks in {len(found)} subprograms, by {', '.join(provers)}."
+        by = f", by {', '.join(provers)}" if provers else ""
+        told = f" {_several(count, 'check')} in {_several(len(found), 'subprogram')}{by}."
         return Shown.MET, (), told
     return Shown.NOT_MET, problems, ""
 
@@ -206,8 +211,8 @@ def _bodies(facts: Facts, component: Component, node: Node, suffix: str) -> Iter
             f"activities-{component.name}.{child.lower()}{suffix}",
             Kind.PROGRAM,
             tuple(f"{component.name}.{name}" for name in names),
-            f"{component.name}{_on(facts, node)}: {', '.join(names)} read and write only what the "
-            "model says, within the ranges of the types",
+            f"The activities of {component.name}{_on(facts, node)} ({', '.join(names)}) read and "
+            "write only what the model says, within the ranges of the types",
             "gnatprove: the parameters of each activity are what it reads and writes, with the "
             f"ranges of the model.{told}",
             "proof",
@@ -291,7 +296,7 @@ def _behaviour(facts: Facts) -> Iterator[Claim]:
             yield Claim(
                 f"never-{component.name}.{invariant.name}", Kind.BEHAVIOUR,
                 (f"{component.name}.{invariant.name}",),
-                f"{invariant.name} of {component.name} happens in no reachable situation",
+                f"{component.name}.{invariant.name}: the condition holds in no reachable situation",
                 "search of all situations, and induction over each step by a solver; about the "
                 "model: the invariant is no contract of the generated code",
                 "model checking", tool, verdict, reasons, facts.sources,
@@ -360,7 +365,7 @@ def _tests(facts: Facts) -> Claim:
     text = "".join(f"{t.name} {t.outcome} {t.requirements}\n" for t in facts.tests or ())
     digest = hashlib.sha256(text.encode("utf-8")).hexdigest()
     return Claim(
-        "tests", Kind.TESTS, (facts.checked.system.name,), f"The {count} tests given pass"
+        "tests", Kind.TESTS, (facts.checked.system.name,), f"{_several(count, 'test')} passed"
         if count else "The tests pass", "results of a test run in the form of JUnit; that the "
         "run was one of this program is the user's word", "test", "the user's test runner",
         verdict, tuple(reasons), (("results of tests", digest),) if count else (),

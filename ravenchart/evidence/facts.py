@@ -93,7 +93,7 @@ def gather(
     files, why = _generated(checked)
     made = programs.programs_of(checked)
     _refuse_foreign(given, made)
-    nodes = tuple(_node(program, files, why, given) for program in made)
+    nodes = tuple(_node(program, chosen, files, why, given) for program in made)
     runtime, reasons = _runtime(chosen, folder)
     sources = tuple((name, _sha(folder / name)) for name in found.sources)
     return Facts(
@@ -135,7 +135,9 @@ def _refuse_foreign(given: Sequence[Path], made: Sequence[Program]) -> None:
             )
 
 
-def _node(program: Program, files: dict[str, str], why: str, given: Sequence[Path]) -> Node:
+def _node(
+    program: Program, driver: str, files: dict[str, str], why: str, given: Sequence[Path]
+) -> Node:
     """The facts of one program; ``why`` there are no files, where there are none."""
     folder = program.checked.folder
     path = next((one for one in given if records.belongs(one, program)), None)
@@ -146,7 +148,7 @@ def _node(program: Program, files: dict[str, str], why: str, given: Sequence[Pat
     record = None
     if path is not None:
         record = records.read(path, path.name, folder)
-        record = records.judged(record, records.missing(program, record))
+        record = records.judged(record, records.missing(program, record, driver))
     within = f"{program.folder}/" if program.folder else ""
     wanted = {
         name.removeprefix(within): text

@@ -203,7 +203,12 @@ def _page(evidence: Evidence, tree: str) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"code": _code, "word": _word, "anchor": _anchor}
+    environment.filters |= {
+        "code": _code,
+        "word": _word,
+        "anchor": _anchor,
+        "sentence": lambda text: f"{text[:1].upper()}{text[1:]}",
+    }
     counts = {word: 0 for word in ("met", "partly", "not met", "not shown", "user's")}
     for claim in evidence.claims:
         counts[claim.verdict] += 1

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from ravenchart.analysis.units import duration
+from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 
 from . import ledger
 from .claim import Claim, Shown
@@ -62,6 +63,9 @@ def _assumptions(facts: Facts) -> Iterator[Gap]:
 
 
 def _outside(facts: Facts) -> Iterator[Gap]:
+    if has_lifecycle(facts.checked.system):
+        told = "no check of its body is made: ASM-019"
+        yield Gap("outside", "Ravenchart.Device_Failures", told)
     for name, reason in (*facts.runtime_reasons, *facts.reasons):
         yield Gap("outside", name, f"no check of its body is made: {reason}")
 

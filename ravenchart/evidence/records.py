@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravenchart.building.programs import Program
+from ravenchart.building.programs import DRIVER_FOLDERS, Program
 from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.emit.program import source_folders
 from ravenchart.paths import ROOT
@@ -19,6 +19,8 @@ from ravenchart.proof import proving
 RECORDS = ROOT / "proofs" / "records"
 """Of the examples and of the runtime."""
 ADA = (".ads", ".adb")
+CONTROLLERS = "ravenchart-can-controllers.adb"
+"""The body of a CAN driver, which a program with a bus instantiates."""
 UNKNOWN_TOOL = "gnatprove, version not recorded"
 
 
@@ -127,9 +129,12 @@ def judged(record: Record, problems: Iterable[str]) -> Record:
     )  # fmt: skip
 
 
-def missing(program: Program, record: Record) -> Iterator[str]:
-    """Sources of a program that the record does not have."""
+def missing(program: Program, record: Record, driver: str) -> Iterator[str]:
+    """Sources of a program that the record does not have, with its CAN driver."""
     recorded = {name for name, _ in record.sources}
+    body = f"hw_can/{DRIVER_FOLDERS[driver][0]}/{CONTROLLERS}"
+    if program.part.messages and body not in recorded:
+        yield f"the driver {driver} is not in the proof record"
     for path in own_sources(program):
         name = shown(path, program.checked.folder)
         if name not in recorded:

@@ -75,7 +75,8 @@ def record(home: Path, units: Sequence[str] = UNITS, outside: Iterable[str] = ()
     """The record of the program that is there."""
     checked = checking.check(home / "model.yaml", deadlines=False)
     (program,) = programs.programs_of(checked)
-    sources = [*records.own_sources(program), program.project]
+    driver = ROOT / "hw_can" / "drivers" / "slcan" / records.CONTROLLERS
+    sources = [*records.own_sources(program), program.project, driver]
     (home / "proof.toml").write_text(_text(sources, units, outside), encoding="utf-8")
 
 

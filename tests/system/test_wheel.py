@@ -17,7 +17,7 @@ import pytest
 from ravenchart.paths import ROOT
 
 SOURCES = (
-    *("ravenchart", "gen", "analysis", "behaviour", "hw_can", "spark_runtime"),
+    *("ravenchart", "gen", "analysis", "behaviour", "hw_can", "spark_runtime", "proofs"),
     *("pyproject.toml", "README.md", "LICENSE", "ravenchart.gpr", "switches.gpr"),
     "docs/ravenchart.1",
 )
@@ -151,6 +151,18 @@ def test_commands_answer_with_json_and_shells_are_completed(away: Path) -> None:
     assert json.loads(_called(away, "new", "answered", "--json"))["status"] == 0
     assert json.loads(_called(away, "check", "answered/model.yaml", "--json"))["result"]
     assert "complete -F _ravenchart ravenchart" in _called(away, "completion", "bash")
+
+
+def test_an_installation_has_the_ledger_and_the_records_of_the_runtime(away: Path) -> None:
+    _called(away, "new", "shown")
+    _called(away, "generate", "shown/model.yaml")
+    _called(away, "evidence", "shown/model.yaml", status=1)
+    data = json.loads((away / "work" / "shown" / "evidence" / "evidence.json").read_text())
+    verdicts = {one["id"]: one["verdict"] for one in data["claims"]}
+    assert verdicts["generated"] == "met" and verdicts["program"] == "not shown"
+    assert {"runtime-loopback", "runtime-slcan"} & verdicts.keys()
+    assert "not there" not in json.dumps(data["claims"])
+    assert "ASM-009" in {gap["what"] for gap in data["not_shown"]}
 
 
 def test_an_installation_explains_codes_with_their_models(away: Path) -> None:

@@ -16,7 +16,7 @@ import pytest
 from ravenchart.analysis.present import report
 from ravenchart.behaviour import rules
 from ravenchart.command_line import main
-from ravenchart.evidence import folder, gaps, ledger, records, standards
+from ravenchart.evidence import facts, folder, gaps, ledger, records, standards
 from ravenchart.evidence.claim import Kind
 from ravenchart.gen.diagnostics import CODES, warning
 from ravenchart.paths import ROOT
@@ -209,6 +209,12 @@ def test_without_a_record_proofs_are_not_shown_and_bounds_only_partly(home: Path
     assert {found[id_] for id_ in (*PROVED, *USERS)} == {"not shown"}
     assert {found[id_] for id_ in TIMED} == {"partly"}
     assert found["generated"] == "met"
+
+
+def test_a_record_with_another_driver_shows_nothing(home: Path) -> None:
+    given = [home / "proof.toml"]
+    found = facts.gather(home / "model.yaml", "socketcan", given, home / "results.xml")
+    assert verdicts(folder.make(found))["program"] == "not met"
 
 
 def test_without_records_of_the_runtime_it_is_not_shown(
