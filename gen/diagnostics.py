@@ -141,6 +141,7 @@ CODES: Mapping[str, str] = {
     "RV-0617": "Transmit buffers by priority do not hold what a node sends.",
     "RV-0618": "A fault of a bus cannot be noticed, or recovery from it requested.",
     "RV-0619": "A message cannot be protected from end to end as it is given.",
+    "RV-0620": "A message cannot have that transmission mode.",
     "RV-0701": "An activity, region or port region is allocated to no processor.",
     "RV-0702": "An activity, region or port region is allocated twice.",
     "RV-0703": "A worst-case execution time or a deadline is longer than the period.",

@@ -86,6 +86,16 @@ def figures(analysis: Analysis) -> Json:
             }
             for row in protected(analysis)
         ],
+        "transmission": [
+            {
+                "message": message.name,
+                "mode": mode.mode.value,
+                "minimum_delay": message.period,
+                "longest": mode.longest,
+            }
+            for message in system.messages
+            if (mode := message.transmission) is not None
+        ],
         "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

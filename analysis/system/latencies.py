@@ -228,13 +228,19 @@ def _of_message(
 ) -> list[Step]:
     """The driver's work and the frame, then its reception where there is one."""
     names = [message.element]
+    mode = message.transmission
     if message.source is not None:
         names.insert(0, message.sending)
         if steps:
             released[names[0]] = steps[-1].name
     if received is not None:
         names += [received.driver, handed(received.element)]
-    return [Step(name, Hop.RELEASED) for name in names]
+    keeps, longest = "", 0
+    if mode is not None:
+        keeps = "" if mode.longest is not None else f"{message.name} is sent {mode.words} only"
+        longest = mode.longest or 0
+    steps_made = [Step(name, Hop.RELEASED, longest=longest) for name in names]
+    return [*steps_made[:-1], replace(steps_made[-1], keeps=keeps)]
 
 
 def _item(name: str, period: int, cost: int) -> Task:

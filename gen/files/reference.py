@@ -64,6 +64,7 @@ TITLES: Mapping[str, str] = {
     "MessageForm": "Message",
     "SignalForm": "Signal",
     "ProtectionForm": "Protection",
+    "TransmissionForm": "Transmission mode",
     "ProcessorForm": "Processor",
     "ChainForm": "Chain",
     "ShutdownForm": "Shutdown",

@@ -220,6 +220,25 @@ class ProtectionForm(Element):
     )
 
 
+class TransmissionForm(Element):
+    """The transmission mode of a message: when a frame of it goes (AUTOSAR COM)."""
+
+    mode: Literal["periodic", "on_change", "on_event", "mixed"] = key(
+        "`periodic`: one for each value that the row sends, as without `send`. `on_change`: at the "
+        "end of an execution of the row, if the value differs from the last one sent. `on_event`: "
+        "if the row has sent a value since the last frame. `mixed`: as `on_change`, and the last "
+        "value again every `period`."
+    )
+    minimum_delay: PositiveSpan | None = optional(
+        "The least time from one frame to the next, a multiple of the period of the row; that "
+        "period unless given. A value that comes earlier waits; a newer one takes its place."
+    )
+    period: PositiveSpan | None = optional(
+        "With `mixed`: the longest time from one frame to the next, a multiple of the period of "
+        "the row."
+    )
+
+
 class MessageForm(Element):
     """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
@@ -255,6 +274,9 @@ class MessageForm(Element):
         "between two frames, so that the next one may never come; `no` where its sender queues "
         "one every `period` exactly. Reactions to a sporadic message are bounded, the age of "
         "what is made of it is not."
+    )
+    send: TransmissionForm | None = optional(
+        "When a frame goes, of a message with `from`; periodically unless given."
     )
     bytes: int | None = PydanticField(
         default=None,

@@ -22,6 +22,7 @@ from .component import Component
 from .protection import Protection
 from .signals import Signal
 from .statechart import Timing
+from .transmission import Transmission
 
 NO_TIME = Ns(0)
 
@@ -219,11 +220,18 @@ class Message:
 
     protection: Protection | None = None
     """From end to end; None: none."""
+    transmission: Transmission | None = None
+    """Its transmission mode; None: periodic. ``period`` is then the least time between two."""
 
     @property
     def element(self) -> str:
         """Stable id of the frame: ``bus.message``."""
         return f"{self.bus}.{self.name}"
+
+    @property
+    def longest(self) -> Ns | None:
+        """The time from one frame to the next in its transmission mode; None: without bound."""
+        return self.period if self.transmission is None else self.transmission.longest
 
     @property
     def is_reply(self) -> bool:

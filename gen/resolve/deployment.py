@@ -44,6 +44,7 @@ from ravenchart.gen.origins import Origin
 from .components import Parts, timing_of
 from .layouts import layout_of, size_of
 from .protection import protection_of
+from .transmission import transmission_of
 from .values import constant
 
 
@@ -313,6 +314,10 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     protection = _message_protection(name, form, length, site)
     if (protection is None) != (form.protection is None):
         return None
+    before = findings.count()
+    transmission = None if form.send is None else transmission_of(name, form, period, findings)
+    if findings.count() > before or form.lost("send"):
+        return None
     return Message(
         name=name,
         origin=form.origin,
@@ -324,11 +329,12 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         length=length,
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
-        period=period,
+        period=period if transmission is None else Ns(transmission.minimum * period),
         deadline=None if form.deadline is None else Ns(form.deadline),
         fd=form.format == "fd",
         sporadic=source is None and form.sporadic is not False,
         protection=protection,
+        transmission=transmission,
     )
 
 

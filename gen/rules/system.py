@@ -212,8 +212,8 @@ def one_step_regions_send_messages(resolved: Resolved) -> Iterator[Diagnostic]:
     """A message's period is its sender's only when that sends once in an execution."""
     system = resolved.system
     for item in system.messages:
-        if item.source is None:
-            continue
+        if item.source is None or item.transmission is not None:
+            continue  # of those with a mode one frame goes at the end of an execution
         component = system.instance(item.source.instance).component
         for region in component.regions:
             if item.source.port in region.sends and region.steps_per_execution > 1:

@@ -22,6 +22,7 @@ MAINS = (
     "test_fault_confinement",
     "test_fault_notices",
     "test_protection",
+    "test_transmissions",
     "test_bus",
     "test_frame_ends",
     "test_processors",

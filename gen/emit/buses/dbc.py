@@ -94,7 +94,7 @@ def _message(system: System, message: Message) -> DbcMessage:
             *(_header(message, receivers)),
         ],
         senders=[OUTSIDE if message.source is None else _node(system, message.source)],
-        cycle_time=message.period // 1_000_000,
+        cycle_time=None if message.longest is None else message.longest // 1_000_000,
         is_extended_frame=message.extended,
         is_fd=message.fd,
         dbc_specifics=_protected(message),

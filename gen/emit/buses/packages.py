@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
@@ -51,6 +53,15 @@ from .protection import (
     receiver_of,
     setting_of,
     states_of_senders,
+)
+from .transmission import (
+    TRANSMISSIONS,
+    given,
+    mode_of,
+    recorded,
+    transmit_body,
+    transmit_spec,
+    values_of,
 )
 from .watch import emit_watch, offer
 
@@ -125,6 +136,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     kept = [m for m in (*sent, *received) if m.protection is not None]
     for message in dict.fromkeys(kept):
         items += setting_of(message)
+    items += (item for m in sent for item in mode_of(m))
     if not all(m.fd for m in sent):
         items.append(UseType("Interfaces.Unsigned_64"))
     if any(m.fd for m in sent):
@@ -135,22 +147,18 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             Comment(f"[{message.name}] its frame by the layout table; none of its bits is cut off.")
         )
         items.append(_send_spec(system, message))
-        items.append(Comment(f"[{message.name}] hand one frame to the controller; never blocks."))
-    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
-    if sent or received:
-        withs |= {f"{root}.Codecs", LAYOUTS}
-    if sent:
-        withs |= {ANY, "Interfaces"}
-    if any(m.fd for m in sent):
-        withs |= {FD}
-    if kept:
-        withs |= {PROTECTION}
+        items.append(Comment(_task_of_sending(message)))
+        items += transmit_spec(message)
+    withs = _spec_withs(root, sent, received)
     units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
     if sent:
         made = (_frame_body(system, bus, m) for m in sent)
-        handed = (_send_body(system, m) for m in sent)
-        pairs = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
-        bodies = (*states_of_senders(sent), *pairs)
+        handed = (_send_bodies(system, m) for m in sent)
+        pairs = tuple(
+            one for first, rest in zip(made, handed, strict=True) for one in (first, *rest)
+        )
+        values = (one for m in sent for one in values_of(system, m))
+        bodies = (*states_of_senders(sent), *values, *pairs)
         context = {f"{root}.Health_Counts", "Ravenchart.Health"}
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
@@ -251,7 +259,30 @@ def _frame_body(system: System, bus: Bus, message: Message) -> Subprogram:
     return Subprogram(spec.name, spec.params, spec.result, body=(Return(made),))
 
 
-def _send_body(system: System, message: Message) -> Subprogram:
+def _spec_withs(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[str]:
+    """The units that the spec of a bus needs."""
+    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
+    if sent or received:
+        withs |= {f"{root}.Codecs", LAYOUTS}
+    if sent:
+        withs |= {ANY, "Interfaces"}
+    if any(m.fd for m in sent):
+        withs |= {FD}
+    if any(m.protection for m in (*sent, *received)):
+        withs |= {PROTECTION}
+    if any(m.transmission for m in sent):
+        withs |= {TRANSMISSIONS}
+    return withs
+
+
+def _task_of_sending(message: Message) -> str:
+    if message.transmission is not None:
+        return f"[{message.name}] keep the value until the end of the execution."
+    return f"[{message.name}] hand one frame to the controller; never blocks."
+
+
+def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
+    """What a row calls to send a message, and at its end where the message has a mode."""
     frame = call(_frame_name(message), Ref("Item"))
     lost: list[Stmt] = [
         Do(
@@ -261,23 +292,25 @@ def _send_body(system: System, message: Message) -> Subprogram:
         *note(system, "Fault", message.name, "message", _overflow_number()),
     ]
     full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
-    return Subprogram(
-        f"Send_{ada_case(message.name)}",
-        _send_spec(system, message).params,
-        declarations=(
-            UseType("Ravenchart.Can.Send_Status"),
-            Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.protection is None),
-            Object("Status", "Ravenchart.Can.Send_Status"),
-        ),
-        body=(
-            *protecting(message),
-            #  and not the frame of another message of the same type
-            Pragma("Assert", (is_framed(message, Ref("Frame")),)),
-            Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
-            *note(system, "Sent", message.name, "message"),
-            If(((full, tuple(lost)),)),
-        ),
+    handed: tuple[Stmt, ...] = (
+        #  and not the frame of another message of the same type
+        Pragma("Assert", (is_framed(message, Ref("Frame")),)),
+        Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
+        *note(system, "Sent", message.name, "message"),
     )
+    name, params = f"Send_{ada_case(message.name)}", _send_spec(system, message).params
+    statuses = UseType("Ravenchart.Can.Send_Status")
+    if message.transmission is not None:
+        ends: Stmt = If(((full, tuple(lost)),), (recorded(message),))
+        body = transmit_body(message, _frame_name(message), (statuses,), (*handed, ends))
+        return (Subprogram(name, params, body=given(message)), body)
+    declarations = (
+        statuses,
+        Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.protection is None),
+        Object("Status", "Ravenchart.Can.Send_Status"),
+    )
+    body_ = (*protecting(message), *handed, If(((full, tuple(lost)),)))
+    return (Subprogram(name, params, declarations=declarations, body=body_),)
 
 
 def _overflow_number() -> Expr:

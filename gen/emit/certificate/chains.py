@@ -38,11 +38,14 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
         before = hops[place - 1] if place else None
         if hop.how == "released" and before is not None:
             del reaction[-1], age[-1]  # its response counts from the same event
+            if hop.rare and before.kind == "row":
+                words.append(f"{hop.element} follows some jobs of {before.element} only.")
+                reaction.append(Chain("-", (_period(system, hop), _period(system, before))))
         elif hop.how == "sampled":
             words.append(f"{hop.element} samples.")
             reaction.append(_period(system, hop))
             if before is not None and not queued:
-                age.append(_period(system, before))
+                age.append(_longest(system, before))
             queued = False
         elif before is not None:
             words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
@@ -92,10 +95,16 @@ def _period(system: System, hop: Hop) -> Expr:
     return times(number(_divisor(processor, hop.element)), Ref(f"{name_of(processor.name)}_T"))
 
 
+def _longest(system: System, hop: Hop) -> Expr:
+    """The longest distance of its outputs."""
+    return Ref(f"{name_of(hop.renewed)}_Renewal") if hop.renewed else _period(system, hop)
+
+
 def _renewal(system: System, hops: tuple[Hop, ...]) -> Expr:
     """How often new values come out of these steps: what only passes them on adds nothing."""
-    makes = [hop for hop in hops if hop.how == "sampled"]
-    return _period(system, makes[-1] if makes else hops[0])
+    begins = max((n for n, hop in enumerate(hops) if hop.how == "sampled"), default=0)
+    slowest = next((hop for hop in hops[begins:] if hop.renewed), hops[begins])
+    return _longest(system, slowest)
 
 
 def _divisor(processor: Processor, row: str) -> int:

@@ -48,6 +48,7 @@ from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
 from .site import Site
+from .transmission import transmits
 
 
 class Rows(Site):
@@ -173,6 +174,7 @@ class Rows(Site):
                 field = f"{name}_Region.Data.{ada_case(data.name)}"
                 body.append(Do(f"{ada_case(data.name)}_Board.Write", arguments(Ref(field))))
         body += publishes(self.system, self.instance, region, declarations)
+        body += transmits(self.system, self.instance, region)
         run = Subprogram(f"Run_{name}", declarations=tuple(declarations), body=tuple(body))
         return [step, run]
 
@@ -364,6 +366,7 @@ class Rows(Site):
             body = (read, If(((guard, body),)))
         sent = publishes(self.system, self.instance, activity, declarations)
         body = (*watched(self.system, self.instance, activity), *body, *sent)
+        body = (*body, *transmits(self.system, self.instance, activity))
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )
