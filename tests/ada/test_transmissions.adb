@@ -25,7 +25,10 @@ procedure Test_Transmissions is
    function Frame_With
      (Value : Natural) return Ravenchart.Can.Any_Frames.Any_Frame
    is (Ravenchart.Can.Any_Frames.Whole_Frame
-         (16#100#, Ravenchart.Can.Standard, 1, Interfaces.Unsigned_64 (Value)));
+         (16#100#,
+          Ravenchart.Can.Standard,
+          1,
+          Interfaces.Unsigned_64 (Value)));
 
    function Sequence (Number : Natural) return Choice_List;
    --  The sequence of that number, from 0.

@@ -57,7 +57,7 @@ class Ends:
         while (line := self.process.stdout.readline().strip()) != ".":
             kind, _, rest = line.partition(" ")
             if kind == "S":
-                data = bytearray.fromhex(rest)
+                data = bytes.fromhex(rest)
                 self.waiting.append(isotp.CanMessage(arbitration_id=0x123, dlc=8, data=data))
             elif kind == "V":
                 self.values.append(bytes.fromhex(rest))
@@ -81,7 +81,7 @@ class Ends:
 
 @contextmanager
 def _ends(program: Path, length: int, block: int, **params: object) -> Iterator[Ends]:
-    command = [program, str(length), str(block)]
+    command = [str(program), str(length), str(block)]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as process:
         yield Ends(process, **params)
@@ -103,7 +103,9 @@ def test_the_package_receives_our_values(program: Path, length: int, block: int)
             ends.turn()
             if ends.layer.available():
                 break
-        assert ends.layer.recv() == _value(length)
+        received = ends.layer.recv()
+        assert received is not None
+        assert bytes(received) == _value(length)
         assert ends.faults == []
         assert ends.errors == []
 
