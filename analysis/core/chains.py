@@ -62,6 +62,7 @@ class Step:
                 nothing bounds the age of what comes after; "" where each makes a new one
     ``longest`` longest time between two of its outputs, where that is more than its period;
                 0 where it is not
+    ``delay``   how much longer an input may wait for the step, which is not free for each
     """
 
     name: str
@@ -71,6 +72,7 @@ class Step:
     waits: str = ""
     keeps: str = ""
     longest: int = 0
+    delay: int = 0
 
     def __post_init__(self) -> None:
         """Refuse to take or put no items, or several of both, with a ValueError."""
@@ -186,7 +188,7 @@ def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
         counted: int | None = 0
         if after is not None and (renewal is None or after.hop is Hop.QUEUED or not queued):
             counted = 0 if after.hop is Hop.RELEASED and not step.keeps else renewal
-        wait = None if step.waits else wait
+        wait = None if step.waits or wait is None else wait + step.delay
         hops.append(HopLatency(step, wait, response, counted, backlog))
     return Latency(chain, tuple(hops), renewal)
 

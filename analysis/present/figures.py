@@ -86,6 +86,20 @@ def figures(analysis: Analysis) -> Json:
             }
             for row in protected(analysis)
         ],
+        "transfers": [
+            {
+                "message": one.message.name,
+                "bytes": one.transport.length,
+                "segments": one.transport.segments,
+                "flow_control": one.flow.name,
+                "rounds": one.transport.rounds,
+                "round_trip": one.round_trip,
+                "bound": one.bound,
+                "cycle": one.cycle,
+                "timeout": one.transport.timeout,
+            }
+            for one in analysis.transfers.values()
+        ],
         "transmission": [
             {
                 "message": message.name,

@@ -245,6 +245,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "visits": _visits(run),
         "watches": watches(analysis),
         "protected": protected(analysis),
+        "transfers": tuple(analysis.transfers.values()),
         "modes": [m for m in analysis.system.messages if m.transmission is not None],
     }
 

@@ -65,6 +65,7 @@ TITLES: Mapping[str, str] = {
     "SignalForm": "Signal",
     "ProtectionForm": "Protection",
     "TransmissionForm": "Transmission mode",
+    "TransportForm": "Transport",
     "ProcessorForm": "Processor",
     "ChainForm": "Chain",
     "ShutdownForm": "Shutdown",

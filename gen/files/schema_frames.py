@@ -19,6 +19,7 @@ from .schema_base import (
     OwnedReference,
     PositiveSpan,
     Reference,
+    Span,
     key,
     optional,
     shaped,
@@ -239,6 +240,39 @@ class TransmissionForm(Element):
     )
 
 
+class TransportForm(Element):
+    """The value of a message in several classic frames: ISO-TP (ISO 15765-2), normal addressing."""
+
+    profile: Literal["iso_tp"] = key("`iso_tp`.")
+    flow_id: int = key(
+        "CAN identifier of the frames of flow control, which the receiver sends; in the format "
+        "of the message.",
+        ge=0,
+        le=0x1FFFFFFF,
+    )
+    block: int = PydanticField(
+        default=0,
+        ge=0,
+        le=255,
+        description="Consecutive frames that the receiver asks for at once (block size), 0 to "
+        "255; 0: all that are left.",
+    )
+    separation: Span | None = optional(
+        "Least time between two consecutive frames (STmin): 100 us to 900 us in steps of 100 us, "
+        "or up to 127 ms in steps of 1 ms; none unless given."
+    )
+    flow_limit: int = PydanticField(
+        default=0,
+        ge=0,
+        le=255,
+        description="How often in a row the sender takes flow control that says wait (N_WFTmax).",
+    )
+    timeout: PositiveSpan | None = optional(
+        "How long the sender waits for flow control (N_Bs), and the receiver for the next frame "
+        "(N_Cr); 1 s unless given."
+    )
+
+
 class MessageForm(Element):
     """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
@@ -277,6 +311,10 @@ class MessageForm(Element):
     )
     send: TransmissionForm | None = optional(
         "When a frame goes, of a message with `from`; periodically unless given."
+    )
+    transport: TransportForm | None = optional(
+        "The value has 9 to 64 bytes and travels in several classic frames, from one node of the "
+        "model to another; none unless given."
     )
     bytes: int | None = PydanticField(
         default=None,

@@ -23,6 +23,7 @@ from .protection import Protection
 from .signals import Signal
 from .statechart import Timing
 from .transmission import Transmission
+from .transport import Transport
 
 NO_TIME = Ns(0)
 
@@ -222,6 +223,10 @@ class Message:
     """From end to end; None: none."""
     transmission: Transmission | None = None
     """Its transmission mode; None: periodic. ``period`` is then the least time between two."""
+    transport: Transport | None = None
+    """Its value travels in several frames, of which it describes each; None: in one."""
+    controls: str = ""
+    """The message with transport whose flow control it is; "" for all others."""
 
     @property
     def element(self) -> str:

@@ -117,7 +117,7 @@ def messages_agree(resolved: Resolved) -> Iterator[Diagnostic]:
     """A message's ports are of one type, and none of them could be connected instead."""
     system = resolved.system
     for item in system.messages:
-        of_ports = item.call is None and not item.every
+        of_ports = item.call is None and not item.every and not item.controls
         for target in item.targets if of_ports else ():
             instance = system.instance(target.instance)
             taken = instance.component.port(target.port).type
@@ -195,9 +195,9 @@ def identifiers_are_unique(resolved: Resolved) -> Iterator[Diagnostic]:
 
 def payloads_fit(resolved: Resolved) -> Iterator[Diagnostic]:
     """The signals of a message fit its CAN frame."""
-    for item in resolved.system.messages:
+    for item in (m for m in resolved.system.messages if not m.controls):
         bits = bits_of(item.signals)
-        room = room_of(fd=item.fd)
+        room = room_of(fd=item.fd or item.transport is not None)
         if bits > room:
             widths = ", ".join(f"{one.field or item.name} {one.width}" for one in item.signals)
             shortened = widths if len(widths) <= 200 else widths[:197] + "..."

@@ -63,6 +63,24 @@ from .transmission import (
     transmit_spec,
     values_of,
 )
+from .transport import (
+    ISO_TP,
+    STAMP,
+    assembly,
+    body_units,
+    is_plain,
+    noticed,
+    receiver_bodies,
+    receiver_objects,
+    receiver_spec,
+    reception_declarations,
+    sender_bodies,
+    sender_objects,
+    sender_spec,
+    units_of,
+    value_of,
+)
+from .transport import taken as segment_taken
 from .watch import emit_watch, offer
 
 DRIVER_STACK = 65_536
@@ -132,16 +150,18 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         items.append(
             Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
         )
-        items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in received]
+        plain = [m for m in received if is_plain(m)]
+        items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in plain]
     kept = [m for m in (*sent, *received) if m.protection is not None]
     for message in dict.fromkeys(kept):
         items += setting_of(message)
     items += (item for m in sent for item in mode_of(m))
-    if not all(m.fd for m in sent):
+    if not all(m.fd or not is_plain(m) for m in sent):
         items.append(UseType("Interfaces.Unsigned_64"))
     if any(m.fd for m in sent):
         items += [UseType(f"{FD}.Fd_Words"), UseType(f"{FD}.Bit_Rate_Use")]
-    for message in sent:
+    items += (item for m in (*sent, *received) for item in _segmented_spec(system, m))
+    for message in filter(is_plain, sent):
         items.append(_frame_spec(system, bus, message))
         items.append(
             Comment(f"[{message.name}] its frame by the layout table; none of its bits is cut off.")
@@ -152,14 +172,16 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     withs = _spec_withs(root, sent, received)
     units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
     if sent:
-        made = (_frame_body(system, bus, m) for m in sent)
-        handed = (_send_bodies(system, m) for m in sent)
+        made = (_frame_body(system, bus, m) for m in sent if is_plain(m))
+        handed = (_send_bodies(system, m) for m in sent if is_plain(m))
         pairs = tuple(
             one for first, rest in zip(made, handed, strict=True) for one in (first, *rest)
         )
         values = (one for m in sent for one in values_of(system, m))
-        bodies = (*states_of_senders(sent), *values, *pairs)
+        segmented = _segmented(system, (*sent, *received))
+        bodies = (*states_of_senders(sent), *values, *pairs, *segmented)
         context = {f"{root}.Health_Counts", "Ravenchart.Health"}
+        context |= body_units(root, sent, received) if segmented else set()
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
         units.append(
@@ -272,6 +294,8 @@ def _spec_withs(root: str, sent: Sequence[Message], received: Sequence[Message])
         withs |= {PROTECTION}
     if any(m.transmission for m in sent):
         withs |= {TRANSMISSIONS}
+    for message in (*sent, *received):
+        withs |= units_of(message)
     return withs
 
 
@@ -281,27 +305,63 @@ def _task_of_sending(message: Message) -> str:
     return f"[{message.name}] hand one frame to the controller; never blocks."
 
 
-def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
-    """What a row calls to send a message, and at its end where the message has a mode."""
-    frame = call(_frame_name(message), Ref("Item"))
-    lost: list[Stmt] = [
-        Do(
-            "Health_Counts.Counters.Record_Fault",
-            arguments(Ref("Ravenchart.Health.Queue_Overflow")),
-        ),
-        *note(system, "Fault", message.name, "message", _overflow_number()),
-    ]
-    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
-    handed: tuple[Stmt, ...] = (
+def _segmented_spec(system: System, message: Message) -> list[Decl]:
+    """What a value in several frames needs at this end of it."""
+    if message.transport is None:
+        return []
+    if message.source is not None:
+        return sender_spec(system, message, message.transport)
+    return receiver_spec(message, message.transport)
+
+
+def _segmented(system: System, messages: Sequence[Message]) -> tuple[Decl, ...]:
+    """The bodies of these, and what they keep."""
+    objects: list[Decl] = []
+    bodies: list[Decl] = []
+    for message in messages:
+        transport = message.transport
+        if transport is None:
+            continue
+        if message.source is not None:
+            objects += sender_objects(system, message)
+            ended = _counted(system, message, "Stale_Input")
+            bodies += sender_bodies(system, message, *_handed(system, message), ended)
+        else:
+            flow = next(m for m in messages if m.controls == message.name)
+            objects += receiver_objects(system, message)
+            bodies += receiver_bodies(message, flow, transport, *_handed(system, flow))
+    return (*objects, *bodies)
+
+
+def _counted(system: System, message: Message, fault: str) -> tuple[Stmt, ...]:
+    """Count a fault of a message, and note it."""
+    kind = Ref(f"Ravenchart.Health.{fault}")
+    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
+    return (
+        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
+        *note(system, "Fault", message.name, "message", position),
+    )
+
+
+def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
+    """Hand a frame to the controller; and what is done where that has no room."""
+    return (
         #  and not the frame of another message of the same type
         Pragma("Assert", (is_framed(message, Ref("Frame")),)),
         Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
         *note(system, "Sent", message.name, "message"),
-    )
+    ), _counted(system, message, "Queue_Overflow")
+
+
+def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
+    """What a row calls to send a message, and at its end where the message has a mode."""
+    frame = call(_frame_name(message), Ref("Item"))
+    handed, lost = _handed(system, message)
+    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
     name, params = f"Send_{ada_case(message.name)}", _send_spec(system, message).params
     statuses = UseType("Ravenchart.Can.Send_Status")
     if message.transmission is not None:
-        ends: Stmt = If(((full, tuple(lost)),), (recorded(message),))
+        ends: Stmt = If(((full, lost),), (recorded(message),))
         body = transmit_body(message, _frame_name(message), (statuses,), (*handed, ends))
         return (Subprogram(name, params, body=given(message)), body)
     declarations = (
@@ -309,14 +369,8 @@ def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
         Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.protection is None),
         Object("Status", "Ravenchart.Can.Send_Status"),
     )
-    body_ = (*protecting(message), *handed, If(((full, tuple(lost)),)))
+    body_ = (*protecting(message), *handed, If(((full, lost),)))
     return (Subprogram(name, params, declarations=declarations, body=body_),)
-
-
-def _overflow_number() -> Expr:
-    return Call(
-        "Ravenchart.Health.Fault_Kind'Pos", arguments(Ref("Ravenchart.Health.Queue_Overflow"))
-    )
 
 
 def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
@@ -335,18 +389,21 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     declarations: list[Decl] = [
         UseType("Ravenchart.Can.Identifier"),
         UseType("Ravenchart.Can.Frame_Format"),
-        Object("Valid", "Boolean"),
     ]
+    if any(not m.controls for m in received):
+        declarations.append(Object("Valid", "Boolean"))
+    declarations += reception_declarations(received)
+    stamp = STAMP if any(m.transport for m in received) else "Unused_Stamp"
+    kept_stamp = Object(stamp, "Ravenchart.Nanoseconds")
+    if stamp == STAMP:
+        kept_stamp = Object(stamp, "Ravenchart.Nanoseconds", number(0))
     for message in received:
         item = f"{ada_case(message.name)}_Item"
+        if message.controls:
+            rows.append((_matches(message), noticed(message)))
+            continue
         declarations.append(Object(item, type_name(system, message.type)))
-        matches = Chain(
-            "and then",
-            (
-                equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
-                equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
-            ),
-        )
+        matches = _matches(message)
         puts = tuple(
             Do(f"{ada_case(t.instance)}.{_taker(message, t)}", arguments(Ref(item)))
             for t in message.targets
@@ -355,6 +412,12 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             f"Codecs.{codec_name(message)}.Unpack",
             arguments(_data(message), Ref(item), Ref("Valid")),
         )
+        if message.transport is not None:
+            whole = (*note(system, "Arrived", message.name, "message"), *puts)
+            unpacked = (unpack, If(((Ref("Valid"), whole),)))
+            refused = _counted(system, message, "Protection_Error")
+            rows.append((matches, segment_taken(message, unpacked, refused)))
+            continue
         family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
         carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
         good = Chain("and then", (Ref("Valid"), carried))
@@ -367,10 +430,12 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     body: tuple[Decl, ...] = (
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
         *(state for m in received for state in receiver_of(m)),
+        *(assembly(m) for m in received if m.transport),
+        *((kept_stamp,) if stamp == STAMP else ()),
         Subprogram(
             "Wait",
-            declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
-            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref("Unused_Stamp"))),),
+            declarations=() if stamp == STAMP else (kept_stamp,),
+            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref(stamp))),),
         ),
         Subprogram(
             "Run_Receive",
@@ -380,9 +445,14 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         ),
     )
     context = {f"{root}.Codecs", ANY, LAYOUTS}
-    context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
+    valued = [m for m in received if not m.controls]
+    context |= {f"{root}.{ada_case(t.instance)}" for m in valued for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}
+    for message in received:
+        context |= {ISO_TP, *units_of(message)} if not is_plain(message) else set()
+    if any(m.transport for m in received):
+        context |= {"Ravenchart.Health", f"{root}.Health_Counts"}
     kept = [m.protection for m in received if m.protection is not None]
     if kept:
         context |= {PROTECTION, "Ravenchart.Health", f"{root}.Health_Counts"}
@@ -395,21 +465,29 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     ]
 
 
+def _matches(message: Message) -> Expr:
+    """Has the frame the identifier of a message?"""
+    return Chain(
+        "and then",
+        (
+            equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
+            equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
+        ),
+    )
+
+
 def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
     """What comes of a frame that is not used: it is counted, and raises its events."""
     if message.protection is None:
         return ()
-    kind = Ref("Ravenchart.Health.Protection_Error")
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
-    return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
-        *note(system, "Fault", message.name, "message", position),
-        *(offer(system, instance, event) for instance, event in message.protection.on_error),
-    )
+    events = (offer(system, instance, event) for instance, event in message.protection.on_error)
+    return (*_counted(system, message, "Protection_Error"), *events)
 
 
 def _data(message: Message) -> Expr:
     """The data of a frame, as the codec of a message takes them."""
+    if message.transport is not None:
+        return value_of(message)
     if not message.fd:
         return call(f"{ANY}.Payload", Ref("Frame"))
     words = f"{ANY}.Words (Frame)"

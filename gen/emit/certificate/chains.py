@@ -14,7 +14,7 @@ from ravenchart.gen.model.system import Processor, System
 from .hops import Hop, hops_of
 from .terms import assured, least, name_of, named, plus, refuse, stated, times
 
-SUFFIX = {"row": "Done", "item": "R", "handed": "Handed"}
+SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
 """What the response of a step is called."""
 
 
@@ -41,6 +41,9 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
             if hop.rare and before.kind == "row":
                 words.append(f"{hop.element} follows some jobs of {before.element} only.")
                 reaction.append(Chain("-", (_period(system, hop), _period(system, before))))
+            if hop.kind == "transfer":
+                words.append(f"{hop.element} waits for the value before it.")
+                reaction.append(Chain("-", (_longest(system, hop), _period(system, hop))))
         elif hop.how == "sampled":
             words.append(f"{hop.element} samples.")
             reaction.append(_period(system, hop))

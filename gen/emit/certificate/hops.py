@@ -30,7 +30,7 @@ class Hop:
 
     element: str
     kind: str
-    """``row``, ``item`` (a task or message) or ``handed``."""
+    """``row``, ``item`` (a task or message), ``handed``, or ``transfer`` of several frames."""
     how: str
     at_once: int = 1
     open: bool = False
@@ -85,14 +85,18 @@ def _message(system: System, name: str, following: str) -> Iterator[Hop]:
     message = named(system.messages, name)
     mode = message.transmission
     hops: list[Hop] = []
+    rare = mode is not None or message.transport is not None
     if message.source is not None:
-        hops.append(Hop(message.sending, "item", "released", rare=mode is not None))
+        hops.append(Hop(message.sending, "item", "released", rare=rare))
     hops.append(Hop(message.element, "item", "released"))
     received = system.reception(message, following)
     if received is not None:
         hops.append(Hop(received.driver, "item", "released"))
         hops.append(Hop(received.element, "handed", "released"))
-    if mode is not None and mode.longest is not None:
+    if message.transport is not None:
+        last = Hop(message.element, "transfer", "released", renewed=message.element)
+        hops = [*hops[:-1], last]
+    elif mode is not None and mode.longest is not None:
         hops = [replace(hop, renewed=message.element) for hop in hops]
     elif mode is not None:
         hops[-1] = replace(hops[-1], sure=False)

@@ -48,7 +48,7 @@ from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
 from .site import Site
-from .transmission import transmits
+from .transmission import answers, transmits
 
 
 class Rows(Site):
@@ -99,6 +99,7 @@ class Rows(Site):
                 declarations.append(Object(f"{name}_Losses", "Ravenchart.Event_Count"))
                 body += self._watch_losses(port, port.on_overflow)
             body.append(self._react(port))
+        body += answers(self.system, self.instance)
         return Subprogram("Run_Ports", declarations=tuple(declarations), body=tuple(body))
 
     def _asked_for(self, poll: Poll, told: str) -> list[Stmt]:
