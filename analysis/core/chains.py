@@ -60,6 +60,9 @@ class Step:
                 it has arrived; "" where it does not wait
     ``keeps``   why some of its jobs leave the old output in place, or make none, so that
                 nothing bounds the age of what comes after; "" where each makes a new one
+    ``longest`` longest time between two of its outputs, where that is more than its period;
+                0 where it is not
+    ``delay``   how much longer an input may wait for the step, which is not free for each
     """
 
     name: str
@@ -68,6 +71,8 @@ class Step:
     puts: int = 1
     waits: str = ""
     keeps: str = ""
+    longest: int = 0
+    delay: int = 0
 
     def __post_init__(self) -> None:
         """Refuse to take or put no items, or several of both, with a ValueError."""
@@ -174,15 +179,16 @@ def latency(chain: Chain, network: Network, found: Holistic) -> Latency:
         elif step.hop is Hop.QUEUED and before is not None:
             wait, backlog = _queue(before.name, step, network, found)
             queued = True
+        outputs = None if cycle is None else max(cycle, step.longest)
         if step.hop is Hop.SAMPLED or before is None:
-            renewal = cycle
+            renewal = outputs
         else:
-            renewal = None if renewal is None or cycle is None else max(renewal, cycle)
+            renewal = None if renewal is None or outputs is None else max(renewal, outputs)
         renewal = None if step.keeps else renewal
         counted: int | None = 0
         if after is not None and (renewal is None or after.hop is Hop.QUEUED or not queued):
             counted = 0 if after.hop is Hop.RELEASED and not step.keeps else renewal
-        wait = None if step.waits else wait
+        wait = None if step.waits or wait is None else wait + step.delay
         hops.append(HopLatency(step, wait, response, counted, backlog))
     return Latency(chain, tuple(hops), renewal)
 

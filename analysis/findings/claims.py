@@ -66,9 +66,17 @@ def claims_of(analysis: Analysis) -> Claims:
     noticed = [silence for one in checked for silence in one.silences]
     stale = {str(one.port): one.found for one in noticed if one.found is not None}
     handed |= {one.delivery for one in noticed if one.found is not None}
+    travels = analysis.transfers.values()
+    handed |= {one.reception.element for one in travels}
+    handed |= {element for element, one in analysis.deliveries.items() if one.message.controls}
+    sums = {
+        one.message.element: (one.round_trip, one.bound)
+        for one in travels
+        if one.round_trip is not None and one.bound is not None
+    }
     waits, busiest = _capped(analysis)
     turns = _turns(analysis, handed)
-    return Claims(items, rows, waits, busiest, turns, chains, residual, stale)
+    return Claims(items, rows, waits, busiest, turns, chains, residual, stale, sums)
 
 
 def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:

@@ -12,6 +12,7 @@ from ravenchart.analysis.system.latencies import Hop, Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration, microseconds, percent
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Bus, Chain
 from ravenchart.gen.origins import Origin
 
@@ -30,6 +31,9 @@ NO_WAY, CHAIN_LATE = "RV-0904", "RV-0905"
 QUEUE_SHORT, QUEUE_OPEN = "RV-0906", "RV-0907"
 """A queue does not hold what may wait in it; nothing bounds what may wait in it."""
 
+GIVEN_UP = "RV-0909"
+"""A time-out of a transfer may pass although no frame is lost."""
+
 LARGEST = 3
 """How many interferers a diagnostic names."""
 
@@ -47,7 +51,20 @@ def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic,
         else:
             found.append(_of_message(response, analysis))
     found += [_of_bus(bus, analysis) for bus in analysis.overloaded]
+    found += _of_transfers(analysis)
     return (*found, *_of_receptions(analysis), *_of_chains(analysis), *_of_queues(analysis))
+
+
+def _of_transfers(analysis: Analysis) -> Iterator[Diagnostic]:
+    """An error for each transfer that may be given up although no frame is lost."""
+    for one in analysis.transfers.values():
+        if one.in_time or one.round_trip is None or one.segment is None:
+            continue  # what has no bound has its own error
+        needed = Ns(one.round_trip + one.segment)
+        message = f"the time-out of {one.message.name} is {duration(one.transport.timeout)}; with "
+        message += f"flow control its next segment may take {duration(needed)}"
+        hint = f"give `transport` a `timeout` of {duration(needed)} or more"
+        yield error(GIVEN_UP, one.message.origin, message, hint=hint)
 
 
 def no_bound_reason(response: Response | FrameResponse) -> str:

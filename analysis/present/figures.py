@@ -99,6 +99,30 @@ def figures(analysis: Analysis) -> Json:
             }
             for row in authenticated(analysis)
         ],
+        "transfers": [
+            {
+                "message": one.message.name,
+                "bytes": one.transport.length,
+                "segments": one.transport.segments,
+                "flow_control": one.flow.name,
+                "rounds": one.transport.rounds,
+                "round_trip": one.round_trip,
+                "bound": one.bound,
+                "cycle": one.cycle,
+                "timeout": one.transport.timeout,
+            }
+            for one in analysis.transfers.values()
+        ],
+        "transmission": [
+            {
+                "message": message.name,
+                "mode": mode.mode.value,
+                "minimum_delay": message.period,
+                "longest": mode.longest,
+            }
+            for message in system.messages
+            if (mode := message.transmission) is not None
+        ],
         "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }

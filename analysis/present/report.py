@@ -247,6 +247,8 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "watches": watches(analysis),
         "protected": protected(analysis),
         "authenticated": authenticated(analysis),
+        "transfers": tuple(analysis.transfers.values()),
+        "modes": [m for m in analysis.system.messages if m.transmission is not None],
     }
 
 

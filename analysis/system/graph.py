@@ -40,6 +40,8 @@ def dependencies(system: System) -> nx.DiGraph[str]:
     for message in system.messages:
         node = f"message {message.name}"
         graph.add_node(node, kind="message", label=message.name)
+        if message.controls:
+            continue  # no values travel with it
         if message.source is not None:
             graph.add_edge(str(message.source), node, kind="carries")
         for target in message.targets:

@@ -16,7 +16,7 @@ period and its response inside the job.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 
 from ravenchart.analysis.core import can
@@ -30,6 +30,8 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Message, Processor, Reception, System
+
+from .transport import Transfer, transfers
 
 __all__ = ["Delivery", "Hop", "Latencies", "Latency", "deliveries"]
 
@@ -99,6 +101,8 @@ class Latencies:
     found: Holistic
     rows: Mapping[str, tuple[Processor, int]]
     """Each row's processor, and its place in the table."""
+    travels: Mapping[str, Transfer] = field(default_factory=dict)
+    """Values in several frames, by their reception."""
 
     @classmethod
     def of(
@@ -114,9 +118,12 @@ class Latencies:
                 items.append((item, bounds.get(row.name)))
         released = {n: by for n, by in network.released_by.items() if n not in _sending(system)}
         periods = {task.name: task.period for task in network.tasks}  # others where those are tried
+        travels = transfers(system, delivered)
         for element, one in delivered.items():
             period = periods[one.reception.driver]
-            items.append((_item(handed(element), period, 1), one.bound))
+            #  of a value in several frames the whole of it
+            bound = travels[element].bound if element in travels else one.bound
+            items.append((_item(handed(element), period, 1), bound))
             released[handed(element)] = one.reception.driver
         tasks = [task for task in network.tasks if not task.rows]
         tasks += [item for item, _ in items]
@@ -130,7 +137,8 @@ class Latencies:
             for place, slot in enumerate(processor.slots)
         }
         best = dict.fromkeys(responses, 0)
-        return cls(system, view, replace(found, responses=responses, best=best), places)
+        view_of = replace(found, responses=responses, best=best)
+        return cls(system, view, view_of, places, travels)
 
     def along(self, name: str, way: Sequence[str], reaction: int = 0, age: int = 0) -> Latency:
         """The latency of a way, which lists messages, ports, rows and data."""
@@ -142,6 +150,7 @@ class Latencies:
                 found = named(self.system.messages, place.removeprefix("message "))
                 received = self.system.reception(found, following)
                 steps += _of_message(found, received, steps, released)
+                steps[-1] = self._whole(steps[-1], received)
                 continue
             row, port = place, self._input(place)
             if port is not None:
@@ -156,6 +165,13 @@ class Latencies:
             steps[-1] = replace(steps[-1], keeps=kept)
         network = replace(self.network, released_by=released)
         return latency(Chain(name, tuple(steps), reaction, age), network, self.found)
+
+    def _whole(self, step: Step, received: Reception | None) -> Step:
+        """The handing over of a value in several frames: one at a time travels."""
+        travel = None if received is None else self.travels.get(received.element)
+        if travel is None or travel.cycle is None:
+            return step
+        return replace(step, longest=travel.cycle, delay=travel.cycle - travel.message.period)
 
     def _input(self, place: str) -> Port | None:
         """An input port; None for what is none."""
@@ -228,13 +244,19 @@ def _of_message(
 ) -> list[Step]:
     """The driver's work and the frame, then its reception where there is one."""
     names = [message.element]
+    mode = message.transmission
     if message.source is not None:
         names.insert(0, message.sending)
         if steps:
             released[names[0]] = steps[-1].name
     if received is not None:
         names += [received.driver, handed(received.element)]
-    return [Step(name, Hop.RELEASED) for name in names]
+    keeps, longest = "", 0
+    if mode is not None:
+        keeps = "" if mode.longest is not None else f"{message.name} is sent {mode.words} only"
+        longest = mode.longest or 0
+    steps_made = [Step(name, Hop.RELEASED, longest=longest) for name in names]
+    return [*steps_made[:-1], replace(steps_made[-1], keeps=keeps)]
 
 
 def _item(name: str, period: int, cost: int) -> Task:

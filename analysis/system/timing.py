@@ -23,6 +23,7 @@ from .depths import Depth, depths
 from .graph import Ways
 from .latencies import Delivery, Latencies
 from .network import network_of
+from .transport import Transfer, transfers
 
 FACTOR_STEPS = 1000
 """Factors of execution times are counted in 1 / this."""
@@ -133,6 +134,7 @@ class Analysis:
         But for queues of which no depth is known to hold all.
         """
         kept = all(found.met for _, found in self.limited)
+        kept = kept and all(one.in_time for one in self.transfers.values())
         full = any(queue.needed is not None for queue in self.short_queues)
         return self.found.met and not self.undelivered and kept and not full
 
@@ -166,6 +168,11 @@ class Analysis:
     def ways(self) -> Ways:
         """The ways that values can take."""
         return Ways.of(self.system)
+
+    @cached_property
+    def transfers(self) -> dict[str, Transfer]:
+        """Values in several frames, by the reception of their segments."""
+        return transfers(self.system, self.deliveries)
 
     @cached_property
     def deliveries(self) -> dict[str, Delivery]:

@@ -211,6 +211,8 @@ def sending_rows(system: System, message: Message) -> tuple[str, ...]:
     source = system.instance(message.source.instance)
     if message.call is not None and message.is_reply:
         return (message.call.served,)
+    if message.controls:
+        return (f"{source.name}.ports",)
     return tuple(
         f"{source.name}.{item.name}"
         for item in source.component.runnables()
@@ -502,6 +504,11 @@ def _objects(system: System) -> tuple[SharedObject, ...]:
         drivers = [t.element for t in tasks if t.element.startswith(f"{bus.name}.driver_")]
         objects.append(sharing.made(f"{bus.name}.transmit", [*senders, *drivers]))
         objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
+        for message in system.messages:
+            if message.bus == bus.name and message.transport is not None:
+                rows = sending_rows(system, message) or [f"{message.targets[0].instance}.ports"]
+                ends = [system.processor_of(row).name for row in rows]
+                objects.append(sharing.made(f"{message.element}.flow", [*ends, *receivers]))
     for processor in system.processors:
         watched_by = sharing.supervisor(processor)
         users = [processor.name, *([] if watched_by is None else [watched_by])]

@@ -221,7 +221,10 @@ def as_one(system: System) -> System:
     wires = tuple(
         Connection(message.origin, message.source, target)
         for message in system.messages
-        if message.source is not None and message.call is None and not message.every
+        if message.source is not None
+        and message.call is None
+        and not message.every
+        and not message.controls
         for target in message.targets
     )
     bindings = (

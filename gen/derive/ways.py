@@ -50,7 +50,7 @@ def flow_of(system: System) -> Flow:
             flow[own] += rows_of(system, binding)
     for connection in system.connections:
         flow[str(connection.source)].append(str(connection.target))
-    for message in system.messages:
+    for message in (m for m in system.messages if not m.controls):
         if message.source is not None:
             flow[str(message.source)].append(f"message {message.name}")
         flow[f"message {message.name}"] += map(str, message.targets)

@@ -67,6 +67,8 @@ TITLES: Mapping[str, str] = {
     "SignalForm": "Signal",
     "ProtectionForm": "Protection",
     "AuthenticationForm": "Authentication",
+    "TransmissionForm": "Transmission mode",
+    "TransportForm": "Transport",
     "ProcessorForm": "Processor",
     "ChainForm": "Chain",
     "ShutdownForm": "Shutdown",

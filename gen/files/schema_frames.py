@@ -20,6 +20,7 @@ from .schema_base import (
     OwnedReference,
     PositiveSpan,
     Reference,
+    Span,
     key,
     optional,
     shaped,
@@ -255,6 +256,58 @@ class AuthenticationForm(Element):
     )
 
 
+class TransmissionForm(Element):
+    """The transmission mode of a message: when a frame of it goes (AUTOSAR COM)."""
+
+    mode: Literal["periodic", "on_change", "on_event", "mixed"] = key(
+        "`periodic`: one for each value that the row sends, as without `send`. `on_change`: at the "
+        "end of an execution of the row, if the value differs from the last one sent. `on_event`: "
+        "if the row has sent a value since the last frame. `mixed`: as `on_change`, and the last "
+        "value again every `period`."
+    )
+    minimum_delay: PositiveSpan | None = optional(
+        "The least time from one frame to the next, a multiple of the period of the row; that "
+        "period unless given. A value that comes earlier waits; a newer one takes its place."
+    )
+    period: PositiveSpan | None = optional(
+        "With `mixed`: the longest time from one frame to the next, a multiple of the period of "
+        "the row."
+    )
+
+
+class TransportForm(Element):
+    """The value of a message in several classic frames: ISO-TP (ISO 15765-2), normal addressing."""
+
+    profile: Literal["iso_tp"] = key("`iso_tp`.")
+    flow_id: int = key(
+        "CAN identifier of the frames of flow control, which the receiver sends; in the format "
+        "of the message.",
+        ge=0,
+        le=0x1FFFFFFF,
+    )
+    block: int = PydanticField(
+        default=0,
+        ge=0,
+        le=255,
+        description="Consecutive frames that the receiver asks for at once (block size), 0 to "
+        "255; 0: all that are left.",
+    )
+    separation: Span | None = optional(
+        "Least time between two consecutive frames (STmin): 100 us to 900 us in steps of 100 us, "
+        "or up to 127 ms in steps of 1 ms; none unless given."
+    )
+    flow_limit: int = PydanticField(
+        default=0,
+        ge=0,
+        le=255,
+        description="How often in a row the sender takes flow control that says wait (N_WFTmax).",
+    )
+    timeout: PositiveSpan | None = optional(
+        "How long the sender waits for flow control (N_Bs), and the receiver for the next frame "
+        "(N_Cr); 1 s unless given."
+    )
+
+
 class MessageForm(Element):
     """A port's value on a CAN bus, or with `bytes` a frame that others send to others."""
 
@@ -290,6 +343,13 @@ class MessageForm(Element):
         "least time between two frames, and the next one may never come. `no`: its sender "
         "queues one every `period` exactly. Reactions to a sporadic message are bounded; the "
         "age of values made from it is not."
+    )
+    send: TransmissionForm | None = optional(
+        "When a frame goes, of a message with `from`; periodically unless given."
+    )
+    transport: TransportForm | None = optional(
+        "The value has 9 to 64 bytes and travels in several classic frames, from one node of the "
+        "model to another; none unless given."
     )
     bytes: int | None = PydanticField(
         default=None,

@@ -60,6 +60,9 @@ class Claims:
     stale: Mapping[str, Ns] = field(default_factory=dict)
     """Ports of checked messages: when it is known that no usable frame comes."""
 
+    transfers: Mapping[str, tuple[Ns, Ns]] = field(default_factory=dict)
+    """Messages in several frames: the round trip of flow control, and the whole transfer."""
+
     def of(self, element: str) -> Claim:
         """The claim about a task or message."""
         return self.items.get(element, Claim())

@@ -23,6 +23,8 @@ from .component import Component
 from .protection import Protection
 from .signals import Signal
 from .statechart import Timing
+from .transmission import Transmission
+from .transport import Transport
 
 NO_TIME = Ns(0)
 
@@ -220,6 +222,12 @@ class Message:
 
     protection: Protection | None = None
     """From end to end; None: none."""
+    transmission: Transmission | None = None
+    """Its transmission mode; None: periodic. ``period`` is then the least time between two."""
+    transport: Transport | None = None
+    """Its value travels in several frames, of which it describes each; None: in one."""
+    controls: str = ""
+    """The message with transport whose flow control it is; "" for all others."""
 
     authentication: Authentication | None = None
     """By a MAC; None: none."""
@@ -233,6 +241,11 @@ class Message:
     def check(self) -> Protection | Authentication | None:
         """What decides whether a frame that is received is used."""
         return self.protection or self.authentication
+
+    @property
+    def longest(self) -> Ns | None:
+        """The time from one frame to the next in its transmission mode; None: without bound."""
+        return self.period if self.transmission is None else self.transmission.longest
 
     @property
     def is_reply(self) -> bool:

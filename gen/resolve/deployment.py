@@ -48,12 +48,16 @@ from ravenchart.gen.model.system import (
     Tick,
     Work,
 )
+from ravenchart.gen.model.transmission import Transmission
+from ravenchart.gen.model.transport import Transport
 from ravenchart.gen.origins import Origin
 
 from .authentication import authentication_of
 from .components import Parts, timing_of
 from .layouts import layout_of, size_of
 from .protection import protection_of
+from .transmission import transmission_of
+from .transport import transport_of
 from .values import constant
 
 
@@ -274,6 +278,10 @@ def connection_of(form: ConnectionForm, site: Site) -> Connection | None:
     return Connection(form.origin, source[0], target[0])
 
 
+MEANINGLESS = ("signals", "multiplexor", "protection", "authentication", "transport")
+"""Keys of a message whose value nobody here knows."""
+
+
 def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
     """A message, its signals laid out; its type is that of its ports."""
     findings = site.findings
@@ -298,7 +306,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         )
         findings.error("RV-0608", form.origin, message, hint=hint)
         return None
-    for key in ("signals", "multiplexor", "protection", "authentication") if foreign else ():
+    for key in MEANINGLESS if foreign else ():
         if form.has(key):
             message = f"the message {name} has no value, and `{key}` no meaning"
             findings.error("RV-0210", form.at_key(key), message, hint="remove it")
@@ -317,14 +325,11 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         return None
     type_ = BOOLEAN if foreign else (source or sound[0])[1].type
     signals = () if foreign else layout_of(name, form, type_, findings)
-    length = None if signals is None else size_of(name, form, signals, findings)
-    if signals is None or length is None or form.lost("protection") or form.lost("authentication"):
+    if signals is None:
         return None
-    protection = _message_protection(name, form, length, site)
-    authentication = _message_authentication(name, form, signals, site)
-    if (protection is None) != (form.protection is None):
-        return None
-    if (authentication is None) != (form.authentication is None):
+    ports = tuple(target[1] for target in sound)
+    travels = _travels(name, form, signals, ports, period, site)
+    if travels is None:
         return None
     return Message(
         name=name,
@@ -334,16 +339,65 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         extended=form.extended,
         type=type_,
         signals=signals,
-        length=length,
+        length=travels.length,
         source=None if source is None else source[0],
         targets=tuple(target[0] for target in sound),
-        period=period,
+        period=travels.period,
         deadline=None if form.deadline is None else Ns(form.deadline),
         fd=form.format == "fd",
         sporadic=source is None and form.sporadic is not False,
-        protection=protection,
-        authentication=authentication,
+        protection=travels.protection,
+        authentication=travels.authentication,
+        transmission=travels.transmission,
+        transport=travels.transport,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Travels:
+    """How frames of a message go: their bytes, the least time between two, what they carry."""
+
+    length: int
+    period: Ns
+    protection: Protection | None = None
+    authentication: Authentication | None = None
+    transmission: Transmission | None = None
+    transport: Transport | None = None
+
+
+def _travels(
+    name: str,
+    form: MessageForm,
+    signals: tuple[Signal, ...],
+    ports: tuple[Port, ...],
+    period: Ns,
+    site: Site,
+) -> _Travels | None:
+    """How frames of a message with these signals go; None where they cannot as it is given."""
+    findings = site.findings
+    if any(form.lost(key) for key in ("protection", "authentication", "transport", "send")):
+        return None
+    if form.transport is not None and signals:
+        given = (name, form, form.transport, signals, ports, period)
+        transport = transport_of(*given, findings)
+        if transport is None:
+            return None
+        return _Travels(8, Ns(transport.distance * period), transport=transport)
+    length = size_of(name, form, signals, findings)
+    if length is None:
+        return None
+    protection = _message_protection(name, form, length, site)
+    authentication = _message_authentication(name, form, signals, site)
+    if (protection is None) != (form.protection is None):
+        return None
+    if (authentication is None) != (form.authentication is None):
+        return None
+    before = findings.count()
+    transmission = None if form.send is None else transmission_of(name, form, period, findings)
+    if findings.count() > before:
+        return None
+    least = period if transmission is None else Ns(transmission.minimum * period)
+    return _Travels(length, least, protection, authentication, transmission)
 
 
 def _message_protection(name: str, form: MessageForm, length: int, site: Site) -> Protection | None:

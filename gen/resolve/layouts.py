@@ -249,7 +249,8 @@ class _Maker:
         if self.form.signals is None:
             return True  # `payloads_fit` says what is too long
         room = 8 * self.form.bytes if self.form.bytes is not None else None
-        room = room_of(fd=self.form.format == "fd") if room is None else room
+        if room is None:
+            room = room_of(fd=self.form.format == "fd" or self.form.transport is not None)
         for signal in signals:
             last = max(signal.bits())
             key = keys.get(signal.name.lower())

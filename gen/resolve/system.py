@@ -14,6 +14,7 @@ from ravenchart.gen.derive.distribution import Carrier, placed
 from ravenchart.gen.derive.identifiers import identified
 from ravenchart.gen.derive.macs import with_macs
 from ravenchart.gen.derive.remote import calling
+from ravenchart.gen.derive.transport import with_flows
 from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import CHILDREN, GNAT_PREFIXES, PREDEFINED_TYPES, Findings, Scope
@@ -358,7 +359,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         shutdown=stop,
         chains=chains.sound(),
     )
-    system = calling(with_bindings(system, bindings, polls))
+    system = with_flows(calling(with_bindings(system, bindings, polls)))
     frames = identified(system.frames)
     system = replace(
         system,

@@ -9,6 +9,7 @@ from ravenchart.gen.model.system import Bus, Message, Slot, System, Work
 from ravenchart.gen.resolve.authentication import AUTHENTICATION
 from ravenchart.gen.resolve.protection import PROTECTION
 from ravenchart.gen.resolve.system import Resolved
+from ravenchart.gen.resolve.transport import TRANSPORT
 
 FAULTS = "RV-0618"
 """A fault that cannot be noticed, or a recovery that nobody can request."""
@@ -127,7 +128,29 @@ def refusal_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
                 yield error(code, message.origin, text, hint=hint)
 
 
+def transports_have_two_ends(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A value in several frames goes to one port of another node; its flow control has a name."""
+    system = resolved.system
+    names = {message.name.lower(): message for message in system.frames}
+    for message in system.messages:
+        transport = message.transport
+        if transport is None:
+            continue
+        if len(message.targets) > 1:
+            ends = " and ".join(map(str, message.targets))
+            text = f"{message.name} has `transport` and goes to {ends}: one receiver answers"
+            hint = "give each receiver a message of its own"
+            yield error(TRANSPORT, message.origin, text, hint=hint)
+        other = names.get(transport.flow.lower())
+        if other is not None and other.controls != message.name:
+            text = f"the flow control of {message.name} is called {transport.flow}, like a message"
+            notes = [(other.origin, f"{other.name} is declared here")]
+            hint = "rename one of the messages"
+            yield error(TRANSPORT, message.origin, text, notes=notes, hint=hint)
+
+
 BUS_RULES = (
+    transports_have_two_ends,
     buses_are_watched,
     bus_events_can_come,
     protected_messages_differ,

@@ -117,7 +117,7 @@ def messages_agree(resolved: Resolved) -> Iterator[Diagnostic]:
     """A message's ports are of one type, and none of them could be connected instead."""
     system = resolved.system
     for item in system.messages:
-        of_ports = item.call is None and not item.every
+        of_ports = item.call is None and not item.every and not item.controls
         for target in item.targets if of_ports else ():
             instance = system.instance(target.instance)
             taken = instance.component.port(target.port).type
@@ -196,9 +196,9 @@ def identifiers_are_unique(resolved: Resolved) -> Iterator[Diagnostic]:
 
 def payloads_fit(resolved: Resolved) -> Iterator[Diagnostic]:
     """The signals of a message fit its CAN frame."""
-    for item in resolved.system.messages:
+    for item in (m for m in resolved.system.messages if not m.controls):
         bits = bits_of(item.signals)
-        room = room_of(fd=item.fd)
+        room = room_of(fd=item.fd or item.transport is not None)
         if bits > room:
             widths = ", ".join(f"{one.field or item.name} {one.width}" for one in item.signals)
             shortened = widths if len(widths) <= 200 else widths[:197] + "..."
@@ -213,8 +213,8 @@ def one_step_regions_send_messages(resolved: Resolved) -> Iterator[Diagnostic]:
     """A message's period is its sender's only when that sends once in an execution."""
     system = resolved.system
     for item in system.messages:
-        if item.source is None:
-            continue
+        if item.source is None or item.transmission is not None:
+            continue  # of those with a mode one frame goes at the end of an execution
         component = system.instance(item.source.instance).component
         for region in component.regions:
             if item.source.port in region.sends and region.steps_per_execution > 1:

@@ -53,8 +53,8 @@ def exported(system: System, bus: Bus, original: Path | None, *, lenient: bool =
         like = _original(message, names)
         if like is not None and _as_imported(message, like):
             kept.add(like)
-            if message.period != (like.cycle_time or 0) * MILLISECOND:
-                like.cycle_time = message.period // MILLISECOND
+            if (message.longest or 0) != (like.cycle_time or 0) * MILLISECOND:
+                like.cycle_time = (message.longest or 0) // MILLISECOND
             messages.append(like)
             continue
         if message.is_foreign:

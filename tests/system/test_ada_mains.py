@@ -23,6 +23,8 @@ MAINS = (
     "test_fault_notices",
     "test_protection",
     "test_authentication",
+    "test_transmissions",
+    "test_iso_tp",
     "test_bus",
     "test_frame_ends",
     "test_processors",

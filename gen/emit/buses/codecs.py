@@ -90,7 +90,7 @@ def words_of(message: Message) -> int:
 def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
     """Spec and body of the codecs; nothing for a system without messages."""
     layouts: dict[str, Message] = {}
-    for message in system.messages:
+    for message in (m for m in system.messages if not m.controls):
         layouts.setdefault(codec_name(message).lower(), message)
     if not layouts:
         return ()

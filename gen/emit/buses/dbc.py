@@ -91,18 +91,20 @@ def _flexible(bus: Bus) -> DbcSpecifics:
 
 def _message(system: System, message: Message) -> DbcMessage:
     receivers = list(dict.fromkeys(_node(system, end) for end in message.targets)) or [OUTSIDE]
-    selector = next((s for s in message.signals if s.selects), None)
+    #  no signal of a value stands in its segments
+    signals = () if message.transport else message.signals
+    selector = next((s for s in signals if s.selects), None)
     return DbcMessage(
         frame_id=message.identifier,
         name=message.name,
         length=message.length,
         signals=[
-            *(_signal(s, selector, receivers) for s in message.signals),
+            *(_signal(s, selector, receivers) for s in signals),
             *(_header(message, receivers)),
             *(_trailer(message, receivers)),
         ],
         senders=[OUTSIDE if message.source is None else _node(system, message.source)],
-        cycle_time=message.period // 1_000_000,
+        cycle_time=None if message.longest is None else message.longest // 1_000_000,
         is_extended_frame=message.extended,
         is_fd=message.fd,
         dbc_specifics=_checked(message),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
 from ravenchart.gen.emit.ada.syntax import (
     FALSE,
@@ -54,6 +56,33 @@ from .protection import (
     setting_of,
     states_of_senders,
 )
+from .transmission import (
+    TRANSMISSIONS,
+    given,
+    mode_of,
+    recorded,
+    transmit_body,
+    transmit_spec,
+    values_of,
+)
+from .transport import (
+    ISO_TP,
+    STAMP,
+    assembly,
+    body_units,
+    is_plain,
+    noticed,
+    receiver_bodies,
+    receiver_objects,
+    receiver_spec,
+    reception_declarations,
+    sender_bodies,
+    sender_objects,
+    sender_spec,
+    units_of,
+    value_of,
+)
+from .transport import taken as segment_taken
 from .watch import emit_watch, offer
 
 DRIVER_STACK = 65_536
@@ -123,40 +152,41 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
         items.append(
             Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
         )
-        items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in received]
+        plain = [m for m in received if is_plain(m)]
+        items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in plain]
     kept = [m for m in (*sent, *received) if m.check is not None]
     for message in dict.fromkeys(kept):
         items += setting_of(message)
     items += authentication.settings_of(dict.fromkeys(kept))
-    if not all(m.fd for m in sent):
+    items += (item for m in sent for item in mode_of(m))
+    if not all(m.fd or not is_plain(m) for m in sent):
         items.append(UseType("Interfaces.Unsigned_64"))
     if any(m.fd for m in sent):
         items += [UseType(f"{FD}.Fd_Words"), UseType(f"{FD}.Bit_Rate_Use")]
-    for message in sent:
+    items += (item for m in (*sent, *received) for item in _segmented_spec(system, m))
+    for message in filter(is_plain, sent):
         items.append(_frame_spec(system, bus, message))
         items.append(
             Comment(f"[{message.name}] its frame by the layout table; none of its bits is cut off.")
         )
         items.append(_send_spec(system, message))
-        items.append(Comment(f"[{message.name}] hand one frame to the controller; never blocks."))
-    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
-    if sent or received:
-        withs |= {f"{root}.Codecs", LAYOUTS}
-    if sent:
-        withs |= {ANY, "Interfaces"}
-    if any(m.fd for m in sent):
-        withs |= {FD}
-    if kept:
-        withs |= {PROTECTION, AUTHENTICATION}
+        items.append(Comment(_task_of_sending(message)))
+        items += transmit_spec(message)
+    withs = _spec_withs(root, sent, received)
     units = [Unit(header, tuple(sorted(withs)), Package(name, tuple(items), (SPARK,)))]
     if sent:
-        made = (_frame_body(system, bus, m) for m in sent)
-        handed = (_send_body(system, m) for m in sent)
-        pairs = tuple(one for pair in zip(made, handed, strict=True) for one in pair)
+        made = (_frame_body(system, bus, m) for m in sent if is_plain(m))
+        handed = (_send_bodies(system, m) for m in sent if is_plain(m))
+        pairs = tuple(
+            one for first, rest in zip(made, handed, strict=True) for one in (first, *rest)
+        )
+        values = (one for m in sent for one in values_of(system, m))
+        segmented = _segmented(system, (*sent, *received))
         states = (*states_of_senders(sent), *authentication.states_of_senders(sent))
-        bodies = (*states, *pairs)
+        bodies = (*states, *values, *pairs, *segmented)
         context = {f"{root}.Health_Counts", "Ravenchart.Health"}
         context |= authentication.context(root, sent)
+        context |= body_units(root, sent, received) if segmented else set()
         if traced(system):
             context |= {f"{root}.Trace", f"{root}.Elements", "Ravenchart.Traces"}
         units.append(
@@ -256,43 +286,103 @@ def _frame_body(system: System, bus: Bus, message: Message) -> Subprogram:
     return Subprogram(spec.name, spec.params, spec.result, body=(Return(made),))
 
 
-def _send_body(system: System, message: Message) -> Subprogram:
-    frame = call(_frame_name(message), Ref("Item"))
-    lost: list[Stmt] = [
-        Do(
-            "Health_Counts.Counters.Record_Fault",
-            arguments(Ref("Ravenchart.Health.Queue_Overflow")),
-        ),
-        *note(system, "Fault", message.name, "message", _overflow_number()),
-    ]
-    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
-    own = message.authentication
-    sending: tuple[Stmt, ...] = (
+def _spec_withs(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[str]:
+    """The units that the spec of a bus needs."""
+    withs = {"Ravenchart.Can", "Ravenchart.Can.Controllers", "System", f"{root}.{CERTIFICATE}"}
+    if sent or received:
+        withs |= {f"{root}.Codecs", LAYOUTS}
+    if sent:
+        withs |= {ANY, "Interfaces"}
+    if any(m.fd for m in sent):
+        withs |= {FD}
+    if any(m.check for m in (*sent, *received)):
+        withs |= {PROTECTION, AUTHENTICATION}
+    if any(m.transmission for m in sent):
+        withs |= {TRANSMISSIONS}
+    for message in (*sent, *received):
+        withs |= units_of(message)
+    return withs
+
+
+def _task_of_sending(message: Message) -> str:
+    if message.transmission is not None:
+        return f"[{message.name}] keep the value until the end of the execution."
+    return f"[{message.name}] hand one frame to the controller; never blocks."
+
+
+def _segmented_spec(system: System, message: Message) -> list[Decl]:
+    """What a value in several frames needs at this end of it."""
+    if message.transport is None:
+        return []
+    if message.source is not None:
+        return sender_spec(system, message, message.transport)
+    return receiver_spec(message, message.transport)
+
+
+def _segmented(system: System, messages: Sequence[Message]) -> tuple[Decl, ...]:
+    """The bodies of these, and what they keep."""
+    objects: list[Decl] = []
+    bodies: list[Decl] = []
+    for message in messages:
+        transport = message.transport
+        if transport is None:
+            continue
+        if message.source is not None:
+            objects += sender_objects(system, message)
+            ended = _counted(system, message, "Stale_Input")
+            bodies += sender_bodies(system, message, *_handed(system, message), ended)
+        else:
+            flow = next(m for m in messages if m.controls == message.name)
+            objects += receiver_objects(system, message)
+            bodies += receiver_bodies(message, flow, transport, *_handed(system, flow))
+    return (*objects, *bodies)
+
+
+def _counted(system: System, message: Message, fault: str) -> tuple[Stmt, ...]:
+    """Count a fault of a message, and note it."""
+    kind = Ref(f"Ravenchart.Health.{fault}")
+    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
+    return (
+        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
+        *note(system, "Fault", message.name, "message", position),
+    )
+
+
+def _handed(system: System, message: Message) -> tuple[tuple[Stmt, ...], tuple[Stmt, ...]]:
+    """Hand a frame to the controller; and what is done where that has no room."""
+    return (
         #  and not the frame of another message of the same type
         Pragma("Assert", (is_framed(message, Ref("Frame")),)),
         Do("Controller.Send", arguments(Ref("Frame"), Ref("Status"))),
         *note(system, "Sent", message.name, "message"),
-        If(((full, tuple(lost)),)),
-    )
+    ), _counted(system, message, "Queue_Overflow")
+
+
+def _send_bodies(system: System, message: Message) -> tuple[Subprogram, ...]:
+    """What a row calls to send a message, and at its end where the message has a mode."""
+    frame = call(_frame_name(message), Ref("Item"))
+    handed, lost = _handed(system, message)
+    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    name, params = f"Send_{ada_case(message.name)}", _send_spec(system, message).params
+    statuses = UseType("Ravenchart.Can.Send_Status")
+    ends: Stmt = If(((full, lost),), (recorded(message),) if message.transmission else ())
+    if message.transmission is not None:
+        body = transmit_body(message, _frame_name(message), (statuses,), (*handed, ends))
+        return (Subprogram(name, params, body=given(message)), body)
+    own = message.authentication
+    sending: tuple[Stmt, ...] = (*handed, ends)
     if own is not None:
-        sending = authentication.sealed(message, own, sending, _refusal(system, message))
-    return Subprogram(
-        f"Send_{ada_case(message.name)}",
-        _send_spec(system, message).params,
-        declarations=(
-            UseType("Ravenchart.Can.Send_Status"),
-            Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.check is None),
-            Object("Status", "Ravenchart.Can.Send_Status"),
-            *(authentication.variables(taken=True) if own is not None else ()),
-        ),
-        body=(*protecting(message), *sending),
+        sending = authentication.sealed(
+            message, own, sending, _counted(system, message, "Protection_Error")
+        )
+    declarations = (
+        statuses,
+        Object("Frame", f"{ANY}.Any_Frame", frame, constant=message.check is None),
+        Object("Status", "Ravenchart.Can.Send_Status"),
+        *(authentication.variables(taken=True) if own is not None else ()),
     )
-
-
-def _overflow_number() -> Expr:
-    return Call(
-        "Ravenchart.Health.Fault_Kind'Pos", arguments(Ref("Ravenchart.Health.Queue_Overflow"))
-    )
+    body_ = (*protecting(message), *sending)
+    return (Subprogram(name, params, declarations=declarations, body=body_),)
 
 
 def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
@@ -311,18 +401,21 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     declarations: list[Decl] = [
         UseType("Ravenchart.Can.Identifier"),
         UseType("Ravenchart.Can.Frame_Format"),
-        Object("Valid", "Boolean"),
     ]
+    if any(not m.controls for m in received):
+        declarations.append(Object("Valid", "Boolean"))
+    declarations += reception_declarations(received)
+    stamp = STAMP if any(m.transport for m in received) else "Unused_Stamp"
+    kept_stamp = Object(stamp, "Ravenchart.Nanoseconds")
+    if stamp == STAMP:
+        kept_stamp = Object(stamp, "Ravenchart.Nanoseconds", number(0))
     for message in received:
         item = f"{ada_case(message.name)}_Item"
+        if message.controls:
+            rows.append((_matches(message), noticed(message)))
+            continue
         declarations.append(Object(item, type_name(system, message.type)))
-        matches = Chain(
-            "and then",
-            (
-                equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
-                equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
-            ),
-        )
+        matches = _matches(message)
         puts = tuple(
             Do(f"{ada_case(t.instance)}.{_taker(message, t)}", arguments(Ref(item)))
             for t in message.targets
@@ -331,6 +424,12 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             f"Codecs.{codec_name(message)}.Unpack",
             arguments(_data(message), Ref(item), Ref("Valid")),
         )
+        if message.transport is not None:
+            whole = (*note(system, "Arrived", message.name, "message"), *puts)
+            unpacked = (unpack, If(((Ref("Valid"), whole),)))
+            refused = _counted(system, message, "Protection_Error")
+            rows.append((matches, segment_taken(message, unpacked, refused)))
+            continue
         family = Ref(f"{ANY}.{'Flexible' if message.fd else 'Classic'}")
         carried = call(f"{ANY}.Carries", Ref("Frame"), family, fact(message.element, "Length"))
         good = Chain("and then", (Ref("Valid"), carried))
@@ -355,10 +454,12 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
         *(state for m in received for state in receiver_of(m)),
         *(state for m in received for state in authentication.receiver_of(m)),
+        *(assembly(m) for m in received if m.transport),
+        *((kept_stamp,) if stamp == STAMP else ()),
         Subprogram(
             "Wait",
-            declarations=(Object("Unused_Stamp", "Ravenchart.Nanoseconds"),),
-            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref("Unused_Stamp"))),),
+            declarations=() if stamp == STAMP else (kept_stamp,),
+            body=(Do("Controller.Wait_Frame", arguments(Ref("Frame"), Ref(stamp))),),
         ),
         Subprogram(
             "Run_Receive",
@@ -368,9 +469,14 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         ),
     )
     context = {f"{root}.Codecs", ANY, LAYOUTS}
-    context |= {f"{root}.{ada_case(t.instance)}" for m in received for t in m.targets}
+    valued = [m for m in received if not m.controls]
+    context |= {f"{root}.{ada_case(t.instance)}" for m in valued for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}
+    for message in received:
+        context |= {ISO_TP, *units_of(message)} if not is_plain(message) else set()
+    if any(m.transport for m in received):
+        context |= {"Ravenchart.Health", f"{root}.Health_Counts"}
     kept = [m.check for m in received if m.check is not None]
     if kept:
         context |= {PROTECTION, AUTHENTICATION, "Interfaces"}
@@ -385,27 +491,30 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     ]
 
 
+def _matches(message: Message) -> Expr:
+    """Has the frame the identifier of a message?"""
+    return Chain(
+        "and then",
+        (
+            equal(call(f"{ANY}.Id", Ref("Frame")), fact(message.element, "Id")),
+            equal(call(f"{ANY}.Format", Ref("Frame")), _format(message)),
+        ),
+    )
+
+
 def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
     """What comes of a frame that is not used: it is counted, and raises its events."""
     if message.check is None:
         return ()
     events = message.check.on_error
     raised = (offer(system, instance, event) for instance, event in events)
-    return (*_refusal(system, message), *raised)
-
-
-def _refusal(system: System, message: Message) -> tuple[Stmt, ...]:
-    """Count a frame that is not used or cannot be sent."""
-    kind = Ref("Ravenchart.Health.Protection_Error")
-    position = Call("Ravenchart.Health.Fault_Kind'Pos", arguments(kind))
-    return (
-        Do("Health_Counts.Counters.Record_Fault", arguments(kind)),
-        *note(system, "Fault", message.name, "message", position),
-    )
+    return (*_counted(system, message, "Protection_Error"), *raised)
 
 
 def _data(message: Message) -> Expr:
     """The data of a frame, as the codec of a message takes them."""
+    if message.transport is not None:
+        return value_of(message)
     if not message.fd:
         return call(f"{ANY}.Payload", Ref("Frame"))
     words = f"{ANY}.Words (Frame)"

@@ -93,6 +93,9 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
         f"[{message.element}] {width}-bit identifier Id, Length bytes"
         f"{' of CAN FD' if message.fd else ''} from {sender}"
     )
+    mode = message.transmission
+    if mode is not None:
+        words += f", sent {mode.words}, T apart at least"
     items: list[Decl] = [
         Comment(words),
         named(f"{own}_Id", Ref(f"16#{message.identifier:X}#")),
@@ -105,6 +108,11 @@ def _terms(message: Message, bus: Bus) -> list[Decl]:
         items.append(stated(f"{own}_J", 0))
     else:
         items.append(named(f"{own}_J", Ref(f"{name_of(message.sending)}_R")))
+    if mode is not None and mode.longest is not None:
+        items += [
+            Comment(f"[{message.element}] the longest time from one frame to the next"),
+            stated(f"{own}_Renewal", mode.longest),
+        ]
     return [*items, arrivals(own)]
 
 

@@ -14,7 +14,7 @@ from ravenchart.gen.model.system import Processor, System
 from .hops import Hop, hops_of
 from .terms import assured, least, name_of, named, plus, refuse, stated, times
 
-SUFFIX = {"row": "Done", "item": "R", "handed": "Handed"}
+SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
 """What the response of a step is called."""
 
 
@@ -38,11 +38,17 @@ def chain_claims(system: System, chain: ModelChain, claim: ChainClaim) -> list[D
         before = hops[place - 1] if place else None
         if hop.how == "released" and before is not None:
             del reaction[-1], age[-1]  # its response counts from the same event
+            if hop.rare and before.kind == "row":
+                words.append(f"{hop.element} follows some jobs of {before.element} only.")
+                reaction.append(Chain("-", (_period(system, hop), _period(system, before))))
+            if hop.kind == "transfer":
+                words.append(f"{hop.element} waits for the value before it.")
+                reaction.append(Chain("-", (_longest(system, hop), _period(system, hop))))
         elif hop.how == "sampled":
             words.append(f"{hop.element} samples.")
             reaction.append(_period(system, hop))
             if before is not None and not queued:
-                age.append(_period(system, before))
+                age.append(_longest(system, before))
             queued = False
         elif before is not None:
             words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
@@ -92,10 +98,16 @@ def _period(system: System, hop: Hop) -> Expr:
     return times(number(_divisor(processor, hop.element)), Ref(f"{name_of(processor.name)}_T"))
 
 
+def _longest(system: System, hop: Hop) -> Expr:
+    """The longest distance of its outputs."""
+    return Ref(f"{name_of(hop.renewed)}_Renewal") if hop.renewed else _period(system, hop)
+
+
 def _renewal(system: System, hops: tuple[Hop, ...]) -> Expr:
     """How often new values come out of these steps: what only passes them on adds nothing."""
-    makes = [hop for hop in hops if hop.how == "sampled"]
-    return _period(system, makes[-1] if makes else hops[0])
+    begins = max((n for n, hop in enumerate(hops) if hop.how == "sampled"), default=0)
+    slowest = next((hop for hop in hops[begins:] if hop.renewed), hops[begins])
+    return _longest(system, slowest)
 
 
 def _divisor(processor: Processor, row: str) -> int:

@@ -23,16 +23,20 @@ class Hop:
     ``how`` values come to it: ``released`` by the step before or the chain's event,
     ``sampled``, or ``queued`` with so many at once. ``open``: values may wait for as long
     as its region has other things to do, or as others fill the same queue. ``sure``: each
-    of its jobs makes a new output, and it has a job in every period.
+    of its jobs makes a new output, and it has a job in every period. ``rare``: it follows some
+    of the jobs before it only, in whose period it has none. ``renewed``: the message that says
+    how long its outputs stay at most, where that is longer than its period; "" where it is not.
     """
 
     element: str
     kind: str
-    """``row``, ``item`` (a task or message) or ``handed``."""
+    """``row``, ``item`` (a task or message), ``handed``, or ``transfer`` of several frames."""
     how: str
     at_once: int = 1
     open: bool = False
     sure: bool = True
+    rare: bool = False
+    renewed: str = ""
 
 
 def hops_of(system: System, chain: Chain) -> tuple[Hop, ...]:
@@ -79,13 +83,24 @@ def _irregular(system: System, chain: Chain, hops: list[Hop]) -> list[Hop]:
 def _message(system: System, name: str, following: str) -> Iterator[Hop]:
     """The driver's work and the frame, then its reception for the port that follows."""
     message = named(system.messages, name)
+    mode = message.transmission
+    hops: list[Hop] = []
+    rare = mode is not None or message.transport is not None
     if message.source is not None:
-        yield Hop(message.sending, "item", "released")
-    yield Hop(message.element, "item", "released")
+        hops.append(Hop(message.sending, "item", "released", rare=rare))
+    hops.append(Hop(message.element, "item", "released"))
     received = system.reception(message, following)
     if received is not None:
-        yield Hop(received.driver, "item", "released")
-        yield Hop(received.element, "handed", "released")
+        hops.append(Hop(received.driver, "item", "released"))
+        hops.append(Hop(received.element, "handed", "released"))
+    if message.transport is not None:
+        last = Hop(message.element, "transfer", "released", renewed=message.element)
+        hops = [*hops[:-1], last]
+    elif mode is not None and mode.longest is not None:
+        hops = [replace(hop, renewed=message.element) for hop in hops]
+    elif mode is not None:
+        hops[-1] = replace(hops[-1], sure=False)
+    yield from hops
 
 
 def _row(system: System, element: str, row: Region | Activity, hops: list[Hop]) -> Hop:

@@ -52,6 +52,7 @@ from .terms import (
     stated,
     times,
 )
+from .transport import transfer_claims, transferred
 
 LETTERS = (
     "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
@@ -100,12 +101,15 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     for message, end in watched(system):
         received = system.reception(message, str(end))
         handed |= set() if received is None else {received.element}
+    for _, _, there, back in transferred(system):
+        handed |= {there.element, back.element}
     for task in system.tasks:
         items += _claims(system, task, claims, rows)
     for node in system.nodes:
         items += _silences(system, node)
     for bus in system.buses:
         items += bus_claims(system, bus, claims, handed)
+    items += transfer_claims(system, claims)
     for chain in system.chains:
         items += chain_claims(system, chain, claims.chains.get(chain.name, ChainClaim()))
     items += protection_claims(system, claims)

@@ -72,6 +72,7 @@ from ravenchart.gen.model.system import System, Work
 
 from .rows import Rows
 from .site import Site
+from .transmission import answering
 
 
 class Glue(Site):
@@ -128,6 +129,7 @@ class Glue(Site):
             for message in self.system.messages:
                 if message.name in messages:
                     names.add(f"{root}.{ada_case(message.bus)}")
+        names |= answering(self.system, self.instance)
         names -= {instance_package(self.system, self.instance), *self._spec_withs()}
         return tuple(sorted(names))
 

@@ -48,6 +48,7 @@ from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
 from .site import Site
+from .transmission import answers, transmits
 
 
 class Rows(Site):
@@ -98,6 +99,7 @@ class Rows(Site):
                 declarations.append(Object(f"{name}_Losses", "Ravenchart.Event_Count"))
                 body += self._watch_losses(port, port.on_overflow)
             body.append(self._react(port))
+        body += answers(self.system, self.instance)
         return Subprogram("Run_Ports", declarations=tuple(declarations), body=tuple(body))
 
     def _asked_for(self, poll: Poll, told: str) -> list[Stmt]:
@@ -173,6 +175,7 @@ class Rows(Site):
                 field = f"{name}_Region.Data.{ada_case(data.name)}"
                 body.append(Do(f"{ada_case(data.name)}_Board.Write", arguments(Ref(field))))
         body += publishes(self.system, self.instance, region, declarations)
+        body += transmits(self.system, self.instance, region)
         run = Subprogram(f"Run_{name}", declarations=tuple(declarations), body=tuple(body))
         return [step, run]
 
@@ -364,6 +367,7 @@ class Rows(Site):
             body = (read, If(((guard, body),)))
         sent = publishes(self.system, self.instance, activity, declarations)
         body = (*watched(self.system, self.instance, activity), *body, *sent)
+        body = (*body, *transmits(self.system, self.instance, activity))
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )

@@ -1,0 +1,121 @@
+"""Transmission modes in the code of a bus: a value waits until the end of its row's execution."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case, default_value, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Assign,
+    Comment,
+    Decl,
+    Do,
+    Expr,
+    If,
+    Object,
+    Pragma,
+    Ref,
+    Stmt,
+    Subprogram,
+    arguments,
+    call,
+    number,
+)
+from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.transmission import Mode
+
+TRANSMISSIONS = "Ravenchart.Can.Transmissions"
+
+_MODES = {Mode.ON_CHANGE: "On_Change", Mode.ON_EVENT: "On_Event", Mode.MIXED: "Mixed"}
+
+
+def transmit_name(message: Message) -> str:
+    """The procedure that a row calls last."""
+    return f"Transmit_{ada_case(message.name)}"
+
+
+def _setting(message: Message) -> Ref:
+    return Ref(f"Mode_Of_{ada_case(message.name)}")
+
+
+def _state(message: Message) -> Ref:
+    return Ref(f"Pending_Of_{ada_case(message.name)}")
+
+
+def _value(message: Message) -> Ref:
+    return Ref(f"Value_Of_{ada_case(message.name)}")
+
+
+def mode_of(message: Message) -> list[Decl]:
+    """The mode of a message that has one besides the periodic one."""
+    transmission = message.transmission
+    if transmission is None:
+        return []
+    columns: dict[str, Expr] = {
+        "Mode": Ref(f"{TRANSMISSIONS}.{_MODES[transmission.mode]}"),
+        "Minimum": number(transmission.minimum),
+        "Period": Ref(f"{TRANSMISSIONS}.Distance'Last"),
+    }
+    if transmission.renewal:
+        columns["Period"] = number(transmission.renewal)
+    made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
+    return [
+        Object(_setting(message).text, f"{TRANSMISSIONS}.Setting", made, constant=True),
+        Comment(f"[{message.name}] its transmission mode, in executions of the row that sends it"),
+    ]
+
+
+def transmit_spec(message: Message) -> list[Decl]:
+    """What a row calls last; nothing for a message that is periodic."""
+    if message.transmission is None:
+        return []
+    return [
+        Subprogram(transmit_name(message)),
+        Comment(f"[{message.name}] at the end of each execution of the row; never blocks."),
+    ]
+
+
+def values_of(system: System, message: Message) -> tuple[Decl, ...]:
+    """The newest value of a message with a mode, and when its frames went."""
+    if message.transmission is None:
+        return ()
+    first = default_value(system, message.type)
+    return (
+        Object(_state(message).text, f"{TRANSMISSIONS}.Sender"),
+        Object(_value(message).text, type_name(system, message.type), first),
+    )
+
+
+def given(message: Message) -> tuple[Stmt, ...]:
+    """Keep a value until the end of the execution."""
+    return (
+        Assign(_value(message).text, Ref("Item")),
+        Do(f"{TRANSMISSIONS}.Give", arguments(_state(message))),
+    )
+
+
+def transmit_body(
+    message: Message, frame: str, declarations: tuple[Decl, ...], handed: tuple[Stmt, ...]
+) -> Subprogram:
+    """Count the execution, and send if a frame is due; ``handed`` gives it to the controller."""
+    state, setting = _state(message), _setting(message)
+    kept = call(f"{TRANSMISSIONS}.Keeps_Distance", state, setting)
+    due = call(f"{TRANSMISSIONS}.Is_Due", state, setting, Ref("Frame"))
+    return Subprogram(
+        transmit_name(message),
+        declarations=(
+            *declarations,
+            Object("Frame", "Ravenchart.Can.Any_Frames.Any_Frame",
+                   call(frame, _value(message)), constant=True),
+            Object("Status", "Ravenchart.Can.Send_Status"),
+        ),
+        body=(
+            Do(f"{TRANSMISSIONS}.Count", arguments(state)),
+            If(((due, (Pragma("Assert", (kept,)), *handed)),)),
+        ),
+    )  # fmt: skip
+
+
+def recorded(message: Message) -> Stmt:
+    """The controller has taken the frame."""
+    return Do(f"{TRANSMISSIONS}.Record_Sent", arguments(_state(message), Ref("Frame")))

@@ -1,0 +1,382 @@
+"""Values in several frames: the two ends of a transfer in the code of a bus.
+
+The sender's row makes a segment at the end of an execution, and looks at flow control, which
+the reception has put on a board. The reception of the receiver puts the flow control to send
+on a board, and the port region of the receiver sends it at the end of an execution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ravenchart.gen.emit.ada.naming import ada_case, priority, type_name
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Assign,
+    Chain,
+    Comment,
+    Decl,
+    Do,
+    Expr,
+    If,
+    Instance,
+    Object,
+    Param,
+    Ref,
+    Stmt,
+    Subprogram,
+    UseType,
+    arguments,
+    call,
+    equal,
+    member,
+    number,
+)
+from ravenchart.gen.emit.certificate.certified import fact
+from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.transport import MICROSECOND, Transport, code_of
+
+from .codecs import codec_name
+from .layout_tables import ANY, LAYOUTS
+
+ISO_TP = "Ravenchart.Can.Iso_Tp"
+SENDERS = f"{ISO_TP}.Senders"
+RECEIVERS = f"{ISO_TP}.Receivers"
+BOARDS = "Ravenchart.Blackboards"
+NOTICE = f"{SENDERS}.Flow_Notice"
+STAMP = "Stamp"
+"""When the frame came that the reception has in hand."""
+
+
+def _own(prefix: str, name: str) -> str:
+    return f"{prefix}_Of_{ada_case(name)}"
+
+
+def _next(count: str) -> Expr:
+    return call("Ravenchart.Next", Ref(count))
+
+
+def is_plain(message: Message) -> bool:
+    """One frame carries its value."""
+    return message.transport is None and not message.controls
+
+
+def units_of(message: Message) -> set[str]:
+    """The units that the spec of a bus needs for a message."""
+    return set() if is_plain(message) else {SENDERS, RECEIVERS}
+
+
+def body_units(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[str]:
+    """The units that the body of a bus needs for segments, and that its spec does not name."""
+    found = {BOARDS}
+    if not any(is_plain(m) for m in sent):
+        found |= {ANY, LAYOUTS}
+    if not any(is_plain(m) for m in (*sent, *received)):
+        found |= {f"{root}.Codecs"}
+    if not any(m.transport for m in sent):
+        found |= {SENDERS}
+    return found
+
+
+def _format(message: Message) -> Ref:
+    return Ref(f"Ravenchart.Can.{'Extended' if message.extended else 'Standard'}")
+
+
+def _frame(message: Message, payload: Expr) -> Expr:
+    return call(
+        f"{ANY}.Whole_Frame",
+        Id=fact(message.element, "Id"),
+        Format=_format(message),
+        Length=fact(message.element, "Length"),
+        Payload=payload,
+    )
+
+
+def _board(system: System, message: str, bus: str) -> Instance:
+    ceiling = system.object(f"{bus}.{message}.flow").ceiling
+    return Instance(
+        f"Flow_Board_{ada_case(message)}",
+        BOARDS,
+        arguments(
+            Element_Type=Ref(NOTICE),
+            Initial=Aggregate((Arg("others", Ref("<>")),)),
+            Ceiling=priority(ceiling),
+        ),
+    )
+
+
+# --- The sender
+
+
+def sender_spec(system: System, message: Message, transport: Transport) -> list[Decl]:
+    """What rows and reception call, and how values are cut."""
+    name = ada_case(message.name)
+    columns: dict[str, Expr] = {
+        "Length": number(transport.length),
+        "Distance": number(transport.distance),
+        "Timeout": number(-(-transport.timeout // transport.row)),
+        "Waits": number(transport.waits),
+        "Row": number(transport.row // MICROSECOND),
+    }
+    made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    return [
+        Object(_own("Segmentation", name), f"{SENDERS}.Setting", made, constant=True),
+        Comment(f"[{message.name}] its segments; times in executions of the row that sends it"),
+        Subprogram(f"Send_{name}", (Param("Item", "in", type_name(system, message.type)),)),
+        Comment(f"[{message.name}] keep the value until a transfer can begin."),
+        Subprogram(f"Transmit_{name}"),
+        Comment(f"[{message.name}] at the end of each execution of the row; never blocks."),
+        Subprogram(f"Note_Flow_{name}", (Param("Found", "in", f"{ISO_TP}.Segment"),)),
+        Comment(f"[{message.name}] by the reception: flow control has come."),
+    ]
+
+
+def sender_objects(system: System, message: Message) -> list[Decl]:
+    """The transfer under way, and the flow control that came."""
+    return [
+        Object(_own("Transfer", message.name), f"{SENDERS}.Sender"),
+        Object(_own("Flow", message.name), NOTICE),
+        _board(system, message.name, message.bus),
+    ]
+
+
+def sender_bodies(
+    system: System,
+    message: Message,
+    handed: tuple[Stmt, ...],
+    lost: tuple[Stmt, ...],
+    failed: tuple[Stmt, ...],
+) -> tuple[Subprogram, ...]:
+    """Keep a value, make a segment, and take notice of flow control.
+
+    ``handed`` gives a frame to the controller; ``lost`` is for one that finds no room,
+    ``failed`` for a transfer that ends before its time.
+    """
+    name, board = ada_case(message.name), f"Flow_Board_{ada_case(message.name)}"
+    state, setting = Ref(_own("Transfer", name)), Ref(_own("Segmentation", name))
+    flow = _own("Flow", name)
+    bytes_ = call(f"{ISO_TP}.Bytes_Of", call(f"Codecs.{codec_name(message)}.Pack", Ref("Item")))
+    send = Subprogram(
+        f"Send_{name}",
+        (Param("Item", "in", type_name(system, message.type)),),
+        body=(Do(f"{SENDERS}.Give", arguments(state, bytes_)),),
+    )
+    segment = call(f"{SENDERS}.Next_Segment", state, setting)
+    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    recorded = Do(f"{SENDERS}.Record_Sent", arguments(state, setting))
+    ended = Chain("/=", (Ref("Fault"), Ref(f"{SENDERS}.None")))
+    transmit = Subprogram(
+        f"Transmit_{name}",
+        declarations=(
+            UseType("Ravenchart.Can.Send_Status"),
+            UseType(f"{SENDERS}.Transfer_Fault"),
+            Object("Flow", NOTICE),
+            Object("Fault", f"{SENDERS}.Transfer_Fault"),
+            Object("Frame", f"{ANY}.Any_Frame"),
+            Object("Status", "Ravenchart.Can.Send_Status"),
+        ),
+        body=(
+            Do(f"{board}.Read", arguments(Ref("Flow"))),
+            Do(f"{SENDERS}.Count", arguments(state, setting, Ref("Flow"), Ref("Fault"))),
+            If(((ended, failed),)),
+            If(
+                (
+                    (
+                        call(f"{SENDERS}.Is_Due", state, setting),
+                        (
+                            Assign("Frame", _frame(message, segment)),
+                            *handed,
+                            If(((full, lost),), (recorded,)),
+                        ),
+                    ),
+                )
+            ),
+        ),
+    )
+    fields = {
+        "Count": _next(f"{flow}.Count"),
+        "Status": Ref("Found.Status"),
+        "Block": Ref("Found.Block"),
+        "Separation": Ref("Found.Separation"),
+    }
+    noted = Subprogram(
+        f"Note_Flow_{name}",
+        (Param("Found", "in", f"{ISO_TP}.Segment"),),
+        body=(
+            Assign(flow, Aggregate(tuple(Arg(key, value) for key, value in fields.items()))),
+            Do(f"{board}.Write", arguments(Ref(flow))),
+        ),
+    )
+    return send, transmit, noted
+
+
+# --- The receiver
+
+
+def receiver_spec(message: Message, transport: Transport) -> list[Decl]:
+    """What the reception and the port region call, and how values are put together."""
+    name = ada_case(message.name)
+    columns: dict[str, Expr] = {
+        "Length": number(transport.length),
+        "Block": number(transport.block),
+        "Timeout": number(transport.timeout),
+    }
+    made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    return [
+        Object(_own("Reassembly", name), f"{RECEIVERS}.Setting", made, constant=True),
+        Comment(f"[{message.name}] its segments"),
+        Subprogram(f"Ask_{name}", (Param("Status", "in", f"{ISO_TP}.Flow_Status"),)),
+        Comment(f"[{message.name}] by the reception: flow control is to be sent."),
+        Subprogram(f"Answer_{name}"),
+        Comment(f"[{transport.flow}] at the end of each execution of the port region."),
+    ]
+
+
+def receiver_objects(system: System, message: Message) -> list[Decl]:
+    """The flow control to send, and how much of it has gone."""
+    return [
+        Object(_own("Wanted", message.name), NOTICE),
+        Object(_own("Answered", message.name), "Ravenchart.Event_Count", number(0)),
+        _board(system, message.name, message.bus),
+    ]
+
+
+def receiver_bodies(
+    message: Message,
+    flow: Message,
+    transport: Transport,
+    handed: tuple[Stmt, ...],
+    lost: tuple[Stmt, ...],
+) -> tuple[Subprogram, ...]:
+    """Note that flow control is to be sent, and send it."""
+    name, board = ada_case(message.name), f"Flow_Board_{ada_case(message.name)}"
+    wanted, answered = _own("Wanted", name), _own("Answered", name)
+    asked = Subprogram(
+        f"Ask_{name}",
+        (Param("Status", "in", f"{ISO_TP}.Flow_Status"),),
+        body=(
+            Assign(f"{wanted}.Count", _next(f"{wanted}.Count")),
+            Assign(f"{wanted}.Status", Ref("Status")),
+            Do(f"{board}.Write", arguments(Ref(wanted))),
+        ),
+    )
+    payload = call(
+        f"{ISO_TP}.Flow_Payload",
+        Ref("Wanted.Status"),
+        number(transport.block),
+        number(code_of(transport.separation) or 0),
+    )
+    full = Chain("/=", (Ref("Status"), Ref("Ravenchart.Can.Queued")))
+    new = Chain("/=", (Ref("Wanted.Count"), Ref(answered)))
+    answer = Subprogram(
+        f"Answer_{name}",
+        declarations=(
+            UseType("Ravenchart.Can.Send_Status"),
+            UseType("Ravenchart.Event_Count"),
+            Object("Wanted", NOTICE),
+            Object("Frame", f"{ANY}.Any_Frame"),
+            Object("Status", "Ravenchart.Can.Send_Status"),
+        ),
+        body=(
+            Do(f"{board}.Read", arguments(Ref("Wanted"))),
+            If(
+                (
+                    (
+                        new,
+                        (
+                            Assign("Frame", _frame(flow, payload)),
+                            *handed,
+                            If(((full, lost),), (Assign(answered, Ref("Wanted.Count")),)),
+                        ),
+                    ),
+                )
+            ),
+        ),
+    )
+    return asked, answer
+
+
+def taken(
+    message: Message, unpacked: tuple[Stmt, ...], refused: tuple[Stmt, ...]
+) -> tuple[Stmt, ...]:
+    """What the reception does with a segment."""
+    name = ada_case(message.name)
+    frame = (call(f"{ANY}.Payload", Ref("Frame")), Ref("Frame.Plain.Length"))
+    given = (Ref(_own("Assembly", name)), Ref(_own("Reassembly", name)), *frame)
+    complete = equal(Ref("Outcome"), Ref(f"{RECEIVERS}.Complete"))
+    faulty = member(Ref("Outcome"), f"{RECEIVERS}.Fault")
+    plain = Chain(
+        "and then",
+        (
+            equal(Ref("Frame.Family"), Ref(f"{ANY}.Classic")),
+            equal(Ref("Frame.Plain.Kind"), Ref("Ravenchart.Can.Data")),
+        ),
+    )
+    asks = [
+        (
+            equal(Ref("Reply"), Ref(f"{RECEIVERS}.{reply}")),
+            (Do(f"Ask_{name}", arguments(Ref(f"{ISO_TP}.{status}"))),),
+        )
+        for reply, status in (("Ask_For_More", "Continue_To_Send"), ("Refuse", "Overflow"))
+    ]
+    return (
+        If(
+            (
+                (
+                    plain,
+                    (
+                        Do(
+                            f"{RECEIVERS}.Take",
+                            arguments(*given, Ref(STAMP), Ref("Outcome"), Ref("Reply")),
+                        ),
+                        If(tuple(asks)),
+                        If(((complete, unpacked), (faulty, refused))),
+                    ),
+                ),
+            )
+        ),
+    )
+
+
+def value_of(message: Message) -> Expr:
+    """The value that has come, as its codec takes it."""
+    return call(f"{ISO_TP}.Words_Of", Ref(f"{_own('Assembly', message.name)}.Data"))
+
+
+def assembly(message: Message) -> Object:
+    """The value that is being put together."""
+    return Object(_own("Assembly", message.name), f"{RECEIVERS}.Receiver")
+
+
+def noticed(flow: Message) -> tuple[Stmt, ...]:
+    """What the reception does with flow control."""
+    name = ada_case(flow.controls)
+    found = call(
+        f"{ISO_TP}.Decoded", call(f"{ANY}.Payload", Ref("Frame")), Ref("Frame.Plain.Length")
+    )
+    is_flow = equal(Ref("Found.Kind"), Ref(f"{ISO_TP}.Flow_Control"))
+    classic = equal(Ref("Frame.Family"), Ref(f"{ANY}.Classic"))
+    note = Do(f"Note_Flow_{name}", arguments(Ref("Found")))
+    return (If(((classic, (Assign("Found", found), If(((is_flow, (note,)),)))),)),)
+
+
+def reception_declarations(received: tuple[Message, ...]) -> list[Decl]:
+    """What the reception needs for segments."""
+    found: list[Decl] = []
+    if any(not is_plain(m) for m in received):
+        found.append(UseType(f"{ANY}.Frame_Family"))
+    if any(m.transport for m in received):
+        found += [
+            UseType(f"{RECEIVERS}.Outcome"),
+            UseType(f"{RECEIVERS}.Answer"),
+            UseType("Ravenchart.Can.Frame_Kind"),
+            Object("Outcome", f"{RECEIVERS}.Outcome"),
+            Object("Reply", f"{RECEIVERS}.Answer"),
+        ]
+    if any(m.controls for m in received):
+        found += [
+            UseType(f"{ISO_TP}.Segment_Kind"),
+            Object("Found", f"{ISO_TP}.Segment"),
+        ]
+    return found

@@ -1,0 +1,60 @@
+"""Values that travel in several frames in the timing certificate (ISO-TP).
+
+A round trip ends with the first release of the sender's row behind the delivery of a segment,
+an execution of the port region that sends flow control, and the delivery of that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ravenchart.gen.emit.ada.syntax import Comment, Decl, Expr, Ref, number
+from ravenchart.gen.model.claims import Claims
+from ravenchart.gen.model.system import Message, Reception, System
+from ravenchart.gen.model.transport import Transport
+
+from .terms import SLOW, assured, ceiling, least, name_of, named, plus, refuse, stated, times
+
+
+def transferred(system: System) -> Iterator[tuple[Message, Transport, Reception, Reception]]:
+    """Each message in several frames, with the reception of a segment and of flow control."""
+    flows = {message.controls: message for message in system.messages if message.controls}
+    for message in system.messages:
+        flow = flows.get(message.name)
+        if message.transport is not None and flow is not None:
+            ends = *system.receptions(message), *system.receptions(flow)
+            if len(ends) == 2:  # and not the part of a node
+                yield message, message.transport, *ends
+
+
+def transfer_claims(system: System, claims: Claims) -> list[Decl]:
+    """How long each transfer takes, from the frames that it consists of."""
+    items: list[Decl] = []
+    for message, transport, there, back in transferred(system):
+        own, label = name_of(message.element), message.element
+        claim = claims.transfers.get(message.element, (0, 0))
+        segment, answer = Ref(f"{name_of(there.element)}_Handed"), f"{name_of(back.element)}_Handed"
+        apart, row = Ref(f"{own}_T"), Ref(f"{own}_Row")
+        heard = plus(segment, Ref(f"{name_of(back.message.element)}_T"), Ref(answer))
+        trip, bound = Ref(f"{own}_Round_Trip"), Ref(f"{own}_Transfer")
+        further = transport.segments - 1 - transport.rounds
+        last: list[Expr] = [times(number(transport.rounds), trip)]
+        last += [times(number(further), apart)] if further else []
+        words = f"[{label}] a value of {transport.length} bytes travels in {transport.segments} "
+        words += f"segments, with flow control {transport.rounds} times. Row: the period of what "
+        words += "sends. Round_Trip: from a segment behind which flow control is sent to the next "
+        words += "one. Transfer: from the first release until it is handed over. Renewal: from "
+        words += "one value to the next."
+        items += [
+            Comment(words),
+            stated(f"{own}_Row", transport.row),
+            stated(f"{own}_Round_Trip", claim[0]),
+            *least(trip, [apart, times(ceiling(heard, row), row)], label, SLOW),
+            stated(f"{own}_Transfer", claim[1]),
+            *least(bound, [plus(*last, segment)], label, SLOW),
+            named(f"{own}_Renewal", plus(*last, apart)),
+            stated(f"{own}_Timeout", transport.timeout),
+            refuse(plus(trip, segment), Ref(f"{own}_Timeout"), label, "can be given up in time"),
+            assured(plus(trip, segment), Ref(f"{own}_Timeout")),
+        ]
+    return items

@@ -1,0 +1,37 @@
+"""What a row does last for the messages with a transmission mode that it sends."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import Do
+from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.statechart import Region
+from ravenchart.gen.model.system import End, Instance, System
+
+
+def transmits(system: System, instance: Instance, row: Region | Activity) -> tuple[Do, ...]:
+    """Send the newest value of each message of which a frame is due."""
+    sources = [End(instance.name, port) for port in row.sends]
+    return tuple(
+        Do(f"{ada_case(message.bus)}.Transmit_{ada_case(message.name)}")
+        for message in system.messages
+        if (message.transmission is not None or message.transport is not None)
+        and message.source in sources
+    )
+
+
+def answers(system: System, instance: Instance) -> tuple[Do, ...]:
+    """Send the flow control that the segments of a port of the instance ask for."""
+    return tuple(
+        Do(f"{ada_case(message.bus)}.Answer_{ada_case(message.controls)}")
+        for message in system.messages
+        if message.controls
+        and message.source is not None
+        and message.source.instance == instance.name
+    )
+
+
+def answering(system: System, instance: Instance) -> set[str]:
+    """The units that the body of the instance needs for that."""
+    calls = answers(system, instance)
+    return {f"{ada_case(system.name)}.{one.name.partition('.')[0]}" for one in calls}

@@ -1,0 +1,9 @@
+--  Transmission modes: what is no generic is proved as it is.
+
+with Ravenchart.Can.Transmissions;
+
+package Instance_Transmissions
+  with SPARK_Mode
+is
+   package Transmissions renames Ravenchart.Can.Transmissions;
+end Instance_Transmissions;
