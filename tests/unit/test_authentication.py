@@ -139,6 +139,13 @@ def test_both_nodes_share_the_unit_of_the_user(two: System) -> None:
     ]
 
 
+def test_no_type_is_used_twice_where_classic_frames_are_sent_too(two: System) -> None:
+    made = generate(two, Claims())
+    use = "use type Interfaces.Unsigned_64;"
+    assert use in made["two/two-line.ads"]
+    assert use not in made["two/two-line-receiver.adb"]
+
+
 def test_a_first_version_knows_no_mac(two: System) -> None:
     (text,) = (t for n, t in first_versions(two).items() if "authentication" in n)
     assert "return (others => <>);" in text
