@@ -62,8 +62,8 @@ def claims_of(analysis: Analysis) -> Claims:
     handed = {element for element in analysis.deliveries if latencies.handed(element) in steps}
     guarded = protected(analysis)
     residual = {one.message.name: ceil(one.residual * 10**18) for one in guarded}
-    checked = (*guarded, *authenticated(analysis))
-    noticed = [silence for one in checked for silence in one.silences]
+    noticed = [silence for one in guarded for silence in one.silences]
+    noticed += [silence for one in authenticated(analysis) for silence in one.silences]
     stale = {str(one.port): one.found for one in noticed if one.found is not None}
     handed |= {one.delivery for one in noticed if one.found is not None}
     travels = analysis.transfers.values()

@@ -69,6 +69,8 @@ def _elements(system: System) -> Iterator[_Element]:
         yield from _members(component)
     for message in system.messages:
         yield _Element("message", message.name, message.origin)
+        if message.authentication is not None:
+            yield _Element("key", message.authentication.key, message.origin)
         several = (one for one in system.receptions(message) if one.several)
         yield from (
             _Element("message", f"{message.name}_{r.node}", r.message.origin) for r in several

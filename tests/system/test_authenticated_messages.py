@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import time
 from collections.abc import Callable
@@ -12,13 +11,11 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart.analysis.system.observed import Observation, read_map, read_trace
-from ravenchart.building import checking, generation, programs
+from ravenchart.analysis.system.observed import Observation
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
-from ravenchart.running import server as bus
-from ravenchart.running.process import ControllerProcess
 from ravenchart.tools import toolchain
+from tests.support.on_bus import Play, runner
 from tests.support.secoc import PUMP, VALVE, Secured
 
 FIRST = Secured(VALVE, 0x123, 1, 3)
@@ -56,36 +53,10 @@ def test_of_100_000_attacks_of_each_kind_none_succeeds() -> None:
     assert (done.returncode, "not ok" in done.stdout) == (0, False), done.stdout
 
 
-Play = Callable[[RavenchartBus], None]
-
-
 @pytest.fixture
 def gate(tmp_path: Path) -> Callable[[Play], Observation]:
     """Runs the feature model on a bus with a bench that does something; what was seen."""
-    copy = tmp_path / "authenticated"
-    shutil.copytree(ROOT / "tests" / "feature" / "authenticated", copy)
-    checked = checking.check(copy / "model.yaml")
-    generation.write_program(checked)
-    program = programs.programs_of(checked)[0].build(driver="bus")
-
-    def run(play: Play) -> Observation:
-        trace = copy / "trace.txt"
-        with bus.running("port=0", "bitrate=500000", "data_bitrate=2000000") as (_, channel):
-            port = channel.rpartition(":")[2]
-            names = {"RAVENCHART_BUS_PORT": port, "RAVENCHART_BUS_NAME": "board"}
-            process = ControllerProcess(program, trace, 0, **names)
-            try:
-                process.wait_until_joined()
-                with RavenchartBus(channel, fd=True) as bench:
-                    play(bench)
-                    time.sleep(0.2)
-            finally:
-                ended = process.stop(0.0)
-        assert ended.exit_code == 0
-        known = read_map((copy / "generated" / "trace.json").read_text())
-        return read_trace(trace.read_text().splitlines(), known)
-
-    return run
+    return runner("authenticated", tmp_path)
 
 
 GOOD, WRONG = 5, 900
@@ -150,9 +121,9 @@ def test_attacks_on_the_bus_are_noticed_and_nothing_wrong_is_used(
             flips = [0, 9, 8 * len(good) + 1, 8 * len(used[0]) - 1]
             altered = []
             for bit in flips:
-                frame = bytearray(sealed(wrong, 5))
-                frame[bit // 8] ^= 1 << bit % 8
-                altered.append(bytes(frame))
+                flipped = bytearray(sealed(wrong, 5))
+                flipped[bit // 8] ^= 1 << bit % 8
+                altered.append(bytes(flipped))
             other = PUMP if secured.key == VALVE else VALVE
             shorter = {6: 5, 32: 24, 64: 48}[len(used[0])]
             refused = [

@@ -15,17 +15,16 @@ import can
 import e2e
 import pytest
 
-from ravenchart.analysis.system.observed import Observation, read_map, read_trace
+from ravenchart.analysis.system.observed import Observation
 from ravenchart.building import checking, generation, programs
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.hw_can.bench.protection import Wrong
 from ravenchart.paths import ROOT
-from ravenchart.running import server as bus
-from ravenchart.running.process import ControllerProcess
 from ravenchart.running.result import RunResult
 from ravenchart.running.runs import controller, run_controller
 from ravenchart.tools import toolchain
+from tests.support.on_bus import runner
 
 P1_MODES = {
     "BOTH": e2e.p01.E2E_P01_DATAID_BOTH,
@@ -76,30 +75,7 @@ def test_of_100_000_faults_of_each_kind_none_is_used() -> None:
 @pytest.fixture
 def gate(tmp_path: Path) -> Callable[[Callable[[RavenchartBus], None]], Observation]:
     """Runs the feature model on a bus with a bench that does something; what was seen."""
-    copy = tmp_path / "protected"
-    shutil.copytree(ROOT / "tests" / "feature" / "protected", copy)
-    checked = checking.check(copy / "model.yaml")
-    generation.write_program(checked)
-    program = programs.programs_of(checked)[0].build(driver="bus")
-
-    def run(play: Callable[[RavenchartBus], None]) -> Observation:
-        trace = copy / "trace.txt"
-        with bus.running("port=0", "bitrate=500000", "data_bitrate=2000000") as (_, channel):
-            port = channel.rpartition(":")[2]
-            names = {"RAVENCHART_BUS_PORT": port, "RAVENCHART_BUS_NAME": "board"}
-            process = ControllerProcess(program, trace, 0, **names)
-            try:
-                process.wait_until_joined()
-                with RavenchartBus(channel, fd=True) as bench:
-                    play(bench)
-                    time.sleep(0.2)
-            finally:
-                ended = process.stop(0.0)
-        assert ended.exit_code == 0
-        known = read_map((copy / "generated" / "trace.json").read_text())
-        return read_trace(trace.read_text().splitlines(), known)
-
-    return run
+    return runner("protected", tmp_path)
 
 
 GOOD, WRONG = 5, 900

@@ -12,6 +12,7 @@ from ravenchart.analysis.present.report import render
 from ravenchart.analysis.system.authentication import authenticated
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.emit.buses.dbc import emit_dbc
+from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import first_versions, generate
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
@@ -137,6 +138,26 @@ def test_both_nodes_share_the_unit_of_the_user(two: System) -> None:
     assert [n for n in first_versions(two) if "authentication" in n] == [
         "user/two-authentication.adb"
     ]
+
+
+def test_no_type_is_used_twice_where_classic_frames_are_sent_too(two: System) -> None:
+    made = generate(two, Claims())
+    use = "use type Interfaces.Unsigned_64;"
+    assert use in made["two/two-line.ads"]
+    assert use not in made["two/two-line-receiver.adb"]
+
+
+def test_lines_with_names_of_24_characters_fit_and_a_long_key_is_reported(tmp_path: Path) -> None:
+    path, wide = tmp_path / "model.yaml", "k" * 24
+    path.write_text(NODES.replace("there:", f"{'m' * 24}:").replace("shared", wide))
+    texts = generate(_loaded(path), Claims())
+    units = (t for name, t in texts.items() if "-line" in name or "authentication" in name)
+    lines = [line for text in units for line in text.splitlines()]
+    assert any(wide in line.lower() for line in lines)
+    assert [line for line in lines if len(line) > 79] == []
+    path.write_text(NODES.replace("shared", "k" * 59))
+    (found,) = clashes(_loaded(path))
+    assert found.message.startswith(f"the key `{'k' * 59}` makes a line of Two.")
 
 
 def test_a_first_version_knows_no_mac(two: System) -> None:

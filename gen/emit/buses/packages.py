@@ -445,11 +445,10 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     if any(m.protection for m in received):
         declarations.append(Object("Status", f"{PROTECTION}.Status"))
     if any(m.authentication for m in received):
-        declarations += [
-            UseType("Interfaces.Unsigned_64"),
-            UseType(f"{AUTHENTICATION}.Status"),
-            *authentication.variables(taken=False),
-        ]
+        if all(m.fd for m in _sent(system, bus)):  # else the bus itself has it
+            declarations.append(UseType("Interfaces.Unsigned_64"))
+        declarations.append(UseType(f"{AUTHENTICATION}.Status"))
+        declarations += authentication.variables(taken=False)
     body: tuple[Decl, ...] = (
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
         *(state for m in received for state in receiver_of(m)),
