@@ -30,6 +30,7 @@ EXAMPLES = (
     "canopen_device",
     "cartesian_robot",
     "crossing",
+    "j1939_node",
     "pump",
     "qhsmtst",
     "surgical_robot",
