@@ -74,7 +74,7 @@ def test_a_trace_that_says_nothing_is_refused(
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["a.csv", "--html", "x"], "--html is for models"),
+        ([str(MODEL), "--export", "mast", "--compare", "x"], "--export goes without --compare"),
         ([str(MODEL), "--json", "--html", "x"], "--json and --export go without --html and"),
     ],
 )
