@@ -7,6 +7,9 @@ from fractions import Fraction
 EXACT_DIGITS = 18
 """A share whose denominator has more digits is rounded up to so many decimal places."""
 
+MS = 1_000_000
+"""Nanoseconds in a millisecond."""
+
 _UNITS = ((1_000_000_000, "s"), (1_000_000, "ms"), (1_000, "us"), (1, "ns"))
 
 
@@ -23,6 +26,14 @@ def microseconds(ns: int) -> str:
     tenths = -(-ns // 100)
     sign, tenths = ("-", -tenths) if tenths < 0 else ("", tenths)
     return f"{sign}{tenths // 10}" + (f".{tenths % 10}" if tenths % 10 else "")
+
+
+def milliseconds(ns: int) -> str:
+    """The same time as `microseconds` says, in ms: the point is three places further left."""
+    tenths = -(-ns // 100)
+    sign, tenths = ("-", -tenths) if tenths < 0 else ("", tenths)
+    part = f"{tenths % 10_000:04}".rstrip("0")
+    return f"{sign}{tenths // 10_000}" + (f".{part}" if part else "")
 
 
 def seconds(ns: int) -> str:

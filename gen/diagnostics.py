@@ -124,6 +124,7 @@ CODES: Mapping[str, str] = {
     "RV-0531": "A transition has too many ways through junctions.",
     "RV-0532": "An event is deferred, and no transition takes it afterwards.",
     "RV-0533": "A do activity raises `done`, and nothing waits for it.",
+    "RV-0534": "Nothing reads a parameter, or nothing uses a data item.",
     "RV-0601": "A connection does not lead from an output port to an input port.",
     "RV-0602": "An input port has no source.",
     "RV-0603": "An input port has two sources.",

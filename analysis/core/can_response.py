@@ -99,6 +99,11 @@ class FrameResponse:
         return None if self.bound is None else self.frame.deadline - self.bound
 
     @property
+    def lead(self) -> int:
+        """From the beginning of the busy period to the event of the worst instance."""
+        return self.worst_instance * self.frame.period - self.frame.jitter
+
+    @property
     def blocker(self) -> str:
         """The less urgent frame that holds this one up; "" for none, or one not declared."""
         return self.level.blocker[0]
@@ -119,8 +124,23 @@ class FrameResponse:
         model = self.level.bus.errors
         if model is None or self.bound is None:
             return 0
-        count = model.burst - 1 + releases(self.window, model.period, self.frame.cost)
-        return count * self.level.error_cost
+        return len(self.error_times) * self.level.error_cost
+
+    @property
+    def error_times(self) -> list[int]:
+        """When errors come in the window, at the soonest."""
+        model = self.level.bus.errors
+        if model is None or self.bound is None:
+            return []
+        count = releases(self.window, model.period, self.frame.cost)
+        later = [max(0, n * model.period - self.frame.cost) for n in range(count)]
+        return [0] * (model.burst - 1) + later
+
+    def queued(self, other: Frame) -> list[int]:
+        """When frames of another message of the level take part in the window, at the soonest."""
+        late = self.level.jitter(other, self.frame) + self.level.bus.bit_time
+        count = releases(self.window, other.period, late)
+        return [max(0, n * other.period - late) for n in range(count)]
 
     @property
     def interference(self) -> tuple[FrameInterference, ...]:
@@ -130,8 +150,7 @@ class FrameResponse:
         found = []
         for other in self.level.order[: self.level.reach]:
             if other.name != self.frame.name:
-                late = self.level.jitter(other, self.frame) + self.level.bus.bit_time
-                count = releases(self.window, other.period, late)
+                count = len(self.queued(other))
                 found.append(FrameInterference(other, count, count * other.cost))
         return tuple(sorted(found, key=lambda share: -share.time))
 

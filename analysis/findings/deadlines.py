@@ -72,9 +72,10 @@ def no_bound_reason(response: Response | FrameResponse) -> str:
     reason = response.reason or Reason.EFFORT
     if reason is not Reason.OVERLOAD:
         return str(reason.value)
+    load = percent(response.level.load)
     if isinstance(response, Response):
-        return f"it and what preempts it need {percent(response.level.load)} of the core"
-    return f"it and what goes before it need {percent(response.level.load)} of the bus"
+        return f"it and the tasks that preempt it need {load} of the core, more than all of it"
+    return f"it and the messages sent before it need {load} of the bus, more than all of it"
 
 
 def _of_task(response: Response, analysis: Analysis) -> Diagnostic:

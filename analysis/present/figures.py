@@ -36,17 +36,7 @@ def figures(analysis: Analysis) -> Json:
         "system": system.name,
         "digest": system.digest,
         "met": analysis.schedulable,
-        "load": {
-            name: ratio(share)
-            for name, share in (
-                *(
-                    (core, analysis.utilisation(core))
-                    for n in system.nodes
-                    for core in n.core_names
-                ),
-                *((bus.name, analysis.bus_load(bus)) for bus in system.buses),
-            )
-        },
+        "load": {name: ratio(share) for name, share in analysis.loads.items()},
         "activities": [
             {
                 "activity": slot.element,

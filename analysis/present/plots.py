@@ -1,4 +1,4 @@
-"""Pictures of an analysis: how much room is left, and the critical instant of a task."""
+"""Pictures of an analysis: room left, critical instants, hops of chains, observed reactions."""
 
 from __future__ import annotations
 
@@ -8,13 +8,18 @@ from collections.abc import Sequence
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
+from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.system.critical import Slice
 
 from .words import families
 
 INK = "#1c2128"
 """Of text and axes; a page replaces it by its own."""
+
+WAITING = "#b08900"
+"""Of waits, as the report's jitter."""
 
 COLOURS = {
     "own": "#2f6fb3",
@@ -58,9 +63,9 @@ def room(factors: Sequence[tuple[str, float]], whole: float | None) -> Figure:
     return figure
 
 
-def gantt(slices: Sequence[Slice], deadline: int) -> Figure:
-    """A critical instant; ``deadline`` counts from the beginning of the busy period."""
-    label = _labels(slices)
+def gantt(slices: Sequence[Slice], deadline: int, blocked: str = "in a section") -> Figure:
+    """A critical instant; ``deadline`` counts from its beginning, ``blocked`` says how one is."""
+    label = _labels(slices, blocked)
     order: dict[str, int] = {}
     for piece in sorted(slices, key=_depth):
         order.setdefault(label[piece.name, piece.kind], len(order))
@@ -84,18 +89,89 @@ def gantt(slices: Sequence[Slice], deadline: int) -> Figure:
     return figure
 
 
+Piece = tuple[str, int, int, int]
+"""A hop: its name, when it begins, how long it waits, how long it takes."""
+
+
+def hop_pieces(found: Latency) -> list[Piece]:
+    """The hops of a chain up to the first without a bound, in ns from its input."""
+    pieces: list[Piece] = []
+    now = 0
+    for hop in found.hops:
+        if hop.wait is None or hop.response is None:
+            break
+        pieces.append((hop.step.name, now, hop.wait, hop.response))
+        now += hop.wait + hop.response
+    return pieces
+
+
+def hops(pieces: Sequence[Piece], reaction: int | None, limit: int) -> Figure:
+    """The hops of a chain as a Gantt chart; ``limit`` is 0 where the reaction has none."""
+    figure = Figure(figsize=(11, 0.9 + 0.32 * len(pieces)), layout="constrained")
+    axes = figure.subplots()
+    for place, (_, start, wait, response) in enumerate(pieces):
+        at, between = (place - 0.3, 0.6), (start + wait) / 1e6
+        axes.broken_barh([(start / 1e6, wait / 1e6)], at, color=WAITING, linewidth=0)
+        axes.broken_barh([(between, response / 1e6)], at, color=COLOURS["own"], linewidth=0)
+    end = max(start + wait + response for _, start, wait, response in pieces)
+    lines = [("reaction", reaction)] if reaction is not None else []
+    if limit and limit <= 2 * end:
+        lines.append(("limit", limit))
+    _lines(axes, lines)
+    axes.set_yticks(range(len(pieces)), [name for name, *_ in pieces])
+    axes.set_xlim(0, max(end, *(time for _, time in lines), 1) / 1e6 * 1.06)
+    axes.set_ylim(len(pieces) - 0.4, -0.9)
+    axes.set_xlabel("ms from an input that was just missed", color=INK)
+    _plain(axes)
+    return figure
+
+
+BINS = 30
+"""Bars of a histogram at most."""
+
+
+def histogram(times: Sequence[int], bound: int, limit: int) -> Figure:
+    """How often a chain was seen to react in that time, beside the bound and the limit."""
+    figure = Figure(figsize=(11, 2.4), layout="constrained")
+    axes = figure.subplots()
+    bins = min(BINS, max(1, len(set(times))))
+    axes.hist([time / 1e6 for time in times], bins=bins, color=COLOURS["own"])
+    axes.set_ylim(0, axes.get_ylim()[1] * 1.15)
+    lines = [("bound", bound)]
+    if limit <= 2 * max(bound, *times):
+        lines.append(("limit", limit))
+    _lines(axes, lines)
+    axes.set_xlim(0, max(*times, *(time for _, time in lines)) / 1e6 * 1.06)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlabel("reaction in ms", color=INK)
+    axes.set_ylabel("reactions", color=INK, fontsize=8.5)
+    _plain(axes)
+    return figure
+
+
+def _lines(axes: Axes, lines: Sequence[tuple[str, int]]) -> None:
+    """Times in ns that bound what is drawn, each with its name."""
+    for name, time in lines:
+        limit = name == "limit"
+        colour = COLOURS["interference"] if limit else INK
+        axes.axvline(time / 1e6, color=colour, linewidth=1.6, linestyle="--" if limit else "-")
+        axes.annotate(name, (time / 1e6, 1), xycoords=("data", "axes fraction"), color=INK,
+                      xytext=(-3, -2) if not limit else (3, -2), textcoords="offset points",
+                      fontsize=8.5, ha="left" if limit else "right", va="top")  # fmt: skip
+
+
 def _depth(piece: Slice) -> tuple[int, int]:
     """What is above all first, the task itself last, blocking before it."""
     order = {"overhead": 0, "interference": 1, "blocking": 2, "own": 3}
     return order[piece.kind], piece.start
 
 
-def _labels(slices: Sequence[Slice]) -> dict[tuple[str, str], str]:
+def _labels(slices: Sequence[Slice], blocked: str) -> dict[tuple[str, str], str]:
     """The row of each slice: rivals whose names differ in the last part only share one."""
     rivals = dict.fromkeys(piece.name for piece in slices if piece.kind == "interference")
     family = {member: name for name, members in families(rivals).items() for member in members}
     return {
-        (piece.name, piece.kind): f"{piece.name}, in a section"
+        (piece.name, piece.kind): f"{piece.name}, {blocked}"
         if piece.kind == "blocking"
         else family.get(piece.name, piece.name)
         for piece in slices

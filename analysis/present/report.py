@@ -7,51 +7,34 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from ravenchart.analysis import units
 from ravenchart.analysis.core.responses import Response
-from ravenchart.analysis.core.tasks import plain
 from ravenchart.analysis.findings import advice
-from ravenchart.analysis.findings.deadlines import no_bound_reason
+from ravenchart.analysis.findings.differences import Differences
 from ravenchart.analysis.system.authentication import authenticated
 from ravenchart.analysis.system.commands import costs
-from ravenchart.analysis.system.critical import schedule
 from ravenchart.analysis.system.graph import component_view
 from ravenchart.analysis.system.journeys import Journey
-from ravenchart.analysis.system.latencies import Hop, Latency
 from ravenchart.analysis.system.network import frame_length
 from ravenchart.analysis.system.observed import Observation
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.supervision import watches
-from ravenchart.analysis.system.timing import Analysis, Verdict
+from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Bus
 
 from . import plots
+from .page import page
 from .picture import draw
-from .words import (
-    WORDS,
-    binding_lines,
-    families,
-    growth_line,
-    offset_lines,
-    verdict_line,
-    window_parts,
-)
+from .rows import chain_picture, hops_of, instants_of, row_of
+from .words import binding_lines, families, growth_line, offset_lines, verdict_line
 
 SHOWN_CHAINS = 40
 """How many chains the report lists at most."""
 
-SHOWN_INSTANTS = 6
-"""How many critical instants it draws."""
-
 SCALED = 12
 """Of how many tasks it looks for the factors."""
-
-KINDS = ("jitter", "blocking", "own", "interference", "overhead")
-"""What a response is made of, in the order of a bar."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,26 +174,14 @@ def compare(analysis: Analysis, seen: Observation) -> tuple[Comparison, ...]:
     return tuple(sorted(rows, key=lambda row: -row.ratio))
 
 
-def render(analysis: Analysis, run: RunReport | None = None) -> str:
-    """The report as HTML text."""
-    environment = Environment(
-        loader=PackageLoader("ravenchart.analysis.present"),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {
-        "us": units.microseconds,
-        "duration": units.duration,
-        "percent": units.percent,
-        "seconds": units.seconds,
-        "plain_load": lambda task: plain(task).utilisation,
-    }
-    return environment.get_template("report.html").render(_context(analysis, run))
+def render(
+    analysis: Analysis, run: RunReport | None = None, earlier: Differences | None = None
+) -> str:
+    """The report as HTML text; ``earlier`` is what changed since another version."""
+    return page("report.html", _context(analysis, run) | {"compared_with": earlier})
 
 
-def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
+def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
     """What the template shows."""
     system = analysis.system
     picture = draw(component_view(system))
@@ -226,16 +197,19 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "commands": tuple(costs(analysis)),
-        "limited": [(chain, _hops(found), found) for chain, found in analysis.limited],
+        "limited": [
+            (chain.name, hops_of(found), found, chain_picture(found))
+            for chain, found in analysis.limited
+        ],
         "chains": [
-            (_hops(found), found, way)
+            (hops_of(found), found, way)
             for found, way in zip(analysis.chains, analysis.ways.between_messages(), strict=True)
         ][:SHOWN_CHAINS],
         "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
         "by_offsets": offset_lines(analysis.responses),
         "factors": factors,
         "room": Markup(plots.svg(plots.room(factors, _whole(analysis)))) if factors else None,
-        "instants": _instants(analysis),
+        "pictured": _instants(analysis),
         "objects": [(item, _names(item.users)) for item in system.objects if len(item.users) > 1],
         "private": sum(1 for item in system.objects if len(item.users) <= 1),
         "graph": None if picture is None else Markup(picture),
@@ -243,6 +217,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
         "pictures": [(c, Markup(svg)) for c, svg in run.pictures] if run else [],
         "compared": compare(analysis, run.observation) if run and run.observation else (),
         "executions": executions(analysis, run.observation) if run and run.observation else (),
+        "histograms": _histograms(run),
         "visits": _visits(run),
         "watches": watches(analysis),
         "protected": protected(analysis),
@@ -253,33 +228,15 @@ def _context(analysis: Analysis, run: RunReport | None) -> Mapping[str, Any]:
 
 
 def _item(analysis: Analysis, name: str) -> dict[str, Any]:
-    """The row of a task or message, its parts as shares of the deadline (or of R if longer)."""
-    found, response = analysis.found, analysis.found.responses[name]
-    bound, deadline = found.from_event(name), found.deadline(name)
-    plain = analysis.plain.from_event(name)
-    item = analysis.network.items()[name]
-    parts = window_parts(analysis, name)
-    scale = max(deadline, bound or 0)
-    kinds = {kind: sum(p.time for p in parts if p.kind == kind) for kind in KINDS}
-    return {
-        "name": name,
+    """The row of a task or message, with the rows of its table."""
+    row = row_of(analysis.network, analysis.found, name) | {
         "origin": analysis.origin(name),
-        "response": response,
-        "item": item,
-        "cost": analysis.tasks[name].budget if name in analysis.tasks else item.cost,
-        "deadline": deadline,
-        "jitter": item.jitter + found.inherited.get(name, 0),
-        "bound": bound,
-        "plain": plain,
-        "slack": analysis.slack(name),
-        "word": WORDS[analysis.verdict(name)],
-        "met": analysis.verdict(name) is Verdict.MET,
-        "reason": "" if bound is not None else no_bound_reason(response),
-        "shares": parts,
-        "deadline_at": 100 * deadline / scale,
-        "bar": [(k, 100 * time / scale) for k, time in _within(kinds, bound) if time > 0],
+        "plain": analysis.plain.from_event(name),
         "rows": _rows(analysis, name),
     }
+    if name in analysis.tasks:
+        row["cost"] = analysis.tasks[name].budget
+    return row
 
 
 def _rows(analysis: Analysis, name: str) -> list[dict[str, Any]]:
@@ -321,19 +278,6 @@ def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
     return {"bus": bus, "load": analysis.bus_load(bus), "messages": messages}
 
 
-def _hops(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
-    """Each hop: its name, how data come to it, what it waits, takes and is renewed after."""
-    words = {
-        Hop.RELEASED: "at once",
-        Hop.SAMPLED: "samples, every T",
-        Hop.QUEUED: "takes the oldest of a queue",
-    }
-    return [
-        (hop.step.name, words[hop.step.hop], hop.wait, hop.response, hop.renewal)
-        for hop in found.hops
-    ]
-
-
 def _whole(analysis: Analysis) -> float | None:
     return None if analysis.scaling is None else float(analysis.scaling.factor)
 
@@ -350,33 +294,22 @@ def _factors(analysis: Analysis) -> list[tuple[str, float]]:
 
 
 def _instants(analysis: Analysis) -> list[tuple[str, int, Markup]]:
-    """The critical instants of the tasks with tables, tightest first, as pictures."""
-    found = []
-    tight = [n for n in analysis.worst_first() if n in analysis.tasks and analysis.tasks[n].slots]
-    for name in tight[:SHOWN_INSTANTS] or list(analysis.tasks)[:1]:
-        response = analysis.response(name)
-        slices = schedule(response)
-        if slices:
-            deadline = response.task.deadline + response.lead
-            found.append((name, response.window, Markup(plots.svg(plots.gantt(slices, deadline)))))
-    return found
+    """The critical instants of processors, of other tasks such as drivers, and of frames."""
+    tight = analysis.worst_first()
+    tasks = [name for name in tight if name in analysis.tasks]
+    tables = [name for name in tasks if analysis.tasks[name].slots]
+    drivers = list(families(name for name in tasks if not analysis.tasks[name].slots).values())
+    kinds = (tables, [members[0] for members in drivers], [n for n in tight if n not in tasks])
+    return [one for names in kinds for one in instants_of(analysis.found, names)]
 
 
-def _within(kinds: Mapping[str, int], bound: int | None) -> list[tuple[str, int]]:
-    """The parts of a bar that is ``bound`` long in all; empty without a bound.
-
-    For a later job of the busy period the periods before its release are taken
-    off its own time first, then off what stands before and after it.
-    """
-    if bound is None:
-        return []
-    debt = sum(kinds.values()) - bound
-    kept = dict(kinds)
-    for kind in ("own", *KINDS):
-        less = min(debt, kept[kind])
-        kept[kind] -= less
-        debt -= less
-    return list(kept.items())
+def _histograms(run: RunReport | None) -> list[tuple[str, Markup]]:
+    """How often the chains were seen to react in what time."""
+    return [
+        (one.chain, Markup(plots.svg(plots.histogram(one.times, one.bound, one.limit))))
+        for one in (run.journeys if run else ())
+        if one.times
+    ]
 
 
 def _names(elements: Iterable[str]) -> str:

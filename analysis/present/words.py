@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -31,7 +31,7 @@ def verdict_line(analysis: Analysis) -> str:
     name, failed = analysis.system.name, analysis.failed()
     tasks, messages = len(analysis.tasks), len(analysis.messages)
     total = f"{tasks} tasks" + (f", {messages} messages" if messages else "")
-    over = [bus.name for bus in analysis.overloaded]
+    over = [f"{name} ({percent(load)})" for name, load in analysis.loads.items() if load > 1]
     late = [chain.name for chain, found in analysis.limited if not found.met]
     parts = []
     if failed:
@@ -52,10 +52,20 @@ def verdict_line(analysis: Analysis) -> str:
     return f"{name}: {'; '.join(parts) or f'every deadline is met ({total})'}"
 
 
+def overload_lines(loads: Mapping[str, Fraction]) -> tuple[str, ...]:
+    """One line for each core or bus that is asked for more than all of its time."""
+    return tuple(
+        f"{name or 'the core'} is overloaded: what runs on it needs {percent(share)} of its time"
+        for name, share in loads.items()
+        if share > 1
+    )
+
+
 def load_lines(analysis: Analysis) -> tuple[str, ...]:
     """The load of each core and bus, how far the budgets may grow, and what limits them."""
     system = analysis.system
-    lines = [
+    lines = list(overload_lines(analysis.loads))
+    lines += [
         f"{core}: core load {percent(analysis.utilisation(core))}"
         for node in system.nodes
         for core in node.core_names
@@ -106,13 +116,16 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
 
 def window_parts(analysis: Analysis, name: str) -> tuple[Part, ...]:
     """What the time of a task or message is made of, its lateness at the start included."""
-    response = analysis.found.responses[name]
+    return response_parts(analysis.found.responses[name], analysis.network.released_by.get(name))
+
+
+def response_parts(response: Response | FrameResponse, releaser: str | None) -> tuple[Part, ...]:
+    """The same of a response, released by that task or message if any."""
     if response.bound is None:
         return ()
     parts = _task_parts(response) if isinstance(response, Response) else _frame_parts(response)
     jitter = response.late if isinstance(response, Response) else response.frame.jitter
     if jitter:
-        releaser = analysis.network.released_by.get(name)
         source = f"the jitter inherited from {releaser}" if releaser else "its late release"
         parts.insert(0, Part("jitter", source, "", jitter))
     return tuple(part for part in parts if part.time)

@@ -1,4 +1,4 @@
-"""The critical instant of a task as a schedule: the worst that its bound stands for.
+"""The critical instant of a task or frame as a schedule: the worst that its bound stands for.
 
 Everything that can delay the task is released when its busy period begins, each with
 its whole jitter, and again as soon as it may be, or as its offset places it; the longest
@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
+from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Response, demand_of, release_time
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.core.window import releases
@@ -60,6 +61,39 @@ def schedule(response: Response) -> tuple[Slice, ...]:
         if end < now + left:
             heappush(ready, (precedence, release, now + left - end, name, kind))
         now = end
+    return tuple(found)
+
+
+def frame_schedule(response: FrameResponse) -> tuple[Slice, ...]:
+    """The same of a frame, until its worst instance is sent; no transmission is preempted.
+
+    A frame takes part in an arbitration that begins less than a bit before it is queued.
+    """
+    if response.bound is None:
+        return ()
+    level, frame = response.level, response.frame
+    jobs: list[Job] = [
+        (time, 0, level.error_cost, "errors", "overhead") for time in response.error_times
+    ]
+    for place, other in enumerate(level.order[: level.reach], 1):
+        if other.name != frame.name:
+            times = response.queued(other)
+            jobs += [(time, place, other.cost, other.name, "interference") for time in times]
+    first = response.lead - response.worst_instance * frame.period
+    for instance in range(response.worst_instance + 1):
+        time = max(0, first + instance * frame.period)
+        jobs.append((time, level.reach + 1 + instance, frame.cost, frame.name, "own"))
+    if len(jobs) > MOST_JOBS:
+        return ()
+    now = response.blocked
+    found = [Slice(response.blocker or "another frame", "blocking", 0, now)] if now else []
+    while jobs:
+        ready = [job for job in jobs if job[0] <= now]
+        job = min(ready, key=lambda job: (job[1], job[0])) if ready else min(jobs)
+        jobs.remove(job)
+        now = max(now, job[0])
+        found.append(Slice(job[3], job[4], now, now + job[2]))
+        now += job[2]
     return tuple(found)
 
 

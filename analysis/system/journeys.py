@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ravenchart.gen.model.system import Chain, System
 
@@ -28,6 +28,8 @@ class Journey:
     observed: int
     bound: int
     limit: int
+    times: tuple[int, ...] = field(default=(), compare=False)
+    """Every reaction that was seen."""
 
     @property
     def exceeded(self) -> bool:
@@ -42,9 +44,8 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
         if chain.reaction is not None and latency.reaction is not None:
             took = _reactions(chain, analysis.system, seen)
             if took:
-                longest = max(took)
-                row = Journey(chain.name, len(took), longest, latency.reaction, chain.reaction)
-                found.append(row)
+                limits = latency.reaction, chain.reaction
+                found.append(Journey(chain.name, len(took), max(took), *limits, tuple(took)))
     return tuple(found)
 
 

@@ -165,6 +165,13 @@ class Analysis:
         return frames[-1].level.load if frames else Fraction(0)
 
     @cached_property
+    def loads(self) -> dict[str, Fraction]:
+        """The load of each core, then of each bus, by name."""
+        cores = [core for node in self.system.nodes for core in node.core_names]
+        found = {core: self.utilisation(core) for core in cores}
+        return found | {bus.name: self.bus_load(bus) for bus in self.system.buses}
+
+    @cached_property
     def ways(self) -> Ways:
         """The ways that values can take."""
         return Ways.of(self.system)

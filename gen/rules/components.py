@@ -1,4 +1,4 @@
-"""Validity rules of one component: writers, sends and events; those of its charts beside them."""
+"""Validity rules of one component: writers, sends, events, and what is unused."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ravenchart.gen.model.chart.steps import tally
 from ravenchart.gen.model.component import Activity, Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.origins import Origin
-from ravenchart.gen.resolve.flows import actions_of
+from ravenchart.gen.resolve.flows import Use, actions_of
 from ravenchart.gen.resolve.system import Resolved
 
 from .charts import (
@@ -110,6 +110,31 @@ def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iter
             yield warning("RV-0509", event.origin, message)
 
 
+# --- Parameters and data -----------------------------------------------------------
+
+
+def parameters_and_data_are_used(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
+    """A warning for each parameter that nothing reads, and data that nothing reads or writes."""
+    if any(one.partition(".")[0] == component.name for one in resolved.damaged):
+        return
+    conditions = Use()
+    for invariant in component.invariants:
+        conditions.expression(invariant.condition)
+    used = {name for item in component.runnables() for name in (*item.reads, *item.writes)}
+    used |= set(conditions.reads)
+    used |= {one.item for interface in component.provides for one in interface.published}
+    used |= {need.stand_in.item for need in component.needs if need.stand_in is not None}
+    hint = "remove it, or name it in a condition, a body or `reads`"
+    for parameter in component.parameters:
+        if parameter.name not in used:
+            message = f"nothing reads the parameter {parameter.name} of {component.name}"
+            yield warning("RV-0534", parameter.origin, message, hint=hint)
+    for data in component.data:
+        if data.name not in used and not data.is_command:
+            message = f"nothing reads or writes the data item {data.name} of {component.name}"
+            yield warning("RV-0534", data.origin, message, hint=hint)
+
+
 COMPONENT_RULES: tuple[ComponentRule, ...] = (
     data_have_one_writer,
     steps_stay_within_bounds,
@@ -121,4 +146,5 @@ COMPONENT_RULES: tuple[ComponentRule, ...] = (
     firings_agree,
     deferred_events_are_taken,
     events_are_raised_and_used,
+    parameters_and_data_are_used,
 )

@@ -3,21 +3,34 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ravenchart.failures import OK, WRONG, Refused
 
 from . import common, plain
 
+if TYPE_CHECKING:
+    from ravenchart.analysis.findings.differences import Differences, Figures
+    from ravenchart.building.checking import Checked
+
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
-    sub.add_argument("--html", type=Path, metavar="FILE", help="write the report there too")
+    sub.add_argument(
+        "--html", type=Path, metavar="FILE", help="write the report as a page of HTML there too"
+    )
     sub.add_argument(
         "--observed", type=Path, metavar="FILE",
         help="compare measured execution times (the trace of a run, or a plain file "
         "for a plain file) with the budgets",
+    )  # fmt: skip
+    sub.add_argument(
+        "--compare", type=Path, metavar="OLD",
+        help="say what changed since OLD: a model, a plain file or an answer of --json",
     )  # fmt: skip
     output = sub.add_mutually_exclusive_group()
     output.add_argument("--json", action="store_true", help="print everything as JSON")
@@ -29,42 +42,60 @@ def execute(options: argparse.Namespace) -> int:
     printed = options.json or options.export is not None
     if printed and (options.html is not None or options.observed is not None):
         raise Refused("ravenchart: error: --json and --export go without --html and --observed")
+    if options.export is not None and options.compare is not None:
+        raise Refused("ravenchart: error: --export goes without --compare")
     if options.model.suffix.lower() in plain.ENDINGS:
-        return _plain(options)
+        return OK if plain.run(options, _comparison(options)) else WRONG
+    checked = common.checked(options, deadlines=False)
+    status = OK if checked.analysis.schedulable else WRONG
+    if options.export is not None:
+        _export(options, checked)
+        return OK
+    return status if _of_model(options, checked) else WRONG
+
+
+def _comparison(options: argparse.Namespace) -> Callable[[Figures], Differences] | None:
+    """How the figures of now are compared with the earlier version; None where none is given."""
+    if options.compare is None:
+        return None
+    from .comparing import compared
+
+    return partial(compared, options.compare)
+
+
+def _export(options: argparse.Namespace, checked: Checked) -> None:
+    """Print the system of a model for another tool."""
+    from ravenchart.analysis.plain.build import PlainSystem
+
+    analysis = checked.analysis
+    system = PlainSystem(analysis.network, tuple(found.chain for _, found in analysis.limited))
+    print(plain.exported(system, options.export, options.model, checked.system.name), end="")
+
+
+def _of_model(options: argparse.Namespace, checked: Checked) -> bool:
+    """Print, or answer, what was found for a model; no observed time is above its budget."""
+    from ravenchart.analysis.present.figures import figures
     from ravenchart.analysis.present.table import show
 
-    checked = common.checked(options, deadlines=False)
-    analysis = checked.analysis
-    status = OK if analysis.schedulable else WRONG
-    if options.export is not None:
-        from ravenchart.analysis.plain.build import PlainSystem
-
-        system = PlainSystem(analysis.network, tuple(found.chain for _, found in analysis.limited))
-        print(plain.exported(system, options.export, options.model, checked.system.name), end="")
-        return OK
+    analysis, earlier = checked.analysis, _comparison(options)
+    found = figures(analysis) if options.json or earlier else {}
+    changed = None if earlier is None else earlier(found)
     if options.json:
-        from ravenchart.analysis.present.figures import figures
-
-        options.answer.figures = figures(analysis)
-        return status
+        more = {} if changed is None else {"compared": changed.figures()}
+        options.answer.figures = found | more
+        return True
     show(analysis)
-    if options.html is not None:
-        from ravenchart.analysis.present import report
-
-        options.html.parent.mkdir(parents=True, exist_ok=True)
-        options.html.write_text(report.render(analysis), encoding="utf-8")
-        print(f"report: {options.html}")
+    for line in () if changed is None else changed.lines():
+        print(line)
+    run, within = None, True
     if options.observed is not None:
         from . import observed
 
-        status = status if observed.within_budgets(checked, options.observed) else WRONG
-    return status
-
-
-def _plain(options: argparse.Namespace) -> int:
+        seen = observed.observation(checked, options.observed)
+        within = observed.within_budgets(checked, seen, options.observed)
+        run = observed.report(checked, seen, options.observed, within=within)
     if options.html is not None:
-        raise Refused(f"{options.model}: error: --html is for models")
-    met = plain.run(
-        options.model, options.answer if options.json else None, options.export, options.observed
-    )
-    return OK if met else WRONG
+        from ravenchart.analysis.present import report
+
+        plain.write(options.html, report.render(analysis, run, changed))
+    return within

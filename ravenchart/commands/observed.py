@@ -5,19 +5,25 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from ravenchart.analysis.present.report import Execution, executions
-from ravenchart.analysis.system.observed import TraceError, of_model, read_map, read_trace
+from ravenchart.analysis.present.report import Execution, RunReport, executions
+from ravenchart.analysis.system.journeys import journeys
+from ravenchart.analysis.system.observed import (
+    Observation,
+    TraceError,
+    of_model,
+    read_map,
+    read_trace,
+)
 from ravenchart.analysis.units import microseconds
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused
 
 
-def within_budgets(checked: Checked, path: Path) -> bool:
-    """Print every activity that was executed, nearest to its budget first; none is above it.
+def observation(checked: Checked, path: Path) -> Observation:
+    """What the trace that `ravenchart run` writes beside its report holds.
 
-    ``path`` is the trace that `ravenchart run` writes beside its report, of a program that
-    was generated from this model: ``generated/trace.json`` says what its numbers mean.
-    `Refused` for a trace that cannot be read, was cut off, or holds no executions.
+    The program that wrote it was generated from this model: ``generated/trace.json`` says what
+    its numbers mean. `Refused` for a trace that cannot be read, or was cut off.
     """
     names = checked.generated / "trace.json"
     try:
@@ -29,11 +35,38 @@ def within_budgets(checked: Checked, path: Path) -> bool:
         raise Refused(str(fault)) from None
     if not seen.complete:
         raise Refused(f"{path}: error: the trace was cut off: the run did not end by itself")
+    return seen
+
+
+def within_budgets(checked: Checked, seen: Observation, path: Path) -> bool:
+    """Print every activity that was executed, nearest to its budget first; none is above it.
+
+    `Refused` for a trace without executions.
+    """
     rows = executions(checked.analysis, seen)
     if not rows:
         raise Refused(f"{path}: error: no activity of {checked.system.name} was executed")
     every = {slot.element for processor in checked.system.processors for slot in processor.slots}
     return tell(rows, every)
+
+
+def report(checked: Checked, seen: Observation, path: Path, *, within: bool) -> RunReport:
+    """The section of a report on a trace: its reactions, responses and executions."""
+    verdict = "every observed execution time is within its budget"
+    return RunReport(
+        title=f"Observed in the trace {path}",
+        passed=within,
+        verdict=verdict if within else "an observed execution time is above its budget",
+        notes=(
+            "The trace does not say whether the controller had real-time priorities; "
+            "without them the bounds of responses do not hold for it.",
+        ),
+        steps=(),
+        frames=(),
+        comparable=True,
+        observation=seen,
+        journeys=journeys(checked.analysis, seen),
+    )
 
 
 def tell(rows: Sequence[Execution], every: Collection[str]) -> bool:

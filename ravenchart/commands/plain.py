@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
@@ -12,16 +14,18 @@ from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.exchange import FORMATS, Unfit
 from ravenchart.analysis.findings import advice
+from ravenchart.analysis.findings.deadlines import no_bound_reason
+from ravenchart.analysis.findings.differences import Differences, Figures
 from ravenchart.analysis.plain.build import PlainSystem, load
 from ravenchart.analysis.plain.observed import budgets, observed
-from ravenchart.analysis.plain.results import PlainResult, analyse, everything, loads
+from ravenchart.analysis.plain.results import Json, PlainResult, analyse, everything, loads
+from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
-from ravenchart.analysis.present.words import offset_lines
+from ravenchart.analysis.present.words import offset_lines, overload_lines
 from ravenchart.analysis.units import duration, percent
 from ravenchart.failures import Refused
 from ravenchart.terminal import console
 
-from .answer import Answer
 from .observed import tell
 
 EXPORTS = tuple(FORMATS)
@@ -49,38 +53,65 @@ def _text(path: Path) -> str:
         raise Refused(f"{path}: error: the file must be UTF-8 text") from None
 
 
-def run(path: Path, answer: Answer | None, export: str | None, seen: Path | None) -> bool:
-    """Analyse and print; whether every deadline is met, or the export was printed.
-
-    With ``answer`` everything goes there, for `--json`. With ``seen``, a file of observed times,
-    whether these are within their budgets too.
-    """
-    system = read(path)
-    if export is not None:
-        print(exported(system, export, path, path.stem), end="")
-        return True
+def analysed(path: Path) -> PlainResult:
+    """The analysis of a file; `Refused` with what is wrong with it."""
     try:
-        result = analyse(system)
+        return analyse(read(path))
     except ValueError as fault:
         raise Refused(f"{path}: error: {fault}") from None
-    if answer is not None:
-        changes = {"changes": advice.figures(_advice(result))}
-        answer.figures = everything(result) | changes
+
+
+def figures(result: PlainResult) -> Json:
+    """Everything, for `--json`."""
+    return everything(result) | {"changes": advice.figures(_advice(result))}
+
+
+def run(options: argparse.Namespace, earlier: Callable[[Figures], Differences] | None) -> bool:
+    """Analyse and print what the options ask for; whether every deadline is met.
+
+    An export counts as met. With a file of observed times these must be within their budgets
+    too. ``earlier`` compares with another version.
+    """
+    path: Path = options.model
+    if options.export is not None:
+        print(exported(read(path), options.export, path, path.stem), end="")
+        return True
+    result = analysed(path)
+    found = figures(result) if options.json or earlier else {}
+    compared = None if earlier is None else earlier(found)
+    if options.json:
+        more = {} if compared is None else {"compared": compared.figures()}
+        options.answer.figures = found | more
     else:
         show(result, console(None))
-    within = seen is None or _within_budgets(seen, system)
+        for line in () if compared is None else compared.lines():
+            print(line)
+    rows: list[Execution] = []
+    within = True
+    if options.observed is not None:
+        rows = _observed(options.observed, result.system)
+        within = tell(rows, budgets(result.system.network))
+    if options.html is not None:
+        lines = advice.lines(_advice(result))
+        write(options.html, render_plain(path.stem, result, lines, rows, compared))
     return within and result.met
 
 
-def _within_budgets(path: Path, system: PlainSystem) -> bool:
-    """Print what was observed beside the budgets, nearest to them first."""
+def write(path: Path, report: str) -> None:
+    """Write a report, in a new folder where there is none, and say where it is."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(report, encoding="utf-8")
+    print(f"report: {path}")
+
+
+def _observed(path: Path, system: PlainSystem) -> list[Execution]:
+    """What was observed beside the budgets, nearest to them first."""
     found = observed(_text(path), str(path), system.network)
     if not isinstance(found, dict):
         raise Refused("\n".join(map(str, found[:SHOWN])))
     known = budgets(system.network)
     rows = [Execution(name, time, known[name]) for name, time in found.items()]
-    rows.sort(key=lambda row: -Fraction(row.observed, row.claimed))
-    return tell(rows, known)
+    return sorted(rows, key=lambda row: -Fraction(row.observed, row.claimed))
 
 
 def exported(system: PlainSystem, tool: str, path: Path, title: str) -> str:
@@ -98,6 +129,8 @@ def show(result: PlainResult, out: Console) -> None:
     late = [latency.chain.name for latency in result.latencies if not latency.met]
     if result.met:
         out.print("every deadline is met", markup=False)
+    for line in overload_lines(loads(result.system.network)):
+        out.print(line, markup=False)
     for name in missed[:SHOWN]:
         out.print(_miss(name, found), markup=False)
     for name in late:
@@ -132,9 +165,9 @@ def _advice(result: PlainResult) -> advice.Advice | None:
 
 def _miss(name: str, found: Holistic) -> str:
     """One line on a missed deadline."""
-    needed, reason = found.from_event(name), found.responses[name].reason
+    needed = found.from_event(name)
     if needed is None:
-        return f"{name} has no bound: {reason.value if reason else 'unknown'}"
+        return f"{name} has no bound: {no_bound_reason(found.responses[name])}"
     over = needed - found.deadline(name)
     return f"{name} misses its deadline by {duration(over)}"
 

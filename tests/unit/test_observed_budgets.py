@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.present.report import RunReport, render
+from ravenchart.analysis.system.journeys import Journey
 from ravenchart.building import checking
 from ravenchart.command_line import main
 from ravenchart.failures import OK, WRONG
@@ -42,6 +44,23 @@ def test_executions_within_their_budgets_pass(
         assert f"{name}: 1 us, within its budget of " in found
 
 
+def test_what_a_trace_shows_is_in_the_report(tmp_path: Path) -> None:
+    lines = "".join(f"A {number} 1000\n" for number in rows().values())
+    page = tmp_path / "report.html"
+    path = trace(tmp_path, lines + "END\n")
+    assert main(["analyse", str(MODEL), "--observed", path, "--html", str(page)]) == OK
+    text = page.read_text(encoding="utf-8")
+    assert "every observed execution time is within its budget" in text
+    assert "Executions beside the model" in text
+
+
+def test_reactions_are_drawn_beside_their_bound() -> None:
+    took = Journey("flow", 3, 5_000_000, 9_000_000, 12_000_000, (3_000_000, 5_000_000, 5_000_000))
+    run = RunReport("A run", True, "all good", (), (), (), True, None, (took,))
+    text = render(checking.check(MODEL).analysis, run)
+    assert "flow: how often each reaction was observed, beside its bound" in text
+
+
 def test_an_execution_above_its_budget_fails_and_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -74,7 +93,7 @@ def test_a_trace_that_says_nothing_is_refused(
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["a.csv", "--html", "x"], "--html is for models"),
+        ([str(MODEL), "--export", "mast", "--compare", "x"], "--export goes without --compare"),
         ([str(MODEL), "--json", "--html", "x"], "--json and --export go without --html and"),
     ],
 )

@@ -353,7 +353,10 @@ def test_the_command_fails_with_what_is_wrong(
     )
     file.write_text("task,priority,period_us,cost_us\na,1,10,11\n", encoding="utf-8")
     assert main(["analyse", str(file)]) == 1
-    assert "a has no bound: what runs at its level needs more" in capsys.readouterr().out
+    assert (
+        "a has no bound: it and the tasks that preempt it need 110.0 % of"
+        in capsys.readouterr().out
+    )
     file.write_bytes(b"\xff\xfe")
     assert main(["analyse", str(file)]) == 1
     assert "must be UTF-8" in capsys.readouterr().err

@@ -166,7 +166,7 @@ def test_sends_in_exit_and_entry_of_one_transition_are_refused() -> None:
             "      wanted: {type: Mode, initial: Off}\n",
             "      unused: {type: Mode, initial: Off}\n",
         ),
-    ) == ["RV-0413", "RV-0611"]
+    ) == ["RV-0534", "RV-0413", "RV-0611"]
 
 
 def test_state_left_by_a_transition_of_its_parent_is_reachable_from() -> None:

@@ -1,0 +1,218 @@
+"""What changed between two versions of a system, and for the better or the worse.
+
+Both are the objects that `analyse --json` prints, so that a version that was kept as such an
+answer, a model and a plain file can all be compared. Times are whole ns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from enum import Enum
+from fractions import Fraction
+from typing import Any
+
+from ravenchart.analysis.units import duration, percent
+
+Figures = Mapping[str, Any]
+"""An object of `analyse --json`."""
+
+
+class Word(Enum):
+    """What a change comes to."""
+
+    WORSE = "worse"
+    BETTER = "better"
+    CHANGED = "changed"
+    ADDED = "added"
+    REMOVED = "removed"
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One figure of an element that is not what it was, in words."""
+
+    element: str
+    figure: str
+    before: str
+    now: str
+    change: str
+    word: Word
+
+    @property
+    def line(self) -> str:
+        """The whole of it in one line."""
+        if self.word in (Word.ADDED, Word.REMOVED):
+            return f"{self.element}: {self.word.value}"
+        by = f" ({self.change})" if self.change else ""
+        return f"{self.element}: {self.figure} {self.before} -> {self.now}{by}, {self.word.value}"
+
+
+@dataclass(frozen=True, slots=True)
+class Differences:
+    """All that changed since the version called ``earlier``."""
+
+    earlier: str
+    verdict: str
+    rows: tuple[Difference, ...]
+
+    def figures(self) -> dict[str, object]:
+        """The same for `--json`."""
+        rows = [asdict(row) | {"word": row.word.value} for row in self.rows]
+        return {"earlier": self.earlier, "verdict": self.verdict, "changed": rows}
+
+    def lines(self) -> Iterator[str]:
+        """Everything in words, one fact a line."""
+        yield f"compared with {self.earlier}: {self.verdict}"
+        yield from (row.line for row in self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class _Figure:
+    """A figure to compare: ``larger`` says what more of it is; None of no bound is the most."""
+
+    name: str
+    key: str
+    larger: Word
+    shown: Callable[[Any], str]
+    none: str = "none"
+
+
+def _plainly(value: object) -> str:
+    return str(value)
+
+
+_TIMES = (
+    _Figure("T", "period", Word.CHANGED, duration),
+    _Figure("D", "deadline", Word.CHANGED, duration),
+    _Figure("C", "cost", Word.CHANGED, duration),
+    _Figure("J", "jitter", Word.CHANGED, duration),
+    _Figure("B", "blocked", Word.CHANGED, duration),
+    _Figure("R", "response", Word.WORSE, duration, "no bound"),
+)
+
+_PRIORITY = _Figure("priority", "priority", Word.CHANGED, _plainly)
+_RANK = _Figure("order in arbitration", "rank", Word.CHANGED, hex)
+_CORE = _Figure("core", "core", Word.CHANGED, _plainly)
+_BUS = _Figure("bus", "bus", Word.CHANGED, _plainly)
+
+_ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
+    ("tasks", "task", (_CORE, _PRIORITY, *_TIMES)),
+    ("messages", "message", (_BUS, _RANK, *_TIMES)),
+    (
+        "chains",
+        "chain",
+        (
+            _Figure("reaction limit", "reaction_limit", Word.CHANGED, duration),
+            _Figure("reaction", "reaction", Word.WORSE, duration, "no bound"),
+            _Figure("age limit", "age_limit", Word.CHANGED, duration),
+            _Figure("age", "age", Word.WORSE, duration, "no bound"),
+        ),
+    ),
+)
+"""The lists of the object, what an entry of them is called, and its figures."""
+
+_LOAD = _Figure("load", "load", Word.WORSE, percent)
+_SCALING = _Figure(
+    "factor of all execution times", "scaling", Word.BETTER, lambda factor: f"{float(factor):.3f}"
+)
+
+
+def differences(earlier: str, before: Figures, now: Figures) -> Differences:
+    """What of ``now`` is not as it was ``before``; KeyError or the like for other objects."""
+    rows: list[Difference] = []
+    for list_name, kind, figures in _ELEMENTS:
+        rows += _of_list(kind, _by_name(before, list_name, kind), _by_name(now, list_name, kind),
+                         figures)  # fmt: skip
+    loads = [
+        {name: {"load": Fraction(share)} for name, share in one["load"].items()}
+        for one in (before, now)
+    ]
+    rows += _of_list("", loads[0], loads[1], (_LOAD,))
+    factors = [
+        {"scaling": Fraction(one["scaling"]) if one["scaling"] else None} for one in (before, now)
+    ]
+    rows += _of_element("system", factors[0], factors[1], (_SCALING,))
+    return Differences(earlier, _verdict(rows, before["met"], now["met"]), tuple(rows))
+
+
+def figures_of(answer: object) -> Figures | None:
+    """The figures of an answer of `analyse --json`; None where it is none."""
+    needed = {"unit", "met", "tasks", "messages", "chains", "load", "scaling"}
+    if not isinstance(answer, dict) or not needed <= answer.keys():
+        return None
+    return answer
+
+
+def _by_name(one: Figures, list_name: str, kind: str) -> dict[str, Figures]:
+    return {entry[kind]: entry for entry in one[list_name]}
+
+
+def _of_list(
+    kind: str,
+    before: Mapping[str, Figures],
+    now: Mapping[str, Figures],
+    figures: Sequence[_Figure],
+) -> Iterator[Difference]:
+    """Of each element what changed; those that are gone or new."""
+    for name, old in before.items():
+        element = f"{kind} {name}".strip() or "the core"
+        if name not in now:
+            yield Difference(element, "", "present", "-", "", Word.REMOVED)
+        else:
+            yield from _of_element(element, old, now[name], figures)
+    for name in now:
+        if name not in before:
+            yield Difference(
+                f"{kind} {name}".strip() or "the core", "", "-", "present", "", Word.ADDED
+            )
+
+
+def _of_element(
+    element: str, before: Figures, now: Figures, figures: Sequence[_Figure]
+) -> Iterator[Difference]:
+    for figure in figures:
+        old, new = before[figure.key], now[figure.key]
+        if old != new:
+            shown = [figure.none if one is None else figure.shown(one) for one in (old, new)]
+            more = figure.larger if _more(figure, old, new) else _opposite(figure.larger)
+            yield Difference(element, figure.name, shown[0], shown[1], _change(old, new), more)
+    if "met" in before and before["met"] != now["met"]:
+        word = Word.BETTER if now["met"] else Word.WORSE
+        yield Difference(element, "verdict", _met(before["met"]), _met(now["met"]), "", word)
+
+
+def _more(figure: _Figure, old: Any, new: Any) -> bool:
+    """The new value is larger; one without a bound is larger than any time, but no factor."""
+    if old is None or new is None:
+        return (new is None) == (figure.larger is not Word.BETTER)
+    return bool(new > old)
+
+
+def _opposite(word: Word) -> Word:
+    return {Word.WORSE: Word.BETTER, Word.BETTER: Word.WORSE}.get(word, word)
+
+
+def _change(old: object, new: object) -> str:
+    """The difference in per cent of what it was; nothing where there is no number."""
+    if isinstance(old, int | Fraction) and isinstance(new, int | Fraction) and old:
+        return f"{float((new - old) / Fraction(old)) * 100:+.1f} %"
+    return ""
+
+
+def _met(met: bool) -> str:
+    return "met" if met else "not met"
+
+
+def _verdict(rows: Sequence[Difference], before: bool, now: bool) -> str:
+    """What all of it comes to, in one sentence."""
+    if not rows and before == now:
+        return "nothing changed."
+    counts = [(word, sum(row.word is word for row in rows)) for word in Word]
+    listed = ", ".join(f"{count} {word.value}" for word, count in counts if count)
+    kept = "every deadline and limit is"
+    if before != now:
+        outcome = f"{kept} met now" if now else "a deadline or limit is no longer met"
+    else:
+        outcome = f"{kept} still met" if now else "a deadline or limit is still not met"
+    return f"{outcome}; {listed or 'no figure differs'}."

@@ -1,0 +1,63 @@
+"""What the pages of reports have in common: filters, contents, and the one page around them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from itertools import count
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from ravenchart.analysis import units
+from ravenchart.analysis.core.tasks import plain
+
+PLACE = "<!-- contents -->"
+"""Where the page has its contents."""
+
+HEADING = re.compile(r"<h2>(.*?)</h2>", re.DOTALL)
+"""The heading of a section."""
+
+
+def page(template: str, context: Mapping[str, Any]) -> str:
+    """The HTML text of a template, its contents included."""
+    environment = Environment(
+        loader=PackageLoader("ravenchart.analysis.present"),
+        autoescape=select_autoescape(default=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "us": both,
+        "only_us": units.microseconds,
+        "duration": units.duration,
+        "percent": units.percent,
+        "seconds": units.seconds,
+        "plain_load": lambda task: plain(task).utilisation,
+    }
+    return _with_contents(environment.get_template(template).render(context))
+
+
+def both(ns: int) -> Markup:
+    """A time in us and, from 1 ms on, in ms beside it; the exact value is there to sort by."""
+    text = units.microseconds(ns)
+    beside = Markup("")
+    if abs(ns) >= units.MS:
+        beside = Markup(' <small class="ms">{} ms</small>').format(units.milliseconds(ns))
+    return Markup('<data value="{}">{}</data>{}').format(ns, text, beside)
+
+
+def _with_contents(text: str) -> str:
+    """The page, each section with a name, and a list of them all at the place for it."""
+    number = count(1)
+    entries: list[str] = []
+
+    def named(found: re.Match[str]) -> str:
+        name = f"section-{next(number)}"
+        entries.append(f'<li><a href="#{name}">{found[1]}</a></li>')
+        return f'<h2 id="{name}">{found[1]}</h2>'
+
+    marked = HEADING.sub(named, text)
+    return marked.replace(PLACE, "\n".join(entries), 1)
