@@ -151,15 +151,17 @@ def named_values(signal: Signal) -> dict[int, str]:
 def _is_number(signal: Signal, choices: Mapping[int, str], limits: tuple[int, int]) -> bool:
     """Do its values count something, so that names are those of single numbers?
 
-    That is so where it has a scale, an offset or a unit, where more than 256 values may have a
-    name, where one value alone of many has one, and where no value within its limits has one.
+    That is so where it has a scale or an offset. Where not all values within its limits have a
+    name, it is also so where it has a unit or more than 8 bits, where one value alone of many has
+    a name, and where no value within its limits has one.
     """
-    if signal.conversion.scale != 1 or signal.conversion.offset != 0 or signal.unit:
+    if signal.conversion.scale != 1 or signal.conversion.offset != 0:
         return True
     within = sum(limits[0] <= code <= limits[1] for code in choices)
     if within == limits[1] - limits[0] + 1 and len(choices) <= LITERALS:
         return False
-    some = signal.length <= BITS_OF_NAMES and (len(choices) > 1 or signal.length == 1)
+    several = len(choices) > 1 or signal.length == 1
+    some = several and signal.length <= BITS_OF_NAMES and not signal.unit
     return not some or not within
 
 

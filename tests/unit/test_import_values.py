@@ -94,7 +94,8 @@ def test_a_number_of_which_some_values_have_names_stays_a_number(
 
 
 def test_all_values_of_the_limits_have_names(tmp_path: Path) -> None:
-    _, signal, _ = signal_of(tmp_path, "0|8@1+ (1,0) [0|2]", '0 "Off" 1 "On" 2 "Bad"')
+    names = '0 "Off" 1 "On" 2 "Bad"'
+    _, signal, _ = signal_of(tmp_path, "0|8@1+ (1,0) [0|2]", names, unit="none")
     assert (signal.codes, signal.other) == ((0, 1, 2), None)
 
 
