@@ -46,6 +46,8 @@ INSTANCES = ("instance_bus.ads", "instance_program.adb")
 """An instance, and the program with its tasks and those of the processors."""
 BUS = "bus"
 KERNEL = "analysis-kernel"
+FLOATS = "runtime-floats"
+"""A part of the runtime that no controller needs: bodies of users call it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,8 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     for driver in DRIVERS:
         if not names or f"runtime-{driver}" in names:
             yield _runtime(driver)
+    if not names or FLOATS in names:
+        yield _floats()
     if not names or BUS in names:
         yield _bus()
     if not names or KERNEL in names:
@@ -75,6 +79,20 @@ def record_names(example: str) -> tuple[str, ...]:
     generated = ROOT / "examples" / example / "generated"
     nodes = sorted(project.parent.name for project in generated.glob("*/*.gpr"))
     return tuple(f"{example}-{node}" for node in nodes) or (example,)
+
+
+def _floats() -> Target:
+    obj = ROOT / "obj"
+    project = ROOT / "ravenchart.gpr"
+    task = proving.Task(
+        project,
+        {"MODE": "checks", "CAN_DRIVER": DRIVERS[0]},
+        (obj / f"checks-{DRIVERS[0]}" / "gnatprove",),
+        (ROOT, ROOT / "spark_runtime", ROOT / "spark_runtime" / "src"),
+        warnings="error",
+        units=("ravenchart-ieee_floats.adb",),
+    )
+    return Target(FLOATS, task)
 
 
 def _bus() -> Target:

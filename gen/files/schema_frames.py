@@ -173,6 +173,10 @@ class SignalForm(Element):
         min_length=1,
         max_length=256,
     )
+    other: Reference | None = optional(
+        "The literal of an enumeration for every raw value that `codes` gives to no other literal. "
+        "Its own code is sent for it. Without it such raw values are refused."
+    )
     when: (
         Annotated[
             Annotated[Constant, Tag("<one>")] | Annotated[list[Constant], Tag("<list>")],

@@ -8,6 +8,7 @@ bit 7 of the next byte. These are the conventions of CAN databases (DBC).
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -65,6 +66,8 @@ class Signal:
     order: ByteOrder = ByteOrder.INTEL
     codes: tuple[int, ...] = ()
     """Raw values of the literals of an enumeration; their positions where none are given."""
+    other: str | None = None
+    """The literal for all raw values that are no code; its own code is what is sent for it."""
     selects: bool = False
     """The multiplexor: its value tells which of the multiplexed signals are there."""
     pages: tuple[int, ...] = ()
@@ -76,13 +79,14 @@ class Signal:
         return self.field or "value"
 
     @property
-    def coding(self) -> tuple[int, bool, int, tuple[int, ...]]:
+    def coding(self) -> tuple[int, bool, int, tuple[int, ...], str | None]:
         """What decides how raw values become values."""
-        return self.offset, self.signed, self.width if self.signed else 0, self.codes
+        width = self.width if self.signed else 0
+        return self.offset, self.signed, width, self.codes, self.other
 
     @property
     def raw_range(self) -> tuple[int, int]:
-        """The least and the greatest raw value."""
+        """The least and the greatest raw value; with ``other`` those that are sent."""
         if isinstance(self.type, IntegerType):
             return self.type.first - self.offset, self.type.last - self.offset
         codes = self.codes or range(len(self.type.literals))
@@ -99,7 +103,17 @@ class Signal:
         """The value of a raw value; ValueError or IndexError where none has it."""
         if isinstance(self.type, IntegerType):
             return raw + self.offset
+        if self.other is not None and raw not in self.codes:
+            return self.other
         return self.type.literals[self.codes.index(raw) if self.codes else raw]
+
+    @property
+    def named_codes(self) -> dict[str, int]:
+        """Literals of an enumeration with the only raw value of each, in their order."""
+        if isinstance(self.type, IntegerType):
+            return {}
+        codes = zip(self.type.literals, self.codes or itertools.count(), strict=False)
+        return {name: code for name, code in codes if name != self.other}
 
     def bits(self) -> tuple[int, ...]:
         """The frame's bit for each bit of the raw value, its least significant first."""
@@ -132,6 +146,11 @@ def positions(start: int, width: int, order: ByteOrder) -> tuple[int, ...]:
         found.append(at)
         at += 15 if at % 8 == 0 else -1
     return tuple(reversed(found))
+
+
+def range_of(width: int, *, signed: bool) -> tuple[int, int]:
+    """The least and the greatest raw value of so many bits."""
+    return (-(1 << width - 1), (1 << width - 1) - 1) if signed else (0, (1 << width) - 1)
 
 
 def width_for(low: int, high: int, *, signed: bool) -> int:

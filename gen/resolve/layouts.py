@@ -168,6 +168,7 @@ class _Maker:
             offset = 0 if form.signed or is_selector else scalar.first
         order = ByteOrder(form.order)
         made = Signal(field, scalar, form.start or 0, 1, offset, form.signed, order, codes)
+        made = self._with_other(form, key, made)
         made = self._with_width(form, key, made)
         if order is ByteOrder.MOTOROLA and form.start is None:
             hint = "give the place of its most significant bit"
@@ -191,6 +192,20 @@ class _Maker:
             self.wrong(key, "codes", message)
             return ()
         return tuple(form.codes)
+
+    def _with_other(self, form: SignalForm, key: str, made: Signal) -> Signal:
+        """The same with the literal for all other raw values, where one is given."""
+        if form.other is None:
+            return made
+        if isinstance(made.type, IntegerType):
+            self.wrong(key, "other", f"{made.type.name} is no enumeration and has no `other`")
+            return made
+        names = made.type.literals
+        other = next((name for name in names if name.lower() == form.other.lower()), None)
+        if other is None:
+            message = f"{made.type.name} has no value `{form.other}`"
+            self.wrong(key, "other", message, meant(form.other, names))
+        return replace(made, codes=made.codes or tuple(range(len(names))), other=other)
 
     def _with_width(self, form: SignalForm, key: str, made: Signal) -> Signal:
         low, high = made.raw_range
@@ -226,6 +241,10 @@ class _Maker:
         given = form.when if isinstance(form.when, list) else [form.when]
         place = form.place("when")
         found = [constant(one, place, selector.name, selector.type, self.findings) for one in given]
+        if selector.other is not None and selector.other in found:
+            message = f"`{selector.other}` stands for many raw values of `{selector.name}`"
+            self.wrong(key, "when", message, "name values that have one raw value each")
+            return ()
         return tuple(sorted({selector.raw(one) for one in found if one is not None}))
 
     def fits(self, signals: tuple[Signal, ...]) -> bool:

@@ -5,7 +5,7 @@ What models have no words for is changed or left out, and the text says so at it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
@@ -24,7 +24,7 @@ from ravenchart.gen.resolve.layouts import SIGNED_BITS
 
 from .fields import Field, Fields, fields_of, raw_fields
 from .names import HIDDEN, Names
-from .signals import Unsayable, Words
+from .signals import Unsayable, Words, named_values
 
 FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
 """Databases by the ending of their files; a file with another one is read as DBC."""
@@ -295,6 +295,12 @@ class _Writer:
             if words.raw is not None:
                 how = f"counts raw values: {words.raw}{_formula(signal)}{_values(signal)}"
                 self.changes.append((where, how))
+            if words.named:
+                named = _shown(words.named)
+                self.changes.append((where, f"is a number, of which some have names: {named}"))
+            if words.other is not None and words.literals:
+                told = f"has {words.literals[-1]} for values without a name"
+                self.changes.append((where, f"{told}, which is sent as {words.other}"))
             for old, new in words.renamed:
                 self.changes.append((where, f"its value `{old}` is named {new}"))
         return {one.signal: name for one, name in zip(found.fields, names, strict=True)}
@@ -331,11 +337,14 @@ def _formula(signal: Signal) -> str:
 
 def _values(signal: Signal) -> str:
     """The names of some of its raw values."""
-    choices = sorted((signal.conversion.choices or {}).items())
-    if not choices:
-        return ""
-    more = f", and {len(choices) - SHOWN} more" if len(choices) > SHOWN else ""
-    return "; " + ", ".join(f"{code} {name}" for code, name in choices[:SHOWN]) + more
+    choices = tuple(named_values(signal).items())
+    return f"; {_shown(choices)}" if choices else ""
+
+
+def _shown(named: Sequence[tuple[int, str]]) -> str:
+    """Values with their names, the first ones."""
+    more = f", and {len(named) - SHOWN} more" if len(named) > SHOWN else ""
+    return ", ".join(f"{code} {name}" for code, name in named[:SHOWN]) + more
 
 
 def _cycle(message: Message) -> str | None:

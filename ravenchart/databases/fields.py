@@ -156,7 +156,9 @@ def _add(found: Fields, signal: Signal, loose: list[Field]) -> None:
         except Unsayable as problem:
             found.left_out.append((part, str(problem)))
             continue
-        new = Field(part, words, pages)
+        half = part is not signal and signal.conversion.is_float
+        told = f"is part of the raw bits of a floating-point number ({signal.length} bits)"
+        new = Field(part, words, pages, told if half else None)
         if inner is not None:
             loose.append(new)
         elif clash := _clash(found, new):

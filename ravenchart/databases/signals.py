@@ -7,7 +7,7 @@ words for, such as one of a negative scale, is imported as its raw counts, and t
 from __future__ import annotations
 
 import math
-from collections.abc import Set
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from decimal import Decimal
 
@@ -20,6 +20,10 @@ from .names import HIDDEN, Names
 
 LITERALS = 256
 """Values of an enumeration with codes at most."""
+BITS_OF_NAMES = 8
+"""Of a signal whose values have names, though not all of them, at most."""
+OTHER = "Other"
+"""The literal for the values without a name."""
 LONGEST_UNIT = 20
 """Characters of a unit at most."""
 
@@ -45,12 +49,16 @@ class Words:
     """Literals that have another name than in the database."""
     limits: tuple[int, int] = (0, 0)
     """Of an integer: its least and its greatest value."""
+    other: int | None = None
+    """What is sent for the literal of all other raw values, the last one."""
+    named: tuple[tuple[int, str], ...] = ()
+    """Of an integer: values that have a name in the database."""
 
     def has(self, code: int) -> bool:
         """Has a raw value a place in the model? Of an integer without an offset."""
         if self.literals is None:
             return self.limits[0] <= code <= self.limits[1]
-        return code in self.codes
+        return code in self.codes and code != self.other
 
     def literal(self, code: int) -> str:
         """How a model writes a raw value."""
@@ -109,20 +117,10 @@ def _exact_words(signal: Signal, taken: Set[str]) -> Words:
     if scale <= 0:
         raise Unsayable(f"its scale is {scale}")
     low, high = _raw_range(signal, scale, offset)
-    choices = dict(sorted((signal.conversion.choices or {}).items()))
-    if choices:
-        ends = (min(choices), max(choices))
-        if scale != 1 or offset != 0 or ends != (low, high) or len(choices) > LITERALS:
-            raise Unsayable("some of its values have names, and others have none")
-        texts = [str(name) for name in choices.values()]
-        if dict(zip(choices, texts, strict=True)) == {0: "False", 1: "True"}:
-            return Words((), (0, 1), "", _layout(signal))
-        names = Names()
-        names.avoid(taken | HIDDEN)
-        literals = tuple(names.new(text) for text in texts)
-        codes = f"codes: [{', '.join(map(str, choices))}]"
-        renamed = tuple(pair for pair in zip(texts, literals, strict=True) if pair[0] != pair[1])
-        return Words(literals, tuple(choices), "", (*_layout(signal), codes), None, renamed)
+    choices = named_values(signal)
+    if choices and not _is_number(signal, choices, (low, high)):
+        return _enumeration(signal, choices, (low, high), taken)
+    low, high = min((low, *choices)), max((high, *choices))
     counts = offset / scale
     if counts != int(counts):
         raise Unsayable("its offset is no whole number of counts")
@@ -138,7 +136,62 @@ def _exact_words(signal: Signal, taken: Set[str]) -> Words:
         raise Unsayable(f"its unit `{unit}` is not one of at most {LONGEST_UNIT} characters")
     shown = f', unit: "{unit}"' if unit else ""
     keys = (*_layout(signal), f"offset: {int(counts)}")
-    return Words(None, (), f"{{range: [{low}, {high}]{shown}}}", keys, limits=(low, high))
+    named = tuple((code + int(counts), name) for code, name in choices.items())
+    definition = f"{{range: [{low}, {high}]{shown}}}"
+    return Words(None, (), definition, keys, limits=(low, high), named=named)
+
+
+def named_values(signal: Signal) -> dict[int, str]:
+    """The names of its raw values, as far as it has bits for them."""
+    low, high = _by_width(signal)
+    names = ((int(code), str(name)) for code, name in (signal.conversion.choices or {}).items())
+    return {code: name for code, name in sorted(names) if low <= code <= high}
+
+
+def _is_number(signal: Signal, choices: Mapping[int, str], limits: tuple[int, int]) -> bool:
+    """Do its values count something, so that names are those of single numbers?
+
+    That is so where it has a scale or an offset. Where not all values within its limits have a
+    name, it is also so where it has a unit or more than 8 bits, where one value alone of many has
+    a name, and where no value within its limits has one.
+    """
+    if signal.conversion.scale != 1 or signal.conversion.offset != 0:
+        return True
+    within = sum(limits[0] <= code <= limits[1] for code in choices)
+    if within == limits[1] - limits[0] + 1 and len(choices) <= LITERALS:
+        return False
+    several = len(choices) > 1 or signal.length == 1
+    some = several and signal.length <= BITS_OF_NAMES and not signal.unit
+    return not some or not within
+
+
+def _enumeration(
+    signal: Signal, choices: Mapping[int, str], limits: tuple[int, int], taken: Set[str]
+) -> Words:
+    """The names of its values, and one for the other values where there are some."""
+    if choices == {0: "False", 1: "True"} and limits == (0, 1):
+        return Words((), (0, 1), "", _layout(signal))
+    names = Names()
+    names.avoid(taken | HIDDEN)
+    literals = tuple(names.new(text) for text in choices.values())
+    renamed = tuple(
+        pair for pair in zip(choices.values(), literals, strict=True) if len(set(pair)) > 1
+    )
+    codes, keys, other = tuple(choices), _layout(signal), None
+    if not all(code in choices for code in range(limits[0], limits[1] + 1)):
+        other = _free(signal, choices, limits)
+        literals, codes = (*literals, names.new(OTHER)), (*codes, other)
+    keys += (f"codes: [{', '.join(map(str, codes))}]",)
+    keys += () if other is None else (f"other: {literals[-1]}",)
+    return Words(literals, codes, "", keys, None, renamed, other=other)
+
+
+def _free(signal: Signal, choices: Mapping[int, str], limits: tuple[int, int]) -> int:
+    """The raw value to send for values without a name: the start value, or the least."""
+    first = signal.raw_initial
+    if isinstance(first, int) and first not in choices and limits[0] <= first <= limits[1]:
+        return first
+    return next(code for code in range(limits[0], limits[1] + 1) if code not in choices)
 
 
 def _exact(value: float | int) -> Decimal:

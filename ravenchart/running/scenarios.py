@@ -95,6 +95,12 @@ class _Check:
         self.system = system
         self.messages = messages
         self.codec = codec
+        partial = {(m.name, s.name) for m in system.messages for s in m.signals if s.other}
+        self.partial = {
+            id(signal) for m in messages.values() for signal in m.signals
+            if (m.name, signal.name) in partial
+        }  # fmt: skip
+        """Signals that have values without a name, which are told as numbers."""
 
     # --- messages
 
@@ -188,6 +194,10 @@ class _Check:
             coded = not by_name and not isinstance(value, str) and value in signal.choices
             fits = value in names or coded
             wanted = f"one of {', '.join(names)}"
+            if id(signal) in self.partial and low is not None and high is not None:
+                if isinstance(value, int) and value not in signal.choices:
+                    fits = low <= value <= high
+                wanted += f", or another number from {low} to {high}"
         else:
             assert low is not None and high is not None
             fits = not isinstance(value, str) and low <= value <= high

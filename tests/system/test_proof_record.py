@@ -14,6 +14,7 @@ from tests import house
 
 NAMES = (
     *(f"runtime-{driver}" for driver in house.DRIVERS),
+    house.FLOATS,
     house.BUS,
     house.KERNEL,
     *(name for example in house.EXAMPLES for name in house.record_names(example)),

@@ -266,15 +266,17 @@ class _Codec:
         taken: list[Expr] = []
         for s in self.signals:
             shown = self.table.number_in(s, self.frame)
-            holds = member(shown, self.table.raw_values(s))
-            same = equal(shown, self.table.raw_value(s, Ref(self._item(s, "Item"))))
+            holds = self.table.has_value(s, shown)
+            same = self.table.stands_for(s, shown, Ref(self._item(s, "Item")))
             there = self._there_in(s, self.frame)
             if there is not None:
                 absent = equal(Ref(self._item(s, "Item")), self._default(s))
-                holds = IfExpr(((there, holds),), None)
+                holds = TRUE if holds == TRUE else IfExpr(((there, holds),), None)
                 same = IfExpr(((there, same),), absent)
             valid.append(holds)
             taken.append(same)
+        if all_of(*valid) == TRUE:
+            return all_of(Ref("Valid"), *taken)
         other = equal(Ref("Item"), default_value(self.system, self.type))
         read = IfExpr(((Ref("Valid"), all_of(*taken)),), other)
         return all_of(equal(Ref("Valid"), all_of(*valid)), read)
@@ -316,9 +318,11 @@ class _Codec:
         coding, raw = self.codings[signal.name], Ref("Raw")
         shown = self.table.counted(signal, raw if container(signal) == WORD else call(WORD, raw))
         valid = coding.valid(raw)
-        value = self.table.raw_value(signal, call(coding.value_of, raw))
-        same: Expr = equal(shown, value)
-        holds = member(shown, self.table.raw_values(signal))
+        same = self.table.stands_for(signal, shown, call(coding.value_of, raw))
+        holds = self.table.has_value(signal, shown)
+        if signal.other is not None:
+            sent = equal(shown, number(signal.raw(signal.other)))
+            same = both(same, IfExpr(((equal(raw, coding.of_other()), sent),), None))
         if valid != TRUE:
             same = IfExpr(((valid, same),), None)
             holds = equal(valid, holds)
@@ -329,7 +333,7 @@ class _Codec:
             aspects=(
                 Aspect("Ghost"),
                 *([] if fits is None else [Aspect("Pre", fits)]),
-                Aspect("Post", both(holds, same)),
+                Aspect("Post", all_of(holds, same)),
             ),
             body=self._as_numbers(signal, shown),
         )

@@ -96,6 +96,8 @@ class Coding:
     def valid(self, raw: Expr) -> Expr:
         """Do these bits stand for a value?"""
         low, high = self.signal.raw_range
+        if self.signal.other is not None:
+            return TRUE
         if self.signal.codes:
             patterns = sorted(self._pattern(code) for code in self.signal.codes)
             return member(raw, " | ".join(f"{pattern:_}" for pattern in patterns))
@@ -150,10 +152,16 @@ class Coding:
         """A code as its bits."""
         return code % (1 << self.signal.width)
 
-    def _by_literal(self) -> list[tuple[str, Expr]]:
+    def of_other(self) -> Expr:
+        """The bits that are sent for the literal of all other raw values."""
+        assert self.signal.other is not None
+        return bits(self._pattern(int(self.signal.raw(self.signal.other))))
+
+    def _by_literal(self, *, other_last: bool = False) -> list[tuple[str, Expr]]:
         """Each literal with the bits of its code."""
         assert isinstance(self.signal.type, EnumerationType)
-        pairs = zip(self.signal.type.literals, self.signal.codes, strict=True)
+        found = zip(self.signal.type.literals, self.signal.codes, strict=True)
+        pairs = sorted(found, key=lambda pair: other_last and pair[0] == self.signal.other)
         return [
             (literal_name(self.system, self.signal, name), number(self._pattern(code)))
             for name, code in pairs
@@ -163,7 +171,7 @@ class Coding:
         """The value that bits stand for."""
         signal = self.signal
         if signal.codes:
-            *first, (last, _) = self._by_literal()
+            *first, (last, _) = self._by_literal(other_last=True)
             tests = tuple((equal(raw, code), Ref(name)) for name, code in first)
             return IfExpr(tests, Ref(last)) if tests else Ref(last)
         if isinstance(signal.type, EnumerationType):

@@ -24,7 +24,7 @@ from ravenchart.gen.language.terms import EnumerationType, IntegerType
 from ravenchart.gen.language.units import count_of
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.protection import Protection
-from ravenchart.gen.model.signals import ByteOrder, Signal
+from ravenchart.gen.model.signals import ByteOrder, Signal, range_of
 from ravenchart.gen.model.system import Bus, End, Message, System
 
 OUTSIDE = "Outside"
@@ -155,9 +155,10 @@ def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> Db
     low, high = signal.raw_range
     scale, unit = Decimal(1), None
     if isinstance(signal.type, EnumerationType):
-        codes = signal.codes or range(len(signal.type.literals))
-        pairs = zip(codes, signal.type.literals, strict=True)
+        pairs = ((code, name) for name, code in signal.named_codes.items())
         choices = OrderedDict[int, str | NamedSignalValue](pairs)
+        if signal.other is not None:
+            low, high = range_of(signal.width, signed=signal.signed)
     elif isinstance(signal.type, IntegerType):
         scale, unit = count_of(signal.type.unit)
         low, high = signal.type.first, signal.type.last

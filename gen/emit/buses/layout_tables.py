@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.ada.syntax import (
+    TRUE,
     Aggregate,
     Arg,
     CaseExpr,
@@ -21,12 +22,15 @@ from ravenchart.gen.emit.ada.syntax import (
     Object,
     Param,
     PlainType,
+    Prefix,
     Ref,
     Subprogram,
     arguments,
     both,
     call,
     chain,
+    equal,
+    member,
     number,
 )
 from ravenchart.gen.language.terms import EnumerationType, IntegerType
@@ -98,13 +102,37 @@ class LayoutTable:
         }
         made = Aggregate(tuple(Arg(name, value) for name, value in columns.items()))
         rows: list[Decl] = [Object(_row(signal), f"{LAYOUTS}.Signal", made, constant=True)]
-        return [*rows, self._codes(signal)] if signal.codes else rows
+        if signal.codes:
+            rows.append(self._codes(signal))
+        if signal.other is not None:
+            rows.append(self._stands_for(signal))
+        return rows
+
+    def _stands_for(self, signal: Signal) -> Subprogram:
+        """Which raw values stand for each literal: one, or for the other values the rest."""
+        assert isinstance(signal.type, EnumerationType)
+        raw, codes = Ref("Raw"), signal.named_codes
+        taken = " | ".join(f"{code:_}" for code in sorted(codes.values()))
+        rest = Prefix("not", member(raw, taken)) if codes else TRUE
+        facts = tuple(
+            (
+                self._literal(signal, name),
+                equal(raw, number(codes[name])) if name in codes else rest,
+            )
+            for name in signal.type.literals
+        )
+        item = Param("Item", "in", type_name(self.system, signal.type))
+        given = (Param("Raw", "in", f"{NUMBER}'Base"), item)
+        return Subprogram(_meant(signal), given, "Boolean", expression=CaseExpr(Ref("Item"), facts))
+
+    def _literal(self, signal: Signal, name: str) -> str:
+        prefix = "" if signal.type.name == "Boolean" else f"{ada_case(self.system.name)}."
+        return f"{prefix}{ada_case(name)}"
 
     def _codes(self, signal: Signal) -> Subprogram:
         assert isinstance(signal.type, EnumerationType)
         pairs = zip(signal.type.literals, signal.codes, strict=True)
-        prefix = "" if signal.type.name == "Boolean" else f"{ada_case(self.system.name)}."
-        codes = tuple((f"{prefix}{ada_case(name)}", number(code)) for name, code in pairs)
+        codes = tuple((self._literal(signal, name), number(code)) for name, code in pairs)
         item = Param("Item", "in", type_name(self.system, signal.type))
         return Subprogram(_code(signal), (item,), NUMBER, expression=CaseExpr(Ref("Item"), codes))
 
@@ -166,7 +194,17 @@ class LayoutTable:
         value = call(NUMBER, item)
         return Chain("-", (value, Ref(f"{_row(signal)}.Offset"))) if signal.offset else value
 
-    def raw_values(self, signal: Signal) -> str:
+    def stands_for(self, signal: Signal, raw: Expr, item: Expr) -> Expr:
+        """Does a raw value that was received stand for a value of the model?"""
+        if signal.other is not None:
+            return call(_meant(signal), raw, item)
+        return equal(raw, self.raw_value(signal, item))
+
+    def has_value(self, signal: Signal, raw: Expr) -> Expr:
+        """Does a raw value stand for something?"""
+        return TRUE if signal.other is not None else member(raw, self._raw_values(signal))
+
+    def _raw_values(self, signal: Signal) -> str:
         """All raw values that stand for something, as choices."""
         if signal.codes:
             return " | ".join(f"{code:_}" for code in sorted(signal.codes))
@@ -185,6 +223,10 @@ def _frame_name(message: Message) -> str:
 
 def _row(signal: Signal) -> str:
     return f"Signal_{ada_case(signal.name)}"
+
+
+def _meant(signal: Signal) -> str:
+    return f"Stands_For_{ada_case(signal.name)}"
 
 
 def _code(signal: Signal) -> str:
