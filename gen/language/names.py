@@ -13,7 +13,7 @@ from ravenchart.gen.origins import Origin
 
 IDENTIFIER = r"^[A-Za-z](_?[A-Za-z0-9])*$"
 LONGEST_NAME = 60
-REQUIREMENT = r"^[A-Za-z0-9]([-A-Za-z0-9_.:/]*[A-Za-z0-9])?$"
+REQUIREMENT = r"^[A-Za-z0-9]([-_A-Za-z0-9.:/]*[A-Za-z0-9])?$"
 """The id of a requirement, as a list of requirements has it."""
 LONGEST_REQUIREMENT = 64
 LONG_NAME = 24

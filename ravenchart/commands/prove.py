@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ravenchart.building import generation, programs
-from ravenchart.failures import OK, WRONG, Refused
+from ravenchart.failures import OK, WRONG
 from ravenchart.proof import outside_spark, proving, verdicts
 from ravenchart.proof.spark_results import Outside
 from ravenchart.terminal import progress
@@ -32,7 +32,11 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--cache", metavar="HOST[:PORT]", type=_memcached,
         help="share verdicts of provers with a memcached server; port 11211 unless given",
     )  # fmt: skip
-    sub.add_argument("--record", type=Path, help="write the proof record to this file")
+    sub.add_argument(
+        "--record", type=Path, metavar="FILE",
+        help="write the proof record to this file; with several nodes, to FILE with each node's "
+        "name behind its own",
+    )  # fmt: skip
 
 
 def _memcached(address: str) -> verdicts.Memcached:
@@ -52,8 +56,6 @@ def execute(options: argparse.Namespace) -> int:
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)
     made = programs.programs_of(checked)
-    if options.record is not None and len(made) > 1:
-        raise Refused("ravenchart: error: --record is for a system with one node")
     reasons = outside_spark.reasons_for_model(checked.folder)
     clean = True
     outside: dict[Outside, None] = {}
@@ -70,13 +72,19 @@ def execute(options: argparse.Namespace) -> int:
         clean = clean and proof.clean
         outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
-            options.record.write_text(proving.record_text(proof), encoding="utf-8")
+            record = record_of(options.record, one.node, several=len(made) > 1)
+            record.write_text(proving.record_text(proof), encoding="utf-8")
     for line in outside_spark.lines(tuple(outside), reasons):
         if line.startswith("error"):
             say(options.answer, line)
         else:
             print(line)
     return OK if clean and outside_spark.agree(tuple(outside), reasons) else WRONG
+
+
+def record_of(path: Path, node: str, *, several: bool) -> Path:
+    """Where the record of a node is written: with ``several`` each has a file of its own."""
+    return path.with_name(f"{path.stem}-{node}{path.suffix}") if several else path
 
 
 def _proved(node: str, proof: proving.Proof) -> Proved:

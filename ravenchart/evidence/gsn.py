@@ -41,9 +41,10 @@ def worst(claims: Sequence[Claim]) -> Shown:
 
 @dataclass(slots=True)
 class _Row:
-    claim: str
     text: str
     verdict: Shown
+    told: str = ""
+    """What a reader sees who points at it."""
 
 
 def draw(system: str, digest: str, claims: Sequence[Claim], assumptions: Sequence[str]) -> str:
@@ -89,12 +90,17 @@ def draw(system: str, digest: str, claims: Sequence[Claim], assumptions: Sequenc
 
 def _rows(claims: Sequence[Claim]) -> list[_Row]:
     if len(claims) <= MOST:
-        return [_Row(c.id, f"{c.id}: {c.verdict.value}", c.verdict) for c in claims]
+        return [
+            _Row(
+                f"{c.id}: {c.verdict.value}", c.verdict, f"{c.statement}. By {c.method}; {c.tool}."
+            )
+            for c in claims
+        ]
     rows = []
     for verdict in RANK:
         count = sum(claim.verdict is verdict for claim in claims)
         if count:
-            rows.append(_Row("", f"{count} of {len(claims)} claims: {verdict.value}", verdict))
+            rows.append(_Row(f"{count} of {len(claims)} claims: {verdict.value}", verdict))
     return rows
 
 
@@ -154,7 +160,7 @@ def _end(svg: Xml.Element, y: float, label: str, row: _Row) -> None:
         Xml.SubElement(svg, "polygon", {"points": points, "fill": PLAIN[0], "stroke": stroke})
         return
     circle = {"cx": f"{x}", "cy": f"{y:g}", "r": "18", "fill": fill, "stroke": stroke}
-    Xml.SubElement(svg, "circle", circle)
+    Xml.SubElement(Xml.SubElement(svg, "circle", circle), "title").text = row.told
     middle = {"x": f"{x}", "y": f"{y + 3:g}", "text-anchor": "middle", "font-size": "9"}
     Xml.SubElement(svg, "text", middle).text = label
 
