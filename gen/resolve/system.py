@@ -31,7 +31,6 @@ from .deployment import (
     chain_of,
     connection_of,
     instance_of,
-    message_of,
     node_of,
     processor_of,
     shutdown_of,
@@ -39,6 +38,7 @@ from .deployment import (
 )
 from .devices import Devices, Provider, device_type_of
 from .interfaces import command_of, declare_vectors
+from .messages import message_of
 from .values import types_of
 
 
