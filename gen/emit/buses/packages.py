@@ -6,9 +6,7 @@ from collections.abc import Sequence
 
 from ravenchart.gen.emit.ada.naming import ada_case, priority, root_package, type_name
 from ravenchart.gen.emit.ada.syntax import (
-    FALSE,
     SPARK,
-    TRUE,
     Aggregate,
     Arg,
     Aspect,
@@ -38,15 +36,16 @@ from ravenchart.gen.emit.ada.syntax import (
     member,
     number,
 )
-from ravenchart.gen.emit.certificate.certified import CERTIFICATE, agrees, fact
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
 from ravenchart.gen.emit.tables.trace_calls import note, traced
-from ravenchart.gen.model.system import Bus, End, Message, System, Task, Work
+from ravenchart.gen.model.system import Bus, End, Message, System, Work
 
 from . import authentication
 from .authentication import AUTHENTICATION
 from .codecs import codec_name, words_of
+from .controllers import controller_checks, controller_setting
 from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
 from .protection import (
     PROTECTION,
@@ -143,11 +142,11 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
                 Receive_Depth=number(bus.receive_depth),
                 Stack_Bytes=number(DRIVER_STACK),
                 Accepts=Ref("Accepts"),
-                Setting=_setting(bus),
+                Setting=controller_setting(bus),
             ),
         ),
     ]
-    items += _checks(bus, driver)
+    items += controller_checks(bus, driver)
     if received:
         items.append(
             Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
@@ -195,39 +194,6 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     if received:
         units += _receiver(system, bus, header)
     return units + emit_watch(system, bus, header)
-
-
-def _checks(bus: Bus, driver: Task) -> list[Decl]:
-    """The controller runs as the certificate says."""
-    same = [
-        equal(Ref(f"Controller.Given_Setting.{what}"), rate) for what, rate in _rates(bus).items()
-    ]
-    level = fact(driver.element, "Priority")
-    return [
-        UseType("Ravenchart.Can.Bits_Per_Second"),
-        agrees("Controller.Given_Priority", level, bus.name, "priority of its driver"),
-        Pragma("Assert", (both(*same),)),
-    ]
-
-
-def _rates(bus: Bus) -> dict[str, Expr]:
-    """The bit rates as certified; 0 for one that the bus does not have."""
-    return {
-        "Bit_Rate": fact(bus.name, "Bit_Rate"),
-        "Data_Rate": fact(bus.name, "Data_Rate") if bus.data_rate else number(0),
-    }
-
-
-def _setting(bus: Bus) -> Expr:
-    """How the controller is configured."""
-    settings = {
-        **_rates(bus),
-        "Takes_Fd": TRUE if bus.takes_fd else FALSE,
-        "Recovery": Ref(
-            f"Ravenchart.Can.{'On_Request' if bus.recovers_by_request else 'Automatic'}"
-        ),
-    }
-    return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
 
 
 def _send_spec(system: System, message: Message) -> Subprogram:

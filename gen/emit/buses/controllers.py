@@ -1,0 +1,53 @@
+"""The controller of a bus: how it is configured, and that it runs as certified."""
+
+from __future__ import annotations
+
+from ravenchart.gen.emit.ada.syntax import (
+    FALSE,
+    TRUE,
+    Aggregate,
+    Arg,
+    Decl,
+    Expr,
+    Pragma,
+    Ref,
+    UseType,
+    both,
+    equal,
+    number,
+)
+from ravenchart.gen.emit.certificate.certified import agrees, fact
+from ravenchart.gen.model.system import Bus, Task
+
+
+def controller_checks(bus: Bus, driver: Task) -> list[Decl]:
+    """The controller runs as the certificate says."""
+    same = [
+        equal(Ref(f"Controller.Given_Setting.{what}"), rate) for what, rate in _rates(bus).items()
+    ]
+    level = fact(driver.element, "Priority")
+    return [
+        UseType("Ravenchart.Can.Bits_Per_Second"),
+        agrees("Controller.Given_Priority", level, bus.name, "priority of its driver"),
+        Pragma("Assert", (both(*same),)),
+    ]
+
+
+def _rates(bus: Bus) -> dict[str, Expr]:
+    """The bit rates as certified; 0 for one that the bus does not have."""
+    return {
+        "Bit_Rate": fact(bus.name, "Bit_Rate"),
+        "Data_Rate": fact(bus.name, "Data_Rate") if bus.data_rate else number(0),
+    }
+
+
+def controller_setting(bus: Bus) -> Expr:
+    """How the controller is configured."""
+    settings = {
+        **_rates(bus),
+        "Takes_Fd": TRUE if bus.takes_fd else FALSE,
+        "Recovery": Ref(
+            f"Ravenchart.Can.{'On_Request' if bus.recovers_by_request else 'Automatic'}"
+        ),
+    }
+    return Aggregate(tuple(Arg(name, value) for name, value in settings.items()))
