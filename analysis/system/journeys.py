@@ -28,6 +28,8 @@ class Journey:
     observed: int
     bound: int
     limit: int
+    places: int = 1
+    """Rows and messages on the way, each of which a host can delay."""
     times: tuple[int, ...] = field(default=(), compare=False)
     """Every reaction that was seen."""
 
@@ -35,6 +37,10 @@ class Journey:
     def exceeded(self) -> bool:
         """What was seen is longer than the bound."""
         return self.observed > self.bound
+
+    def is_explained(self, withheld: int) -> bool:
+        """It is longer by no more than a host takes that withholds the core at each place."""
+        return self.exceeded and self.observed <= self.bound + self.places * withheld
 
 
 def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
@@ -45,7 +51,9 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
             took = _reactions(chain, analysis.system, seen)
             if took:
                 limits = latency.reaction, chain.reaction
-                found.append(Journey(chain.name, len(took), max(took), *limits, tuple(took)))
+                longest = max(took)
+                places = len(chain.way)
+                found.append(Journey(chain.name, len(took), longest, *limits, places, tuple(took)))
     return tuple(found)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ravenchart.analysis.present.report import Comparison, Execution
+from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import Observation
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.scenario import EXPECTED, Expected, Scenario
@@ -117,12 +118,16 @@ def _kind(one: Expected) -> str:
 
 
 def not_judged(
-    compared: Sequence[Comparison], executed: Sequence[Execution], ended: Ended
+    compared: Sequence[Comparison],
+    executed: Sequence[Execution],
+    took: Sequence[Journey],
+    ended: Ended,
 ) -> str | None:
     """Why the timing of the run says nothing; None where it was judged."""
     if not ended.real_time:
         return "the controller had no real-time priorities"
-    if not any(excused(compared, executed, ended)):
+    withheld = max((row.withheld for row in compared), default=0)
+    late = any(row.is_explained(withheld) for row in took)
+    if not late and not any(excused(compared, executed, ended)):
         return None
-    withheld = max(row.withheld for row in compared)
     return f"the host withheld the core for up to {withheld / 1e6:.1f} ms"

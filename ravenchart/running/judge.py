@@ -103,8 +103,10 @@ def failures(
 
     A response that is too long by no more than the host is known to have withheld
     the core is no failure: the bounds hold for a core that the controller has. Nor is
-    a reaction in a run in which that happened.
+    a reaction in a run in which that happened, nor one that is too long by no more than
+    that time at each place of its chain.
     """
+    withheld = max((row.withheld for row in compared), default=0)
     if result is not None:
         yield from (f"{s.text}: {s.outcome}" for s in result.steps if not s.passed)
         if result.not_run and all(s.passed for s in result.steps):
@@ -132,7 +134,9 @@ def failures(
             f"the chain {row.chain} was observed to react after {microseconds(row.observed)} us, "
             f"above its bound of {microseconds(row.bound)} us"
             for row in took
-            if row.exceeded and not any(other.explained for other in compared)
+            if row.exceeded
+            and not row.is_explained(withheld)
+            and not any(other.explained for other in compared)
         )
 
 

@@ -325,7 +325,7 @@ def concluded(
             *expected.told(plan, counted),
         ),
         clock_offset=result.clock_offset(played, seen, system) if system else None,
-        not_judged=expected.not_judged(compared, executed, ended),
+        not_judged=expected.not_judged(compared, executed, took, ended),
     )
 
 

@@ -7,10 +7,11 @@ from dataclasses import replace
 import pytest
 
 from ravenchart.analysis.present.report import Comparison, Execution
+from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import Observation, Releases, TraceMap
 from ravenchart.gen.language.terms import Ns
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, parse_scenario
-from ravenchart.running import expected
+from ravenchart.running import expected, judge
 from ravenchart.running.process import Ended
 from tests.support.faults import shows
 
@@ -112,7 +113,7 @@ def test_only_what_the_host_withheld_is_excused() -> None:
     late = Comparison("control", 100, 2, observed=900, bound=500, withheld=400)
     long = Execution("arm.move", observed=1_400, claimed=1_000)
     assert expected.counted(shown, (late,), (long,), ENDED) == {}
-    assert expected.not_judged((late,), (long,), ENDED) == (
+    assert expected.not_judged((late,), (long,), (), ENDED) == (
         "the host withheld the core for up to 0.0 ms"
     )
     less = replace(late, withheld=399)
@@ -120,14 +121,28 @@ def test_only_what_the_host_withheld_is_excused() -> None:
         ("missed", "control"): 2,
         ("overran", "arm.move"): 1,
     }
-    assert expected.not_judged((less,), (long,), ENDED) is None
+    assert expected.not_judged((less,), (long,), (), ENDED) is None
+
+
+def test_a_reaction_is_excused_for_what_the_host_withheld_at_each_place() -> None:
+    delayed = Comparison("control", 100, 0, observed=400, bound=500, withheld=100)
+    slow = Journey("flow", 9, observed=1_300, bound=1_000, limit=2_000, places=3)
+    slower = replace(slow, observed=1_301)
+    ended = "the host withheld the core for up to 0.0 ms"
+    assert list(judge.failures(ENDED, None, None, (), (delayed,), (slow,))) == []
+    assert expected.not_judged((delayed,), (), (slow,), ENDED) == ended
+    (why,) = judge.failures(ENDED, None, None, (), (delayed,), (slower,))
+    assert why.startswith("the chain flow was observed to react after ")
+    assert expected.not_judged((delayed,), (), (slower,), ENDED) is None
 
 
 def test_without_priorities_the_times_of_executions_say_nothing() -> None:
     ended = replace(ENDED, real_time=False)
     long = Execution("arm.move", observed=9_000, claimed=1_000)
     assert expected.counted(seen(), (), (long,), ended) == {}
-    assert expected.not_judged((), (long,), ended) == "the controller had no real-time priorities"
+    assert (
+        expected.not_judged((), (long,), (), ended) == "the controller had no real-time priorities"
+    )
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,9 @@ def test_what_a_trace_shows_is_in_the_report(tmp_path: Path) -> None:
 
 
 def test_reactions_are_drawn_beside_their_bound() -> None:
-    took = Journey("flow", 3, 5_000_000, 9_000_000, 12_000_000, (3_000_000, 5_000_000, 5_000_000))
+    took = Journey(
+        "flow", 3, 5_000_000, 9_000_000, 12_000_000, 3, (3_000_000, 5_000_000, 5_000_000)
+    )
     run = RunReport("A run", True, "all good", (), (), (), True, None, (took,))
     text = render(checking.check(MODEL).analysis, run)
     assert "flow: how often each reaction was observed, beside its bound" in text
