@@ -260,5 +260,5 @@ def _gaps(trace: Trace) -> Iterator[Diagnostic]:
     if trace.links and (open_ or not proofs):
         told = [f"{claim.id} is {claim.verdict.value}" for claim in open_] or ["there is none"]
         message = f"not every claim about the elements of {one.id} is met: {', '.join(told)}"
-        hint = "give the proof record with `--record FILE`"
+        hint = "prove the program, and give its record with `--record FILE`"
         yield error(NO_PROOF, one.origin, message, hint=hint)
