@@ -184,7 +184,7 @@ def gauge(built: Built, tmp_path: Path) -> Played:
 def test_the_package_receives_and_sends_values(gauge: Played, built: Built) -> None:
     report, table = built.messages["report"], built.messages["table"]
     received: list[dict[str, int | str]] = []
-    fields = {s.name: 11 + number for number, s in enumerate(table.signals)}
+    fields = {s.name: 2000 * number + 7 for number, s in enumerate(table.signals)}
     sent = _coded(table, fields)
     assert len(sent) == 64
     flows: list[int] = []
@@ -206,9 +206,7 @@ def test_the_package_receives_and_sends_values(gauge: Played, built: Built) -> N
         time.sleep(2.0)
 
     seen = gauge(play)
-    assert [(one["first"], one["second"], one["level"]) for one in received] == [
-        (123456789012345, 4611686018427387903, 171)
-    ] * 3
+    assert [(one["w5"], one["w8"], one["level"]) for one in received] == [(55555, 65535, 171)] * 3
     counts = [int(one["count"]) for one in received]
     assert counts == sorted(set(counts))
     #  nine consecutive frames, in blocks of four
