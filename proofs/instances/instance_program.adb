@@ -3,13 +3,19 @@
 
 with System;
 with Ada.Real_Time;
+with Instance_Authentication;
+pragma Unreferenced (Instance_Authentication);
 with Instance_Bus;
+with Instance_Iso_Tp;
+pragma Unreferenced (Instance_Iso_Tp);
 with Instance_Protection;
 pragma Unreferenced (Instance_Protection);
 with Instance_Simulator;
 pragma Unreferenced (Instance_Simulator);
 with Instance_Store;
 with Instance_Tasks;
+with Instance_Transmissions;
+pragma Unreferenced (Instance_Transmissions);
 with Ravenchart.Can;
 with Ravenchart.Can.Fault_Notices;
 with Ravenchart.Health;

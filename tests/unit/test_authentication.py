@@ -183,7 +183,7 @@ def test_the_report_has_them(system: System, analysis: Analysis) -> None:
     assert [row["message"] for row in found] == [m.name for m in system.messages]
     assert found[1]["tolerated"] is None
     text = render(analysis)
-    assert "<h2>Authentication</h2>" in text
+    assert ">Authentication</h2>" in text
     assert "<td>first_in</td><td>valve</td>" in text
 
 

@@ -77,7 +77,7 @@ def test_the_report_has_them(system: System) -> None:
     assert [row["message"] for row in found] == [m.name for m in system.messages]
     assert found[0]["tolerated"] == 40 * MS
     text = render(analysis)
-    assert "<h2>End-to-end protection</h2>" in text
+    assert ">End-to-end protection</h2>" in text
     assert "<td>first_in</td><td>e2e_p1</td>" in text
 
 
