@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,8 +16,9 @@ Words = tuple[str, ...]
 
 OTHERS = "and or not if then else abs min max clamp fresh stale neverreceived in event true false"
 KEYWORDS = frozenset(OTHERS.split())
-
 """Words of the expression language that have other forms in Ada."""
+NUMBER = re.compile(r"\b0[xX][0-9A-Fa-f_]+\b")
+"""A number of the expression language that is not decimal."""
 SIGNS = ("<", "<=", ">", ">=", "/=")
 
 
@@ -216,7 +218,7 @@ class _Comparison:
     def _guards(self, name: str, line: Line, said: list[str], at: int) -> None:
         """Names, numbers and signs of guards; how they are put together is not compared."""
         parts = [part for word in said for part in word.replace("_", "").split(".")]
-        guards = " and ".join(line.guards)
+        guards = NUMBER.sub(lambda found: str(int(found[0], 0)), " and ".join(line.guards))
         wanted = [w.replace("_", "") for word in words(guards) for w in word.split(".")]
         names = [w for w in wanted if w[0].isalpha() and w not in KEYWORDS]
         lost = [w for w in names if not any(part.startswith(w) for part in parts)]

@@ -7,7 +7,7 @@ identifiers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from .equipment import Equipment
@@ -81,6 +81,10 @@ class Message:
     targets: list[str] = field(default_factory=list)
     identifier: int | None = None
     extended: bool = False
+    mac: int = 0
+    """The time to compute the MAC of a frame, where it has one."""
+    renewal: int = 0
+    """The longest time from one frame to the next in transmission mode mixed."""
 
     @property
     def element(self) -> str:
@@ -205,6 +209,11 @@ class Deployment:
         source = None if source is None else self._end(source)
         targets = [self._end(text) for text in form.texts("to")]
         period = form.time("period") if source is None else self._send_period(source)
+        if form.map("transport"):
+            where = f"{form.file}:{form.line}"
+            raise UnusableError(f"{where}: values in several frames are not derived again")
+        if form.map("send"):
+            period = form.map("send").time("minimum_delay", period)
         fd = form.text("format") == "fd"
         ends = [*([] if source is None else [source]), *targets]
         kind = self._type_of(ends[0]) if ends else None
@@ -224,6 +233,8 @@ class Deployment:
             targets=targets,
             identifier=identifier,
             extended=extended,
+            mac=form.map("authentication").time("mac_wcet", 0),
+            renewal=form.map("send").time("period", 0),
         )
 
     def _carried(self, source: str) -> Message:
@@ -353,7 +364,9 @@ class Deployment:
             if name.lower() == "receive":
                 period = form.time("period")
                 deadline = form.time("deadline", period)
-                return Row(f"{bus}.receive", period, own.time("driver_wcet"), deadline)
+                macs = [message.mac for message, _ in self.heard(bus, node)]
+                wcet = own.time("driver_wcet") + max(macs, default=0)
+                return Row(f"{bus}.receive", period, wcet, deadline)
             watch = own.map("watch")
             return _timed(f"{bus}.watch", watch)
         component = self.component_of(owner)
@@ -363,8 +376,19 @@ class Deployment:
             rows = component.map(section)
             own_name = rows.name(name)
             if own_name is not None:
-                return _timed(f"{self.instance(owner)}.{own_name}", rows.map(own_name))
+                row = _timed(f"{self.instance(owner)}.{own_name}", rows.map(own_name))
+                return replace(row, wcet=row.wcet + self._macs(row.element))
         raise UnusableError(f"{form.file}:{form.line}: `{text}` is no row")
+
+    def _macs(self, row: str) -> int:
+        """The time for the MACs of all that a row sends."""
+        return sum(
+            message.mac
+            for message in self.messages
+            if message.mac
+            and message.source is not None
+            and row in (sender for sender, _ in self.rows_that_send(message.source))
+        )
 
     def _prioritise(self) -> None:
         """Open priorities: the shorter the deadline, the more urgent; of two, the earlier."""

@@ -124,6 +124,9 @@ def length_of(model: Model, kind: str | None, form: Mapping, fd: bool) -> int:
             start = max(clash) + 1
         taken.append((signal, signal.bits(start)))
     length = max(1, (max(max(bits) for _, bits in taken) + 8) // 8)
+    if form and form.map("authentication"):
+        sealed = form.map("authentication")  # AUTOSAR SecOC: freshness value and MAC come last
+        length += (sealed.number("freshness_bits", 64) + sealed.number("mac_bits", 64)) // 8
     return next((size for size in SIZES if size >= length), length) if fd else length
 
 

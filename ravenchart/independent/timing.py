@@ -204,6 +204,8 @@ class Timing:
             self.same("messages", f"{own}_Id", message.identifier, f"the identifier {why}")
         self.same("messages", f"{own}_T", message.period, f"the period {why}")
         self.same("messages", f"{own}_D", message.deadline, f"the deadline {why}")
+        if message.renewal:
+            self.same("messages", f"{own}_Renewal", message.renewal, f"the renewal {why}")
         late = self.late(message)
         self.same("messages", f"{own}_J", late, f"the lateness of {message.element}")
         self.same("messages", f"{own}_A", late + message.period - 1, "J + T - 1")

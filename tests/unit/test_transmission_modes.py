@@ -103,7 +103,7 @@ def test_only_a_period_bounds_the_age(tmp_path: Path) -> None:
 
 def test_the_age_of_what_is_sent_on_change_is_refused(tmp_path: Path) -> None:
     (one,) = findings(_analysed(tmp_path, CHANGE))
-    assert one.message == "the age of cmd has no bound, and its limit is 900 ms"
+    assert one.message == "the age of cmd has no bound; its limit is 900 ms"
     assert [note for _, note in one.notes] == ["link is sent on change only"]
     assert findings(_analysed(tmp_path, CHANGE, (", age: 900 ms", ""))) == ()
 
