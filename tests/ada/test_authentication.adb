@@ -328,7 +328,8 @@ procedure Test_Authentication is
          Sealed ((16#0123#, 32, 2, 4), 3, 7), Malformed);
       Flip (Wrong, 0);
       Hold ("an altered frame is refused", Wrong, Wrong_Mac);
-      Hold ("after 65,536 values one is used", Sealed (S, 9, 65_542), Verified);
+      Hold
+        ("after 65,536 values one is used", Sealed (S, 9, 65_542), Verified);
       Hold
         ("after one more it is not", Sealed (S, 9, 65_542 + 65_537),
          Wrong_Mac);
