@@ -86,8 +86,8 @@ is
                     then Octet_Of (Payload, I - State'Old.Got + 1)
                     else State'Old.Data (I))))
        and then
-         (if (Result in Taken | Restarted
-              and then Decoded (Payload, Length).Kind = First)
+         (if Result in Taken | Restarted
+            and then Decoded (Payload, Length).Kind = First
           then
             State.Got = 6
             and then State.Sequence = 1
