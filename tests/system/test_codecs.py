@@ -19,6 +19,7 @@ from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.program import folder_of, generate
 from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.language.units import count_of
+from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
 from ravenchart.gen.model.signals import Signal
 from ravenchart.gen.model.system import Message, System
 from ravenchart.hw_can.bench.protection import HEADER
@@ -33,11 +34,17 @@ CASES = sorted(
         path
         for pattern in ("examples/*/model.yaml", "tests/feature/*/model.yaml", "tests/nodes/*/*")
         for path in ROOT.glob(pattern)
-        if path.name == "model.yaml" and "\nbuses:" in path.read_text(encoding="utf-8")
+        if path.name == "model.yaml"
+        and "\nbuses:" in path.read_text(encoding="utf-8")
+        and path.parent.name != "segmented"
     ),
     key=str,
 )
-"""Every model with a bus that some test builds."""
+"""Every model with a bus that some test builds. The values of `segmented` are in several frames,
+of which a database knows nothing: tests/system/test_segmented_nodes.py sends them."""
+
+ADDED = HEADER | {FRESHNESS, MAC, REST}
+"""Signals of a database that are no part of a value."""
 
 ELSEWHERE = [
     *(FEATURES / name / "model.yaml" for name in ("signals", "pages", "flexible", "namesakes")),
@@ -155,7 +162,7 @@ def physical(signal: Signal, raw: int) -> Decimal:
 def without_header(values: object) -> dict[str, int]:
     """The raw values but those of the message's protection: the codec leaves their bits 0."""
     assert isinstance(values, dict)
-    return {name: _whole(value) for name, value in values.items() if name not in HEADER}
+    return {name: _whole(value) for name, value in values.items() if name not in ADDED}
 
 
 def _whole(value: object) -> int:
@@ -165,7 +172,7 @@ def _whole(value: object) -> int:
 
 def encoded(message: DbcMessage, raws: Mapping[str, int]) -> bytes:
     """The frame by the database, with all bits of the header 0."""
-    zeros = {signal.name: 0 for signal in message.signals if signal.name in HEADER}
+    zeros = {signal.name: 0 for signal in message.signals if signal.name in ADDED}
     return message.encode({**raws, **zeros}, scaling=False)
 
 
