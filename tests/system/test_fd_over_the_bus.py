@@ -47,9 +47,11 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
     told: list[str] = []
     real = bus.running
 
-    def running(*words: str) -> AbstractContextManager[tuple[subprocess.Popen[str], str]]:
+    def running(
+        *words: str, log: Path | None
+    ) -> AbstractContextManager[tuple[subprocess.Popen[str], str]]:
         told.extend(words)
-        return real(*words)
+        return real(*words, log=log)
 
     monkeypatch.setattr(bus, "running", running)
     checked = checking.check(folder / "model.yaml")
