@@ -222,15 +222,14 @@ class Message:
 
     protection: Protection | None = None
     """From end to end; None: none."""
+    authentication: Authentication | None = None
+    """By a MAC; None: none."""
     transmission: Transmission | None = None
     """Its transmission mode; None: periodic. ``period`` is then the least time between two."""
     transport: Transport | None = None
     """Its value travels in several frames, of which it describes each; None: in one."""
     controls: str = ""
     """The message with transport whose flow control it is; "" for all others."""
-
-    authentication: Authentication | None = None
-    """By a MAC; None: none."""
 
     @property
     def element(self) -> str:

@@ -32,11 +32,16 @@ def said(kind: str, name: str, count: int) -> str:
     return f"{kind}: {name}, {'once' if count == 1 else f'{count} times'}"
 
 
+def longest_withheld(compared: Sequence[Comparison]) -> int:
+    """The longest time for which the host withheld the core of a node, in ns."""
+    return max((row.withheld for row in compared), default=0)
+
+
 def excused(
     compared: Sequence[Comparison], executed: Sequence[Execution], ended: Ended
 ) -> tuple[frozenset[str], frozenset[str]]:
     """Processors and rows that were late or long by no more than the host withheld the core."""
-    withheld = max((row.withheld for row in compared), default=0)
+    withheld = longest_withheld(compared)
     late = frozenset(row.task for row in compared if row.explained)
     long = frozenset(
         row.row
@@ -126,7 +131,7 @@ def not_judged(
     """Why the timing of the run says nothing; None where it was judged."""
     if not ended.real_time:
         return "the controller had no real-time priorities"
-    withheld = max((row.withheld for row in compared), default=0)
+    withheld = longest_withheld(compared)
     late = any(row.is_explained(withheld) for row in took)
     if not late and not any(excused(compared, executed, ended)):
         return None

@@ -14,6 +14,7 @@ from ravenchart.gen.model.system import Processor, System
 from ravenchart.hw_can.bench.runner import ScenarioResult
 from ravenchart.hw_can.bench.scenario import TraceCheck
 
+from .expected import longest_withheld
 from .process import Ended
 
 
@@ -59,7 +60,7 @@ def unaccounted(
     A release must have completed when its longest response was over: the deadline, what was
     observed of others, and what the host withheld. No release begins before it is due.
     """
-    withheld = max((seen.stolen or 0, *(row.withheld for row in compared)))
+    withheld = max(seen.stolen or 0, longest_withheld(compared))
     own = 0 if real_time else OWN_TIME
     for processor in system.processors:
         counts = seen.processors.get(processor.name)
@@ -106,7 +107,7 @@ def failures(
     a reaction in a run in which that happened, nor one that is too long by no more than
     that time at each place of its chain.
     """
-    withheld = max((row.withheld for row in compared), default=0)
+    withheld = longest_withheld(compared)
     if result is not None:
         yield from (f"{s.text}: {s.outcome}" for s in result.steps if not s.passed)
         if result.not_run and all(s.passed for s in result.steps):
