@@ -16,11 +16,12 @@ from dataclasses import dataclass
 from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
-from ravenchart.proof import outside_spark, proving
+from ravenchart.proof import ages, outside_spark, proving
 from ravenchart.tools import toolchain
 from ravenchart.tools.toolchain import ToolMissing
 
 RECORDS = ROOT / "proofs" / "records"
+"""A folder for each age of gnatprove."""
 OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
 """What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
 PATIENCE = 300.0
@@ -153,16 +154,22 @@ def prove(names: Sequence[str]) -> bool:
 
     With the environment variable FRESH results of earlier proofs are not used.
     """
-    RECORDS.mkdir(parents=True, exist_ok=True)
+    folder = RECORDS / ages.age_of(ages.version()).name
+    folder.mkdir(parents=True, exist_ok=True)
     clean = True
     for target in targets(names):
         print(f"proving {target.name} ...", flush=True)
-        proof = proving.prove(target.task, fresh=bool(os.environ.get("FRESH")))
+        try:
+            proof = proving.prove(target.task, fresh=bool(os.environ.get("FRESH")))
+        except proving.NotProved as left:
+            print(f"{left}\n{target.name}: {left.proof.summary()}", flush=True)
+            clean = False
+            continue
         reasons = outside_spark.reasons_for_target(OUTSIDE, target.name)
         print(f"{target.name}: {proof.summary()}", flush=True)
         for line in outside_spark.lines(proof.results.outside, reasons):
             print(f"  {line}", flush=True)
-        (RECORDS / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")
+        (folder / f"{target.name}.toml").write_text(proving.record_text(proof), encoding="utf-8")
         clean = clean and proof.clean and outside_spark.agree(proof.results.outside, reasons)
     return clean
 

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import argparse
+import sys
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ravenchart.building import generation, programs
 from ravenchart.failures import OK, WRONG
-from ravenchart.proof import outside_spark, proving, verdicts
+from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
 from ravenchart.terminal import progress
 
 from . import common
 from .answer import say
-from .results import Proved, ProveResult
+from .results import Proved, ProveResult, Unproved
+
+SILENCE = 30.0
+"""So long a proof may say nothing where there is no terminal, in s."""
 
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
@@ -60,13 +66,22 @@ def execute(options: argparse.Namespace) -> int:
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:
-        with progress(f"prove {one.node}"):
-            proof = proving.prove(
-                one.proof(driver, whole=options.whole),
-                fresh=options.fresh,
-                memcached=options.cache,
-            )
-        answer.programs.append(_proved(one.node, proof))
+        task = one.proof(driver, whole=options.whole)
+        open_: tuple[unproved.Finding, ...] = ()
+        with progress(f"prove {one.node}") as change:
+            tell = _told(one.node, change)
+            try:
+                proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
+            except proving.NotProved as left:
+                proof = left.proof
+                change(f"prove {one.node}: looking for values that fail")
+                text = proving.examples(task, proof) or str(left)
+                places = [path for path in task.sources if path.is_dir()]
+                found = proof.results.open
+                open_ = unproved.findings(text, found, checked.system, checked.folder, places)
+        for finding in open_:
+            say(options.answer, "\n".join(finding.lines()))
+        answer.programs.append(_proved(one.node, proof, open_))
         where = f" on {one.node}" if len(made) > 1 else ""
         print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean
@@ -87,7 +102,21 @@ def record_of(path: Path, node: str, *, several: bool) -> Path:
     return path.with_name(f"{path.stem}-{node}{path.suffix}") if several else path
 
 
-def _proved(node: str, proof: proving.Proof) -> Proved:
+def _told(node: str, change: Callable[[str], None]) -> Callable[[str], None]:
+    """Where there is no terminal, standard error has a line from time to time."""
+    last = time.monotonic()
+
+    def tell(text: str) -> None:
+        nonlocal last
+        change(f"prove {node}: {text}")
+        if not sys.stderr.isatty() and time.monotonic() - last >= SILENCE:
+            last = time.monotonic()
+            print(f"prove {node}: {text}", file=sys.stderr, flush=True)
+
+    return tell
+
+
+def _proved(node: str, proof: proving.Proof, left: Sequence[unproved.Finding]) -> Proved:
     found = proof.results
     return Proved(
         node,
@@ -96,6 +125,19 @@ def _proved(node: str, proof: proving.Proof) -> Proved:
         found.justified,
         found.assumed,
         [one.name for one in found.outside],
+        [
+            Unproved(
+                one.file,
+                one.line,
+                one.column,
+                one.check,
+                one.example,
+                one.element,
+                str(one.origin or ""),
+                one.help,
+            )
+            for one in left
+        ],
         proof.clean,
         proof.cached,
     )

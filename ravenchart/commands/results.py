@@ -70,6 +70,28 @@ class BuildResult(Result):
 
 
 @dataclass(slots=True)
+class Unproved(Described):
+    """A check that gnatprove could not prove."""
+
+    file: str
+    """As seen from the model's folder."""
+    line: int
+    """Of the file, from 1."""
+    column: int
+    """Of the line, from 1."""
+    check: str
+    """What is not proved."""
+    example: str
+    """Values for which it fails; empty where the prover found none."""
+    element: str
+    """The element of the model that the code belongs to; empty where there is none."""
+    origin: str
+    """Where that element stands in the model: file, line and column."""
+    help: str
+    """What usually helps."""
+
+
+@dataclass(slots=True)
 class Proved(Described):
     """The proof of one program."""
 
@@ -85,6 +107,8 @@ class Proved(Described):
     """How many statements `pragma Assume` there are."""
     outside: list[str]
     """What is outside SPARK."""
+    unproved: list[Unproved]
+    """What is not proved."""
     clean: bool
     """Whether everything is proved, and nothing justified or assumed."""
     cached: bool

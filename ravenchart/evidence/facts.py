@@ -177,8 +177,8 @@ def _runtime(driver: str, folder: Path) -> tuple[tuple[Record, ...], tuple[tuple
     reasons: dict[str, str] = {}
     for name in dict.fromkeys((FIRST_DRIVER, driver)):
         target = f"runtime-{name}"
-        path = records.RECORDS / f"{target}.toml"
-        if path.is_file():
+        path = records.of_target(target)
+        if path is not None:
             found.append(records.read(path, path.name, folder))
         if OUTSIDE.is_file():
             reasons |= outside_spark.reasons_for_target(OUTSIDE, target)

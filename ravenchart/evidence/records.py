@@ -15,9 +15,10 @@ from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.emit.program import source_folders
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
+from ravenchart.proof.ages import AGES
 
 RECORDS = ROOT / "proofs" / "records"
-"""Of the examples and of the runtime."""
+"""Of the examples and of the runtime: a folder for each age of gnatprove."""
 ADA = (".ads", ".adb")
 CONTROLLERS = "ravenchart-can-controllers.adb"
 """The body of a CAN driver, which a program with a bus instantiates."""
@@ -167,8 +168,13 @@ def of_example(program: Program) -> Path | None:
     if folder.parent != ROOT / "examples" or program.checked.path.name != "model.yaml":
         return None
     name = f"{folder.name}-{program.folder}" if program.folder else folder.name
-    path = RECORDS / f"{name}.toml"
-    return path if path.is_file() else None
+    return of_target(name)
+
+
+def of_target(name: str) -> Path | None:
+    """The record of a target of ``make prove``, of the youngest gnatprove that has one."""
+    paths = (RECORDS / age.name / f"{name}.toml" for age in AGES)
+    return next((path for path in paths if path.is_file()), None)
 
 
 def uncovered(outside: Collection[str], names: Collection[str]) -> tuple[str, ...]:

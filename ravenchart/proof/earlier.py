@@ -22,7 +22,7 @@ from .spark_results import Entity, Outside, Results
 if TYPE_CHECKING:
     from .proving import Task
 
-FORMAT = 1
+FORMAT = 2
 """Part of each key: raised when what an entry holds changes."""
 KIND = "proofs"
 
@@ -56,7 +56,7 @@ def load(key: str) -> Results | None:
         return Results(
             found["checks"],
             found["justified"],
-            found["unproved"],
+            (),
             found["assumed"],
             tuple(Outside(**o) for o in found["outside"]),
             frozenset(found["files"]),

@@ -11,16 +11,17 @@ import hashlib
 import json
 import shutil
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 
+from . import ages, spark_results, steps, verdicts
 from . import earlier as proof_cache
-from . import spark_results, verdicts
 from .spark_results import Results
 from .verdicts import Memcached
 
@@ -51,7 +52,7 @@ class Proof:
     sources: tuple[tuple[str, str], ...]
     """(path below the checkout, SHA-256), sorted."""
     tool: str
-    """The first line of ``gnatprove --version``."""
+    """gnatprove and its provers with their versions (`ages.tool_text`)."""
     cached: bool = field(default=False, compare=False)
     """Whether the results are those of an earlier run on the same content."""
 
@@ -68,37 +69,77 @@ class Proof:
         return (
             f"checks {found.checks}, proved {proved}, justified {found.justified}, "
             f"assumed {found.assumed}, outside SPARK {len(found.outside)}"
+            + (f", NOT PROVED {found.unproved}" if found.unproved else "")
             + (" (proved before from the same content)" if self.cached else "")
         )
 
 
-def prove(task: Task, *, fresh: bool = False, memcached: Memcached | None = None) -> Proof:
+class NotProved(ToolFailed):
+    """Checks are left that gnatprove could not prove; the text is its messages."""
+
+    def __init__(self, text: str, proof: Proof) -> None:
+        super().__init__(text)
+        self.proof = proof
+
+
+def prove(
+    task: Task,
+    *,
+    fresh: bool = False,
+    memcached: Memcached | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Proof:
     """Run gnatprove, or take the results of an earlier run on the same content.
 
-    ToolFailed with gnatprove's messages when anything is left. ``fresh`` runs it in any case, and
-    each prover with it; else only formulas that were not proved before go to a prover, and those
-    that the ``memcached`` server of a team does not have. The result folders are emptied first,
-    so the results are those of this run alone.
+    NotProved when anything is left, ToolFailed when gnatprove ended for another reason. ``fresh``
+    runs it in any case, and each prover with it; else only formulas that were not proved before go
+    to a prover, and those that the ``memcached`` server of a team does not have. The result
+    folders are emptied first, so the results are those of this run alone. How far the run is goes
+    to ``tell``.
     """
-    version = toolchain.run("gnatprove", ["--version"], task.project.parent, {})
+    version = ages.version()
     inputs = _inputs(task.sources)
     key = proof_cache.key(version, task, inputs)
     results = None if fresh else proof_cache.load(key)
     cached = results is not None
+    failed = None
     if results is None:
+        for folder in task.results:
+            shutil.rmtree(folder, ignore_errors=True)
         with nullcontext() if fresh else verdicts.served(version, memcached) as server:
-            results = _run(task, server)
-        if not results.unproved:
+            try:
+                _run(task, server, tell)
+            except ToolFailed as problem:
+                failed = problem
+        results = spark_results.read_results(task.results, task.units)
+        if failed is None:
             proof_cache.store(key, results)
     read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
     sources = tuple(sorted((_shown(path), digest) for path, digest in read.items()))
-    return Proof(results, sources, version.partition("\n")[0], cached)
+    proof = Proof(results, sources, ages.tool_text(version), cached)
+    if failed is not None:
+        raise NotProved(str(failed), proof) if results.unproved else failed
+    return proof
 
 
-def _run(task: Task, server: str | None) -> Results:
-    for folder in task.results:
-        shutil.rmtree(folder, ignore_errors=True)
-    arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline"]
+def examples(task: Task, proof: Proof, tell: Callable[[str], None] = lambda _: None) -> str:
+    """The messages about what is not proved, with values for which it fails where there are some.
+
+    Each unit with such a check is proved again, for the provers look for values only then.
+    """
+    bodies = {one.file: f"{one.file[:-1]}b" for one in proof.results.open}
+    read = proof.results.files
+    units = tuple(sorted({body if body in read else file for file, body in bodies.items()}))
+    try:
+        _run(replace(task, units=units), None, tell, "--counterexamples=on")
+    except ToolFailed as problem:
+        return str(problem)
+    return ""
+
+
+def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str) -> None:
+    arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline", *ages.switches(), *more]
+    arguments.append(steps.SWITCH)
     arguments.append(f"--warnings={task.warnings}")
     if not task.whole:
         arguments.append("--no-subprojects")
@@ -106,8 +147,8 @@ def _run(task: Task, server: str | None) -> Results:
         arguments.append(f"--memcached-server={server}")
     if task.units:
         arguments += ["-u", *task.units]
-    toolchain.run("gnatprove", arguments, task.project.parent, task.scenario)
-    return spark_results.read_results(task.results, task.units)
+    taken = steps.Steps(tell).takes
+    toolchain.run("gnatprove", arguments, task.project.parent, task.scenario, taken)
 
 
 SOURCES = (".ads", ".adb", ".gpr", ".adc")

@@ -4,12 +4,15 @@ Each analysed unit has a `.spark` file (JSON) with its checks and with what of i
 and an `.ali` file that names its sources. gnatprove's own summary counts every file of the
 object folders that it knows, so a number from there depends on what ran before; the numbers
 here are those of the folders given.
+
+The older age of gnatprove (`ages`) writes each entity where it is meant; the younger one writes a
+number, and a table `entities` for the unit.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -34,18 +37,37 @@ class Outside:
 
 
 @dataclass(frozen=True, slots=True)
+class Open:
+    """A check that is neither proved nor justified."""
+
+    file: str
+    line: int
+    column: int
+    rule: str
+    """gnatprove's name of the check, such as ``VC_RANGE_CHECK``."""
+    entity: str
+    """The subprogram, task or package with the check."""
+
+
+@dataclass(frozen=True, slots=True)
 class Results:
     """The outcome of one run."""
 
     checks: int
     justified: int
-    unproved: int
+    open: tuple[Open, ...]
+    """What is not proved, in the order of the places."""
     assumed: int
     """Statements `pragma Assume`."""
     outside: tuple[Outside, ...]
     files: frozenset[str]
     """Names of the sources that were analysed, and of all that these depend on."""
     entities: tuple[Entity, ...]
+
+    @property
+    def unproved(self) -> int:
+        """How many checks are not proved."""
+        return len(self.open)
 
 
 def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Results:
@@ -59,18 +81,22 @@ def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Resul
         for unit in map(_unit, _files(folders, "ali"))
         if not analysed or unit.files & {*analysed}
     ]
-    checks = justified = unproved = assumed = 0
+    checks = justified = assumed = 0
+    unproved: list[Open] = []
     tallies: dict[str, tuple[int, set[str]]] = {}
     for _, unit in found:
         assumed += len(unit.get("pragma_assume", ()))
         for check in _checks(unit):
             checks += 1
-            justified += "suppressed" in check
-            unproved += "suppressed" not in check and check["severity"] != "info"
+            if "suppressed" in check:
+                justified += 1
+            elif check["severity"] != "info":
+                unproved.append(_open(unit, check))
         for check in unit.get("proof", ()):
-            count, provers = tallies.get(check["entity"]["name"], (0, set()))
+            name = entity_of(unit, check["entity"])["name"]
+            count, provers = tallies.get(name, (0, set()))
             provers |= set(check.get("stats", ()))
-            tallies[check["entity"]["name"]] = (count + 1, provers)
+            tallies[name] = (count + 1, provers)
     entities = tuple(
         Entity(name, count, tuple(sorted(provers)))
         for name, (count, provers) in sorted(tallies.items())
@@ -82,7 +108,21 @@ def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Resul
     }
     files = frozenset(name for unit in units for name in unit.sources)
     ordered = tuple(sorted(outside, key=lambda o: (o.name, o.location)))
-    return Results(checks, justified, unproved, assumed, ordered, files, entities)
+    places = tuple(sorted(unproved, key=lambda o: (o.file, o.line, o.column, o.rule)))
+    return Results(checks, justified, places, assumed, ordered, files, entities)
+
+
+def entity_of(unit: Mapping[str, Any], reference: Any) -> Mapping[str, Any]:
+    """An entity that a unit's results refer to, with its ``name`` and ``sloc``."""
+    if isinstance(reference, dict):
+        return reference
+    found: Mapping[str, Any] = unit["entities"][str(reference)]
+    return found
+
+
+def _open(unit: Mapping[str, Any], check: Mapping[str, Any]) -> Open:
+    name = entity_of(unit, check["entity"])["name"]
+    return Open(check["file"], check["line"], check["col"], check["rule"], name)
 
 
 def _files(folders: Sequence[Path], ending: str) -> list[Path]:
@@ -98,8 +138,14 @@ def _checks(unit: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
     """What is not wholly in SPARK: "spec" without its body, "no" with nothing of it."""
-    for entity in unit["spark"]:
-        if entity["spark"] != "all":
+    modes = unit["spark"]
+    pairs = (
+        ((entity_of(unit, key), mode) for key, mode in modes.items())
+        if isinstance(modes, dict)
+        else ((entity, entity["spark"]) for entity in modes)
+    )
+    for entity, mode in pairs:
+        if mode != "all":
             at = entity["sloc"][0]
             yield Outside(entity["name"], f"{at['file']}:{at['line']}")
 

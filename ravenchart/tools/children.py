@@ -63,6 +63,21 @@ def run(
     return subprocess.CompletedProcess(words, process.returncode, output, errors)
 
 
+def run_watched(
+    words: Sequence[str | Path], taken: Callable[[str], bool], **options: Any
+) -> subprocess.CompletedProcess[str]:
+    """Run a program to its end as `run` does, and show each line of its output to ``taken``.
+
+    Lines for which that is true are left out of the output. Errors are part of it.
+    """
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with running(words, stdin=subprocess.DEVNULL, **{**pipes, **options}) as process:
+        assert process.stdout is not None
+        output = "".join(line for line in process.stdout if not taken(line))
+        process.wait()
+    return subprocess.CompletedProcess(words, process.returncode, output, "")
+
+
 def stop(process: subprocess.Popen[Any]) -> None:
     """Ask a program and its session to end, and kill what does not; nothing if it has ended."""
     if process.poll() is not None:

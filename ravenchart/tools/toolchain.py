@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from ravenchart.failures import ToolFailed, Unusable
@@ -33,18 +32,27 @@ def have(tool: str) -> bool:
     return shutil.which(tool) is not None
 
 
-def run(tool: str, arguments: Sequence[str], where: Path, scenario: Mapping[str, str]) -> str:
-    """Run a tool with scenario variables set; its output, or ToolMissing or ToolFailed."""
+def run(
+    tool: str,
+    arguments: Sequence[str],
+    where: Path,
+    scenario: Mapping[str, str],
+    taken: Callable[[str], bool] = lambda _: False,
+) -> str:
+    """Run a tool with scenario variables set; its output, or ToolMissing or ToolFailed.
+
+    Lines of the output that ``taken`` takes are no part of what is returned or raised.
+    """
     if not have(tool):
         raise ToolMissing(tool)
     paths = [str(ROOT), *filter(None, [os.environ.get("GPR_PROJECT_PATH")])]
     given = {"RAVENCHART_OBJECTS": str(work() / "obj"), **scenario}
     variables = [f"-X{name}={value}" for name, value in given.items()]
-    done = children.run(
+    done = children.run_watched(
         [tool, *arguments, *variables],
+        taken,
         cwd=where,
         env={**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)},
-        stderr=subprocess.STDOUT,
         errors="replace",
     )
     if done.returncode != 0:

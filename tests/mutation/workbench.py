@@ -18,6 +18,7 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.gen.emit.program import generate, user_units
 from ravenchart.paths import ROOT
+from ravenchart.proof import ages
 from ravenchart.tools.toolchain import ToolMissing, have
 
 from .mutants import Files, Mutant
@@ -231,6 +232,7 @@ class Workbench:
         for old in self.folder.rglob("*.spark"):
             old.unlink()
         command = ["gnatprove", "-P", self.project, "-q", "--output=oneline"]
+        command += ages.switches()
         command += [f"-j{jobs}", "-u", *units]
         if only is not None:
             command.append(f"--limit-subp={only}")

@@ -63,7 +63,7 @@ def write(home: Path) -> None:
     (home / "results.xml").write_text(RESULTS, encoding="utf-8")
     (home / "scenario.yaml").write_text(SCENARIO, encoding="utf-8")
     record(home)
-    runtime = home / "records"
+    runtime = home / "records" / "gnat-12"
     runtime.mkdir()
     (home / "runtime.ads").write_text("package Runtime is end Runtime;\n", encoding="utf-8")
     for name in ("loopback", "slcan"):
@@ -83,7 +83,7 @@ def record(home: Path, units: Sequence[str] = UNITS, outside: Iterable[str] = ()
 def _text(sources: Iterable[Path], units: Sequence[str], outside: Iterable[str]) -> str:
     entities = tuple(Entity(unit, 2, ("Z3",)) for unit in units)
     found = tuple(Outside(name, "x.ads:1") for name in outside)
-    results = Results(2 * len(units), 0, 0, 0, found, frozenset(), entities)
+    results = Results(2 * len(units), 0, (), 0, found, frozenset(), entities)
     pairs = tuple((str(path), proving.digest(path)) for path in sources)
     return proving.record_text(proving.Proof(results, pairs, "GNATprove 1.0"))
 
@@ -91,7 +91,7 @@ def _text(sources: Iterable[Path], units: Sequence[str], outside: Iterable[str])
 def copy(home: Path, place: Path) -> Path:
     """All of it in another place, with the record of that place."""
     shutil.copytree(home, place)
-    for path in (place / "proof.toml", *(place / "records").iterdir()):
+    for path in (place / "proof.toml", *(place / "records").rglob("*.toml")):
         path.write_text(path.read_text().replace(str(home), str(place)), encoding="utf-8")
     return place
 

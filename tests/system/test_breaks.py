@@ -14,6 +14,7 @@ import pytest
 from ravenchart.building import checking
 from ravenchart.failures import Refused, ToolFailed
 from ravenchart.paths import ROOT
+from ravenchart.proof import ages
 from ravenchart.tools import toolchain
 
 needs_gnatprove = pytest.mark.skipif(
@@ -40,7 +41,8 @@ def _break(path: Path, old: str, new: str) -> None:
 
 
 def _prove(checkout: Path, *units: str) -> str:
-    options = ["-P", "three_components.gpr", "-q", "--output=oneline", "-u", *units]
+    options = ["-P", "three_components.gpr", "-q", "--output=oneline", *ages.switches()]
+    options += ["-u", *units]
     variables = {"MODE": "checks", "RAVENCHART_BUILD": str(checkout / "build")}
     return toolchain.run("gnatprove", options, checkout / "three" / "generated", variables)
 

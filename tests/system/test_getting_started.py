@@ -93,3 +93,11 @@ def test_the_tank_is_proved_and_the_unbounded_level_of_the_page_is_not(
     assert bounded in body.read_text()
     body.write_text(body.read_text().replace(bounded, "Height + Change"))
     assert main(["prove", model]) == 1
+    said = capsys.readouterr()
+    assert re.search(r"checks (\d+), proved \d+, .*, NOT PROVED 1\n", said.out)
+    told = re.search(r"^(user/tank.*?:) not proved: (.*?)\n(.*?\n)  fails", PAGE, re.S | re.M)
+    assert told is not None
+    for part in told.groups():
+        assert part in said.err
+    assert "fails for example when" in said.err
+    assert re.search(r"belongs to Plant.simulate \(.*model.yaml:\d+:7\)", said.err)

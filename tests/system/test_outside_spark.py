@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.command_line import main
+from ravenchart.evidence import records
 from ravenchart.failures import OK, WRONG
 from ravenchart.tools import toolchain
 from tests import house
@@ -125,6 +126,6 @@ def test_the_list_of_this_project_names_entries_of_the_ledger() -> None:
     listed = tomllib.loads(house.OUTSIDE.read_text())
     assert listed
     for target, table in listed.items():
-        assert (house.RECORDS / f"{target}.toml").is_file(), target
+        assert records.of_target(target) is not None, target
         for name, reason in table.items():
             assert f"## {reason}:" in ledger, (target, name)

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.evidence import records
 from ravenchart.paths import ROOT
-from ravenchart.proof import proving
+from ravenchart.proof import ages, proving
 from tests import house
 
 NAMES = (
@@ -23,29 +24,43 @@ NAMES = (
 LEDGER = ROOT / "proofs" / "assumptions.md"
 
 
+RECORDS = sorted(house.RECORDS.glob("*/*.toml"))
+
+
 def _record(name: str) -> Path:
-    return house.RECORDS / f"{name}.toml"
+    path = records.of_target(name)
+    assert path is not None, f"there is no record of {name}"
+    return path
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_proved_source_is_as_it_was_proved(name: str) -> None:
-    assert proving.stale_sources(_record(name)) == ()
+def test_every_target_has_a_record(name: str) -> None:
+    assert _record(name) in RECORDS
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_nothing_is_unproved_justified_or_assumed(name: str) -> None:
-    found = tomllib.loads(_record(name).read_text())
+@pytest.mark.parametrize("path", RECORDS, ids=lambda p: f"{p.parent.name}-{p.stem}")
+def test_every_proved_source_is_as_it_was_proved(path: Path) -> None:
+    assert path.stem in NAMES
+    assert path.parent.name in {age.name for age in ages.AGES}
+    assert proving.stale_sources(path) == ()
+
+
+@pytest.mark.parametrize("path", RECORDS, ids=lambda p: f"{p.parent.name}-{p.stem}")
+def test_nothing_is_unproved_justified_or_assumed(path: Path) -> None:
+    found = tomllib.loads(path.read_text())
     assert found["checks"] > 0
     assert found["proved"] == found["checks"]
     assert (found["justified"], found["assumed"]) == (0, 0)
+    provers = {"gnat-12": "CVC4", "gnat-14": "cvc5"}[path.parent.name]
+    assert provers in found["tool"]
 
 
 def test_every_source_of_a_program_is_in_its_record() -> None:
     """All that is generated, and each body of the user whose spec is: others have bodies too."""
     bodies = 0
     for name in house.EXAMPLES:
-        records = [tomllib.loads(_record(n).read_text()) for n in house.record_names(name)]
-        recorded = {source for record in records for source in record["sources"]}
+        texts = [tomllib.loads(_record(n).read_text()) for n in house.record_names(name)]
+        recorded = {source for record in texts for source in record["sources"]}
         folder = ROOT / "examples" / name
         made = [*(folder / "generated").rglob("*.ad[sb]")]
         specs = {path.stem for path in made if path.suffix == ".ads"}

@@ -166,7 +166,7 @@ CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
         lambda home: _append(home / "runtime.ads"), ("runtime-loopback", "runtime-slcan"),
     ),
     "runtime: outside SPARK without a reason": (
-        lambda home: _edit(home / "records/runtime-slcan.toml", "Tcp_Sockets", "Other_Sockets"),
+        lambda home: _edit(home / "records/gnat-12/runtime-slcan.toml", "Tcp_Sockets", "Other_Sockets"),
         ("runtime-slcan",),
     ),
     "tests: one failed": (
