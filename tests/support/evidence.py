@@ -64,7 +64,7 @@ def write(home: Path) -> None:
     (home / "scenario.yaml").write_text(SCENARIO, encoding="utf-8")
     record(home)
     runtime = home / "records" / "gnat-12"
-    runtime.mkdir()
+    runtime.mkdir(parents=True)
     (home / "runtime.ads").write_text("package Runtime is end Runtime;\n", encoding="utf-8")
     for name in ("loopback", "slcan"):
         text = _text([home / "runtime.ads"], ["Runtime"], ["Ravenchart.Can.Tcp_Sockets"])

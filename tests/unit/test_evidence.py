@@ -33,6 +33,7 @@ TIMED = (
 )
 USERS = ("activities-Valve.activities",)
 GOOD = ("met", "partly")
+RUNTIME_RECORD = "records/gnat-12/runtime-slcan.toml"
 
 
 @pytest.fixture(scope="module")
@@ -166,7 +167,7 @@ CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
         lambda home: _append(home / "runtime.ads"), ("runtime-loopback", "runtime-slcan"),
     ),
     "runtime: outside SPARK without a reason": (
-        lambda home: _edit(home / "records/gnat-12/runtime-slcan.toml", "Tcp_Sockets", "Other_Sockets"),
+        lambda home: _edit(home / RUNTIME_RECORD, "Tcp_Sockets", "Other_Sockets"),
         ("runtime-slcan",),
     ),
     "tests: one failed": (
