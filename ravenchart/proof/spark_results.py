@@ -116,7 +116,9 @@ def entity_of(unit: Mapping[str, Any], reference: Any) -> Mapping[str, Any]:
     """An entity that a unit's results refer to, with its ``name`` and ``sloc``."""
     if isinstance(reference, dict):
         return reference
-    found: Mapping[str, Any] = unit["entities"][str(reference)]
+    number = int(reference)
+    found: Mapping[str, Any]
+    found = next(entity for key, entity in unit["entities"].items() if int(key) == number)
     return found
 
 
@@ -137,7 +139,12 @@ def _checks(unit: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
-    """What is not wholly in SPARK: "spec" without its body, "no" with nothing of it."""
+    """What is not wholly in SPARK, or skipped by an annotation.
+
+    Of the modes "spec" is without the body, "no" with nothing of it.
+    """
+    for key in (*unit.get("skip_flow_proof", ()), *unit.get("skip_proof", ())):
+        yield _not_proved(entity_of(unit, key))
     modes = unit["spark"]
     pairs = (
         ((entity_of(unit, key), mode) for key, mode in modes.items())
@@ -146,8 +153,12 @@ def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
     )
     for entity, mode in pairs:
         if mode != "all":
-            at = entity["sloc"][0]
-            yield Outside(entity["name"], f"{at['file']}:{at['line']}")
+            yield _not_proved(entity)
+
+
+def _not_proved(entity: Mapping[str, Any]) -> Outside:
+    at = entity["sloc"][0]
+    return Outside(entity["name"], f"{at['file']}:{at['line']}")
 
 
 @dataclass(frozen=True, slots=True)

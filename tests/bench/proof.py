@@ -12,11 +12,13 @@ import resource
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ravenchart.failures import ToolFailed
+from ravenchart.proof.spark_results import entity_of
 from ravenchart.tools.toolchain import ToolMissing
 from tests.mutation.observing import Observer
 from tests.mutation.workbench import Workbench
@@ -72,9 +74,18 @@ def measure(leaves: int, seed: int) -> Figures:
         processor, wall = _processor_time() - processor, time.perf_counter() - wall
         found = next(Path(place).rglob(f"{Path(unit).stem}.spark"))
         result = json.loads(found.read_text(encoding="utf-8"))
-        names = {check["entity"]["name"] for check in result["proof"]}
-        phases = _phases(result.get("timings", {}), processor)
+        names = {entity_of(result, check["entity"])["name"] for check in result["proof"]}
+        phases = _phases(_timings(result.get("timings", {})), processor)
         return Figures(leaves, processor, wall, phases, len(names), len(text.splitlines()))
+
+
+def _timings(found: Mapping[str, Any]) -> dict[str, float]:
+    """Sums by name: the younger age has a table for each entity."""
+    sums: dict[str, float] = {}
+    for name, value in found.items():
+        for key, spent in value.items() if isinstance(value, dict) else [(name, value)]:
+            sums[key] = sums.get(key, 0.0) + spent
+    return sums
 
 
 def _phases(timings: dict[str, float], processor: float) -> dict[str, float]:

@@ -36,13 +36,14 @@ def _older() -> dict[str, Any]:
 def _younger() -> dict[str, Any]:
     """The same results as the younger age writes them."""
     entities = {
-        "7": {"name": NAME, "sloc": [{"file": "joint.ads", "line": 16}]},
-        "9": {"name": "Hidden", "sloc": [{"file": "hidden.ads", "line": 3}]},
+        " 7": {"name": NAME, "sloc": [{"file": "joint.ads", "line": 16}]},
+        " 9": {"name": "Hidden", "sloc": [{"file": "hidden.ads", "line": 3}]},
     }
     checks = [_check("info", 7, stats={"Z3": {}}), _check("medium", 7)]
     flow = [_check("info", 7), _check("warning", 7)]
-    modes = {"7": "all", "9": "spec"}
-    return {"entities": entities, "spark": modes, "flow": flow, "proof": checks}
+    modes = {" 7": "all", " 9": "spec"}
+    skipped = {"skip_flow_proof": [], "skip_proof": []}
+    return {"entities": entities, "spark": modes, "flow": flow, "proof": checks, **skipped}
 
 
 def _read(folder: Path, unit: dict[str, Any]) -> Results:
@@ -61,6 +62,12 @@ def test_both_ages_give_the_same_results(
     assert (entity.path, entity.checks, entity.provers) == (NAME, 2, ("Z3",))
     (outside,) = found.outside
     assert (outside.name, outside.location) == ("Hidden", "hidden.ads:3")
+
+
+def test_what_an_annotation_skips_is_outside(tmp_path: Path) -> None:
+    unit = _younger()
+    unit["skip_proof"] = [7]
+    assert [one.name for one in _read(tmp_path, unit).outside] == [NAME, "Hidden"]
 
 
 def _finding(place: str, text: str, entity: str, folder: Path) -> Finding:
