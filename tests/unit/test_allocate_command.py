@@ -24,14 +24,19 @@ def analysed(path: Path) -> Analysis:
 
 
 def pasted(text: str, folder: Path, home: Path = ROBOT) -> Path:
-    """A model with other processors."""
+    """A model with other processors, in the file that has its tables: itself or an included one."""
     for part in home.glob("*.yaml"):
         shutil.copy(part, folder)
     model = folder / "model.yaml"
-    old = model.read_text(encoding="utf-8")
-    new, count = re.subn(r"(?ms)^processors:\n.*?(?=^\S|\Z)", text, old)
-    assert count == 1
-    model.write_text(new, encoding="utf-8")
+    named = re.search(r"^include: \[(.*)\]$", model.read_text(encoding="utf-8"), re.M)
+    included = named[1].split(", ") if named else []
+    changed = 0
+    for part in (model, *(folder / name for name in included)):
+        old = part.read_text(encoding="utf-8")
+        new, count = re.subn(r"(?ms)^processors:\n.*?(?=^\S|\Z)", text, old)
+        part.write_text(new, encoding="utf-8")
+        changed += count
+    assert changed == 1
     return model
 
 
@@ -81,9 +86,13 @@ NODES = ROBOT.parents[1] / "tests" / "nodes"
 
 @pytest.mark.parametrize("strategy", allocate.STRATEGIES)
 @pytest.mark.parametrize(
-    "home", [ROBOT.parent / "two_nodes", *(NODES / n for n in ("commands", "gripper", "tactile"))]
+    "home",
+    [
+        *(ROBOT.parent / n for n in ("two_nodes", "surgical_robot")),
+        *(NODES / n for n in ("commands", "gripper", "tactile")),
+    ],
 )
-def test_what_is_printed_for_several_nodes_is_a_model(
+def test_what_is_printed_for_several_nodes_or_files_is_a_model(
     home: Path, strategy: str, tmp_path: Path
 ) -> None:
     proposal = allocate.propose(analysed(home / "model.yaml"), strategy)
