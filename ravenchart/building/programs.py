@@ -110,7 +110,7 @@ class Program:
         warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
         if warnings.strip():
             warn(warnings.rstrip())
-        return self.home(chosen) / f"{self.checked.stem}_main"
+        return self.home(chosen) / mode / f"{self.checked.stem}_main"
 
     def _check_addresses(self) -> None:
         """Refused where a device with registers has no address."""

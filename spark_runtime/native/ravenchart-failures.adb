@@ -3,15 +3,18 @@ with Ada.Task_Identification;
 with Ada.Task_Termination;
 with Interfaces.C.Strings;
 with System;
+with System.Storage_Elements;
 
 package body Ravenchart.Failures
   with SPARK_Mode => Off
---  ASM-014. Handlers of task termination, the scheduling policy of a thread
---  and files are reached through the run-time library and the C library.
+--  ASM-014. Handlers of task termination, the scheduling policy of a thread,
+--  its stack for signals and files are reached through the run-time library
+--  and the C library.
 is
    use type Ada.Task_Identification.Task_Id;
    use type Interfaces.C.int;
    use type Interfaces.C.Strings.chars_ptr;
+   use type System.Address;
 
    subtype C_Int is Interfaces.C.int;
 
@@ -34,6 +37,18 @@ is
       Parameter : access Scheduling_Parameter) return C_Int
    with Import, Convention => C, External_Name => "pthread_setschedparam";
 
+   type Signal_Stack is record
+      Base  : System.Address          := System.Null_Address;
+      Flags : C_Int                   := 0;
+      Size  : Interfaces.C.size_t     := 0;
+   end record
+   with Convention => C;
+   --  stack_t of Linux.
+
+   function C_Signal_Stack
+     (Item : access Signal_Stack; Old : System.Address) return C_Int
+   with Import, Convention => C, External_Name => "sigaltstack";
+
    function C_Get_Environment
      (Name : Interfaces.C.char_array) return Interfaces.C.Strings.chars_ptr
    with Import, Convention => C, External_Name => "getenv";
@@ -46,6 +61,12 @@ is
      (File : C_Int; Data : System.Address; Length : Interfaces.C.size_t)
       return Interfaces.C.long
    with Import, Convention => C, External_Name => "write";
+
+   procedure Make_All_Safe
+   with Import, Convention => C, External_Name => "ravenchart_make_safe";
+   pragma Weak_External (Make_All_Safe);
+   --  Of a generated program with devices that can be made safe. Other
+   --  programs do not have it: its address is then null.
 
    procedure C_Exit (Status : C_Int)
    with Import, Convention => C, External_Name => "_exit", No_Return;
@@ -78,6 +99,15 @@ is
    procedure Put_Error (Text : String);
    --  A line on standard error, if it can be written.
 
+   Of_Memory : constant String :=
+     "a stack overflow, or an access to memory that the task does not have";
+
+   function Is_Of_Memory
+     (X : Ada.Exceptions.Exception_Occurrence) return Boolean
+   is (Ada.Exceptions."="
+         (Ada.Exceptions.Exception_Identity (X), Storage_Error'Identity));
+   --  Then the message has a line of the run-time library and no more.
+
    type Known_Task is record
       Id     : Ada.Task_Identification.Task_Id :=
         Ada.Task_Identification.Null_Task_Id;
@@ -89,6 +119,17 @@ is
    subtype Task_Index is Positive range 1 .. 256;
 
    type Task_Table is array (Task_Index) of Known_Task;
+
+   subtype Stack_Place is
+     System.Storage_Elements.Storage_Array (1 .. 32_768);
+   --  As much as the run-time library gives the environment task.
+
+   type Stack_Table is array (Task_Index) of aliased Stack_Place;
+
+   Signal_Stacks : Stack_Table;
+   --  Where a task handles the signal of a stack that is full. Tasks of the
+   --  restricted run-time library have none of their own, and without one the
+   --  kernel ends the process. A page that is never used takes no memory.
 
    subtype Reason_Index is Positive range 1 .. 32;
 
@@ -102,8 +143,10 @@ is
    protected Record_Of_All
      with Priority => System.Priority'Last
    is
-      procedure Add (Name : String; Thread : Thread_Id);
-      --  The caller is a task with this name and thread.
+      procedure Add
+        (Name : String; Thread : Thread_Id; Number : out Natural);
+      --  The caller is a task with this name and thread. Its number is 0
+      --  where the table is full.
 
       procedure Note_Silence (Name : String; Culprit : out Thread_Search);
       --  Keep the reason; of the first silence, the thread that may hold up
@@ -116,6 +159,9 @@ is
       --  A task has ended. Called by the run-time library.
 
       function Any return Boolean;
+
+      function Has_Tasks return Boolean;
+      --  Has any task begun? Then all packages are elaborated.
 
       procedure Take (Reason : out Bounded_Text);
       --  The oldest reason that was not taken; empty when there is none.
@@ -137,9 +183,13 @@ is
      External_Name => "__gnat_last_chance_handler",
      No_Return;
    --  An exception in the environment task that nothing handles, in the
-   --  elaboration of any package or in the main program: it ends the process.
+   --  elaboration of any package or in the main program: it ends the process,
+   --  behind its devices, where they can be made safe.
    --  The handler of the run-time library, in whose place this one is, waits
    --  for the other tasks, which never end.
+
+   Ending : Boolean := False;
+   --  Is this the second exception, in making devices safe?
 
    Elaborated : Boolean := False;
    --  Is this body elaborated, so that there may be reasons?
@@ -191,10 +241,13 @@ is
          end if;
       end Keep;
 
-      procedure Add (Name : String; Thread : Thread_Id) is
+      procedure Add
+        (Name : String; Thread : Thread_Id; Number : out Natural) is
       begin
+         Number := 0;
          if Used < Task_Index'Last then
-            Used := Used + 1;
+            Used   := Used + 1;
+            Number := Used;
             Tasks (Used) :=
               (Id     => Ada.Task_Identification.Current_Task,
                Thread => Thread,
@@ -244,12 +297,16 @@ is
             when Ada.Task_Termination.Unhandled_Exception =>
                Keep (Name.Text (1 .. Name.Length) & " has ended by "
                      & Ada.Exceptions.Exception_Name (X) & ": "
-                     & Ada.Exceptions.Exception_Message (X));
+                     & (if Is_Of_Memory (X) then Of_Memory
+                        else Ada.Exceptions.Exception_Message (X)));
          end case;
       end On_End;
 
       function Any return Boolean
       is (Failed);
+
+      function Has_Tasks return Boolean
+      is (Used > 0);
 
       procedure Take (Reason : out Bounded_Text) is
       begin
@@ -268,8 +325,16 @@ is
    --------------
 
    procedure Register (Name : String) is
+      Number  : Natural;
+      Stack   : aliased Signal_Stack;
+      Ignored : C_Int;
    begin
-      Record_Of_All.Add (Name, C_Thread_Self);
+      Record_Of_All.Add (Name, C_Thread_Self, Number);
+      if Number > 0 then
+         Stack.Base := Signal_Stacks (Number)'Address;
+         Stack.Size := Stack_Place'Length;
+         Ignored := C_Signal_Stack (Stack'Access, System.Null_Address);
+      end if;
    end Register;
 
    ------------------
@@ -334,7 +399,15 @@ is
       Put_Error
         ("error: the main program has ended by "
          & Ada.Exceptions.Exception_Name (X) & ": "
-         & Ada.Exceptions.Exception_Message (X));
+         & (if Is_Of_Memory (X) then Of_Memory
+            else Ada.Exceptions.Exception_Message (X)));
+      if Elaborated and then Record_Of_All.Has_Tasks
+        and then Make_All_Safe'Address /= System.Null_Address
+        and then not Ending
+      then
+         Ending := True;
+         Make_All_Safe;
+      end if;
       C_Exit (1);
    end Last_Chance;
 

@@ -352,7 +352,7 @@ def nanoseconds() -> Figures:
         options = ["-p", "-q", "-P", made.project.name, "codecs_bench.adb"]
         linked = [*options, "-largs", *objects, "-gargs"]
         toolchain.run("gprbuild", linked, made.generated, given)
-        program = Path(place) / "codecs_bench"
+        program = Path(place) / "release" / "codecs_bench"
         done = subprocess.run([program], capture_output=True, text=True, timeout=300, check=True)
     columns = [(way, kind) for way in WAYS for kind in KINDS]
     figures: Figures = {}

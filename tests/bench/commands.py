@@ -101,7 +101,7 @@ def nanoseconds() -> tuple[float, float, float]:
         given = {**made.scenario("release", "loopback"), "RAVENCHART_BUILD": place}
         options = ["-p", "-q", "-P", made.project.name, "commands_bench.adb"]
         toolchain.run("gprbuild", options, made.generated, given)
-        program = Path(place) / "commands_bench"
+        program = Path(place) / "release" / "commands_bench"
         done = subprocess.run([program], capture_output=True, text=True, timeout=300, check=True)
     plain, direct, queued = (float(line) * 1e9 / CALLS for line in done.stdout.split())
     return plain, direct, queued

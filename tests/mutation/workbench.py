@@ -94,7 +94,7 @@ class Workbench:
     @property
     def executable(self) -> Path:
         """The built program."""
-        return self.folder / "build" / self.main
+        return self.folder / "build" / "checks" / self.main
 
     # --- a broken one
 

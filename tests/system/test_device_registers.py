@@ -20,6 +20,7 @@ from ravenchart.command_line import main
 from ravenchart.failures import Refused
 from ravenchart.paths import ROOT
 from tests.support.faults import shows
+from tests.support.stopped import raise_in
 
 CASE = ROOT / "tests" / "feature" / "registers"
 
@@ -126,11 +127,34 @@ FAULTS = {
         "delay until Ada.Real_Time.Time_Last;",
         "fast is silent",
     ),
+    "a frame wider than the stack": (
+        "",
+        """declare
+            procedure Wide;
+            procedure Wide is
+               Place : array (1 .. 20_000) of Natural with Volatile;
+            begin
+               Place (1) := Turns;
+            end Wide;
+         begin
+            Wide;
+         end;""",
+        "fast has ended by STORAGE_ERROR: a stack overflow",
+    ),
+    "an access to memory that is not there": (
+        "with System;\n\n",
+        """declare
+            Nothing : Natural with Import, Volatile, Address => System.Null_Address;
+         begin
+            Turns := Nothing;
+         end;""",
+        "fast has ended by STORAGE_ERROR: a stack overflow, or an access to memory",
+    ),
 }
 
 
 @shows(
-    "a task dies or hangs while its devices are driven",
+    "a task dies, hangs or overflows its stack while its devices are driven",
     found_by="the fallback handler of task termination; liveness supervision",
     reaction="the main program makes the devices safe, exit status 1",
 )
@@ -145,6 +169,25 @@ def test_a_failure_of_a_task_makes_the_devices_safe(fault: str, tmp_path: Path) 
     assert status == 1
     assert any(reason in line for line in errors), errors
     assert registers == [*STARTED, *DRIVEN, *SAFE]
+
+
+@shows(
+    "an exception in the main program while devices are driven",
+    found_by="the last-chance handler",
+    reaction="it makes the devices safe, exit status 1, with the reason",
+    within="5 s",
+)
+def test_an_exception_in_the_main_program_makes_the_devices_safe(tmp_path: Path) -> None:
+    process = subprocess.Popen([_built(tmp_path)], stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    said = [process.stderr.readline() for _ in (*STARTED, *DRIVEN)]
+    raise_in(process.pid, process.pid)
+    _, rest = process.communicate(timeout=5)
+    assert process.returncode == 1
+    assert [line.rstrip() for line in said] == [*STARTED, *DRIVEN]
+    reason, *registers = rest.splitlines()
+    assert reason.startswith("error: the main program has ended by CONSTRAINT_ERROR: ")
+    assert registers == SAFE
 
 
 @shows(
@@ -165,7 +208,7 @@ def test_a_supervisor_makes_devices_safe_where_the_main_program_cannot(tmp_path:
     text = supervision.read_text()
     assert text.count("Is_Silent :=") == 2
     supervision.write_text(text.replace("Is_Silent :=", "Is_Silent := Elapsed > 500_000_000 or"))
-    home = {"RAVENCHART_BUILD": str(program.parent), "CAN_DRIVER": "loopback", "MODE": "checks"}
+    home = {"RAVENCHART_BUILD": str(program.parents[1]), "CAN_DRIVER": "loopback", "MODE": "checks"}
     subprocess.run(
         ["gprbuild", "-q", "-p", "-P", "registers_feature.gpr"],
         cwd=generated,

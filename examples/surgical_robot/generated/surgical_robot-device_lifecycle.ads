@@ -9,6 +9,7 @@ is
    --  Initialise and test each device. Where one fails, or where this ends
    --  behind the first release, Passed is False and all devices are safe.
 
-   procedure Make_All_Safe;
+   procedure Make_All_Safe
+   with Export, Convention => C, External_Name => "ravenchart_make_safe";
    --  Make each device safe.
 end Surgical_Robot.Device_Lifecycle;

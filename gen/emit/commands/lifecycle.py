@@ -1,6 +1,7 @@
 """Start and end of devices: initialised and tested before the first release, made safe at the end.
 
-The main program leads both; a supervisor makes devices safe where the main program cannot.
+The main program leads both. A supervisor, or the last-chance handler of the runtime, makes devices
+safe where the main program cannot.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from ravenchart.gen.emit.ada.syntax import (
     SPARK,
     TRUE,
     Arg,
+    Aspect,
     Assign,
     Chain,
     Comment,
@@ -35,6 +37,13 @@ from ravenchart.gen.model.system import System
 
 UNIT = "Device_Lifecycle"
 """The package below the root that starts and ends all devices."""
+
+LAST_CHANCE = (
+    Aspect("Export"),
+    Aspect("Convention", Ref("C")),
+    Aspect("External_Name", Ref('"ravenchart_make_safe"')),
+)
+"""By this name the runtime finds it when the main program ends by an exception."""
 
 FAILURES = "Ravenchart.Device_Failures"
 RUNTIME_FOLDER = "spark_runtime/devices"
@@ -81,7 +90,10 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
     steps.append(Do("Ravenchart.Epochs.Since_Start", arguments(Ref("Elapsed"))))
     steps.append(If(((Chain(">", (Ref("Elapsed"), number(0))), late),)))
     if ended:
-        spec += [Subprogram("Make_All_Safe"), Comment("Make each device safe.")]
+        spec += [
+            Subprogram("Make_All_Safe", aspects=LAST_CHANCE),
+            Comment("Make each device safe."),
+        ]
         steps.append(If(((Prefix("not", Ref("Passed")), (Do("Make_All_Safe"),)),)))
     bodies: list[Decl] = [
         Subprogram(

@@ -17,10 +17,9 @@ with "ravenchart.gpr";
 project {name} is
 
    Build := external ("RAVENCHART_BUILD", "{up}build");
-   --  Where objects and the program go.
+   --  Where objects and the program go, apart for each mode.
 
 {sources}   for Object_Dir use Build & "/" & Ravenchart.Mode;
-   for Exec_Dir use Build;
    for Create_Missing_Dirs use "True";
    for Main use ("{main}.adb");
 
