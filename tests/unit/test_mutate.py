@@ -11,11 +11,12 @@ import pytest
 from ravenchart.building import checking, generation
 from ravenchart.gen.emit.program import generate, simulation
 from ravenchart.paths import ROOT
+from tests.mutation.__main__ import EXPLAINED, SUBJECTS
 from tests.mutation.catalogue import KINDS, mutants_of
 from tests.mutation.mutants import NOTE, Files, Mutant, sampled
 from tests.mutation.report import Outcome, as_json, explanations, reason_of, survivors, table
 from tests.mutation.source import arms, branches, conjuncts, statements, subprogram
-from tests.mutation.workbench import Verdict
+from tests.mutation.workbench import Verdict, Workbench
 
 ADA = """\
 package body P is
@@ -153,6 +154,20 @@ def test_an_explanation_counts_only_while_the_text_is_the_same(rich: Files, tmp_
     assert reason_of(known, "rich", mutant, diff) == "it does the same"
     assert reason_of(known, "rich", mutant, diff.replace("Enter", "Exit")) == ""
     assert reason_of(known, "robot", mutant, diff) == ""
+
+
+def test_each_explanation_is_of_a_mutant_of_today(tmp_path: Path) -> None:
+    known = explanations(EXPLAINED)
+    for subject in SUBJECTS:
+        own = [one for one in known if one.subject == subject.name]
+        if not own:
+            continue
+        files = Workbench(subject.model, tmp_path / subject.name, node=subject.node).files
+        texts = [(m, m.diff(files[m.file])) for m in mutants_of(files)]
+        for one in own:
+            assert any(reason_of([one], subject.name, *pair) for pair in texts), one.reason
+        known = [one for one in known if one not in own]
+    assert not known
 
 
 def test_the_report_counts_by_kind_and_shows_what_survived(rich: Files) -> None:
