@@ -55,7 +55,7 @@ class Unusable(Failure):
 
 MEANINGS: Mapping[str, str] = {
     "0": "done; every deadline and limit is kept, the proof or the run passed",
-    "1": "the model, its proof, its timing or its run has errors",
+    "1": "the model cannot be read, or it, its proof, its timing or its run has errors",
     "2": "the call is wrong, or a file, program or bus that it needs is missing",
     "3": "`run --strict`: the run passed, but its timing could not be judged",
     "70": "internal error: a fault of Ravenchart, shown with its traceback",
