@@ -13,11 +13,12 @@ from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 
+from .clock import Clock, OutOfTime
 from .control import RULES
 from .invariants import invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
-from .reach import Clock, OutOfTime, Reach
+from .reach import Reach
 
 
 def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]:

@@ -287,6 +287,11 @@ def safe_state_is_near(reach: Reach, thread: Thread) -> Iterator[Diagnostic]:
     graph.add_edges_from((edge.after, edge.before) for edge in thread.edges)
     goals = [node for node in thread.nodes if safe in node.configuration.active]
     graph.add_edges_from((safe, goal) for goal in goals)
+    if thread.parts is not None:
+        #  what one region of a state comes to, the others come to with it
+        for node in thread.nodes:
+            for name in tree.orthogonal & {*node.configuration.active}:
+                graph.add_edges_from(((node, ("in", name)), (("in", name), node)))
     near = networkx.descendants(graph, safe) if goals else set()
     for node, edge in thread.nodes.items():
         if node in near or edge is None:

@@ -12,13 +12,16 @@ from dataclasses import dataclass
 import z3
 
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
+from ravenchart.gen.language.terms import ScalarType
 from ravenchart.gen.model.component import Invariant
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
 from . import logic
+from .clock import OutOfTime
 from .logic import Term, Variable
-from .reach import Edge, OutOfTime, Reach, Thread
+from .parts import determines
+from .reach import Edge, Reach, Thread
 from .schedule import PORTS, schedules, together
 from .search import Search, Violation
 from .stepping import Configuration
@@ -66,6 +69,9 @@ def _is_excluded(reach: Reach, bad: Term) -> bool:
 
 def _somewhere(reach: Reach, thread: Thread) -> Term:
     """That a thread is in one of its nodes."""
+    if thread.parts is not None:
+        at = {n.configuration.active or thread.tree.default for n in thread.nodes}
+        return reach.is_published(thread.name, sorted(at))
     cases: dict[str, Term] = {}
     for node in thread.nodes:
         case = _states(reach, thread, node.configuration)
@@ -77,10 +83,18 @@ def _somewhere(reach: Reach, thread: Thread) -> Term:
 def _states(reach: Reach, thread: Thread, at: Configuration) -> list[Term]:
     """What a thread publishes in a configuration, as far as anything asks for it."""
     active = thread.tree.default if at == Configuration() else at.active
-    asked = [n for n in reach.symbols if n[0] == "in" and n[1] == thread.name]
+    asked = _asked(reach, thread, active)
     return [
         reach.symbol(name) if name[2] in active else z3.Not(reach.symbol(name)) for name in asked
     ]
+
+
+def _asked(reach: Reach, thread: Thread, active: tuple[str, ...]) -> list[Variable]:
+    """The states of a thread that are asked for, and of which active ones say whether they are."""
+    asked = [n for n in reach.symbols if n[0] == "in" and n[1] == thread.name]
+    if thread.parts is None:
+        return asked
+    return [name for name in asked if determines(thread.tree, active, name.state)]
 
 
 def _written_by_users(reach: Reach) -> list[Term]:
@@ -128,8 +142,8 @@ def _breaking_step(reach: Reach, system: System, bad: Term) -> Broken | None:
         for edge in _distinct(thread):
             reach.clock.count()
             after = _substituted(bad, _after(reach, thread, edge, stale))
-            condition = _substituted(edge.outcome.condition, stale)
-            here = _states(reach, thread, edge.before.configuration)
+            condition = _substituted(_lasting(reach, thread, edge.outcome.condition), stale)
+            here = _states(reach, thread, edge.outcome.before)
             here += reach.of_node(thread, edge.before.cells)
             model = _possible(reach, [*given, *here, condition, after])
             if model is not None:
@@ -199,14 +213,32 @@ def _stale(reach: Reach, system: System, thread: Thread) -> Pairs:
     return old
 
 
+def _written(reach: Reach, thread: Thread) -> list[tuple[Variable, ScalarType]]:
+    """The data of a thread, with their types."""
+    writes = thread.tree.region.writes
+    return [(n, t) for n, t in reach.types.items() if n[0] == "data" and n[1] in writes]
+
+
+def _lasting(reach: Reach, thread: Thread, condition: Term) -> Term:
+    """What holds of a step for as long as it lasts: where regions are looked at one by one, another
+    one may have set the data of the chart since they were read."""
+    if thread.parts is None:
+        return condition
+    own = {str(name) for name, _ in _written(reach, thread)}
+    asked = condition.children() if z3.is_and(condition) else [condition]
+    return z3.And([one for one in asked if not own & {*logic.unknowns([one])}])
+
+
 def _after(reach: Reach, thread: Thread, edge: Edge, stale: Pairs) -> Pairs:
     """What a step changes."""
-    active = edge.after.configuration.active
+    active = edge.outcome.after.active
     states = [
         (reach.symbol(name), z3.BoolVal(name[2] in active))
-        for name in reach.symbols
-        if name[0] == "in" and name[1] == thread.name
+        for name in _asked(reach, thread, active)
     ]
+    if thread.parts is not None:
+        written = _written(reach, thread)
+        return [*states, *((reach.symbol(n), logic.symbol(f"new {n}", t)) for n, t in written)]
     data = [(reach.symbol(n), _substituted(value, stale)) for n, value in edge.outcome.updates]
     return [*states, *data]
 

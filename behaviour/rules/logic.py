@@ -54,6 +54,12 @@ class Variable(tuple[str, str, str | None]):
         name = "event" if kind == Reading.EVENT.value else name
         return name if field is None else f"{name}.{field}"
 
+    @property
+    def state(self) -> str:
+        """The state that a published one is about."""
+        assert self[2] is not None
+        return self[2]
+
 
 def variable(kind: Reading, name: str, field: str | None) -> Variable:
     """The variable that a name denotes."""
@@ -266,3 +272,33 @@ def solver() -> Term:
     made.set("random_seed", 0)
     made.set("rlimit", EFFORT)
     return made
+
+
+class Questions:
+    """What a step reads in expressions, and whether they can hold together: each asked once."""
+
+    def __init__(self, read: Read, context: Sequence[Term]) -> None:
+        """Questions about what ``context`` allows."""
+        self.read = read
+        self._solver = solver()
+        self._solver.add(*context)
+        self._terms: dict[int, tuple[Expression, Term]] = {}
+        self._answers: dict[tuple[int, ...], tuple[Sequence[Term], bool]] = {}
+        """With the terms, which keep their numbers."""
+
+    def term(self, expression: Expression) -> Term:
+        """The term of an expression as a step reads it at its start."""
+        key = id(expression)
+        if key not in self._terms:
+            self._terms[key] = expression, term(expression, self.read)
+        return self._terms[key][1]
+
+    def possible(self, conditions: Sequence[Term]) -> bool:
+        """Whether some data meet all these conditions; when in doubt, yes."""
+        key = tuple(one.get_id() for one in conditions)
+        if key not in self._answers:
+            self._solver.push()
+            self._solver.add(*conditions)
+            self._answers[key] = conditions, bool(self._solver.check() != z3.unsat)
+            self._solver.pop()
+        return self._answers[key][1]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import z3
 
-from .logic import Read, Term, Variable
+from .logic import Questions, Term, Variable, unknowns
 from .stepping import Beaten, Configuration, Rival, Step
 from .tree import Occurrence, Slot, Tree
 
@@ -52,38 +52,39 @@ def outcomes(
     tree: Tree,
     before: Configuration,
     occurrence: Occurrence,
-    symbols: Read,
-    solver: Term,
+    questions: Questions,
     past: Past | None = None,
+    contested: Mapping[Variable, Term] | None = None,
 ) -> tuple[Outcome, ...]:
     """Every outcome of a step that some data allow, in order of the first answer `yes`.
 
-    With a ``past``, a history may remember each of the leaves that this says.
+    With a ``past``, a history may remember each of the leaves that this says. With ``contested``,
+    ``before`` is a part of a configuration (`parts`): what these unknowns decide may be either.
     """
     found: list[Outcome] = []
     waiting: list[tuple[list[bool], list[str | None]]] = [([], [])]
     while waiting:
         answers, recalled = waiting.pop()
         asked: list[Term] = []
-        recalls = iter(range(len(recalled)))
-        slots: set[Slot] = set()
+        slots: list[Slot] = []
+        guessed: list[Term] = []
 
         def recall(
             slot: Slot,
             answers: list[bool] = answers,
             recalled: list[str | None] = recalled,
             asked: list[Term] = asked,
-            recalls: Iterator[int] = recalls,
-            slots: set[Slot] = slots,
+            slots: list[Slot] = slots,
         ) -> str | None:
             if past is None:
                 return None
-            slots.add(slot)
-            index = next(recalls, None)
-            if index is not None:
-                return recalled[index]
+            slots.append(slot)
+            if len(slots) <= len(recalled):
+                return recalled[len(slots) - 1]
             known = answers[: len(asked)]
-            waiting.extend((known, [*recalled, leaf]) for leaf in sorted(past.get(slot, ())))
+            chosen = [s for s, leaf in zip(slots, recalled, strict=False) if leaf is not None]
+            if contested is None or all(tree.inside(slot, s) for s in chosen):
+                waiting.extend((known, [*recalled, leaf]) for leaf in sorted(past.get(slot, ())))
             recalled.append(None)
             return None
 
@@ -92,33 +93,42 @@ def outcomes(
             answers: list[bool] = answers,
             recalled: list[str | None] = recalled,
             asked: list[Term] = asked,
+            guessed: list[Term] = guessed,
         ) -> bool:
             if z3.is_true(condition) or z3.is_false(condition):
                 return bool(z3.is_true(condition))
+            is_guess = _mentions(condition, contested)
             if len(asked) == len(answers):
-                can = [_possible(solver, asked, one) for one in (condition, z3.Not(condition))]
+                both = (condition, z3.Not(condition))
+                can = [is_guess or questions.possible((*asked, one)) for one in both]
                 if all(can):
                     waiting.append(([*answers, False], list(recalled)))
                 answers.append(can[0])
             answer = answers[len(asked)]
-            asked.append(condition if answer else z3.Not(condition))
+            if is_guess:
+                guessed.append(condition)
+                asked.append(z3.BoolVal(True))
+            else:
+                asked.append(condition if answer else z3.Not(condition))
             return answer
 
-        step = Step(tree, before, occurrence, symbols, decide, recall)
+        step = Step(tree, before, occurrence, questions, decide, recall, contested)
         stuck = step.run()
+        if stuck is not None and guessed:
+            continue
         after = step.configuration() if stuck is None else before
         found.append(
             Outcome(
                 occurrence,
                 before,
-                z3.And(asked) if asked else z3.BoolVal(True),
+                z3.And(asked) if asked else TRUE,
                 after if past is None else replace(after, history=()),
                 tuple(sorted(step.store.items(), key=lambda item: str(item[0]))),
                 tuple(step.raised),
                 tuple(step.fired),
                 stuck,
                 step.deferred,
-                tuple(step.rivals),
+                tuple(r for r in step.rivals if not _mentions(r.condition, contested)),
                 frozenset(step.entered),
                 frozenset(step.left),
                 tuple(step.beaten),
@@ -131,10 +141,12 @@ def outcomes(
     return tuple(found)
 
 
-def _possible(solver: Term, path: Sequence[Term], condition: Term) -> bool:
-    """Whether some data meet all these conditions; when in doubt, yes."""
-    solver.push()
-    solver.add(*path, condition)
-    answer = solver.check()
-    solver.pop()
-    return bool(answer != z3.unsat)
+TRUE = z3.BoolVal(True)
+
+
+def _mentions(condition: Term, contested: Mapping[Variable, Term] | None) -> bool:
+    """Whether a condition asks for what other regions may have set in the same step."""
+    if not contested:
+        return False
+    used = unknowns([condition])
+    return any(str(unknown) in used for unknown in contested.values())

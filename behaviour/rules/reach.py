@@ -8,28 +8,31 @@ tasks interrupt one another. Data are told apart by *cells*: the literals of an
 enumeration, and for integers the ranges between the numbers that the model
 compares them with. A region of too many nodes is looked at more coarsely: a
 history may then remember any leaf that it was ever seen to remember, and if that
-is not enough, data are not told apart.
+is not enough, data are not told apart. Where the configurations alone are too many,
+the regions of an orthogonal state are looked at one by one (`parts`).
 """
 
 from __future__ import annotations
 
-import time
 from collections import deque
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import z3
 
-from ravenchart.gen.language.terms import BOOLEAN, Set
+from ravenchart.gen.language.terms import BOOLEAN, ScalarType, Set
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import DONE, After, Every, When
 from ravenchart.gen.model.system import System
 
 from . import logic
 from .cells import actions, expressions, partition
+from .clock import Clock
 from .logic import Term, Variable
-from .outcomes import Outcome, Past, outcomes
+from .outcomes import Outcome, outcomes
 from .outside import as_region, done_of, external_events, parameters_of
+from .parts import Parts
+from .publishing import is_in, is_in_parts
 from .stepping import Configuration
 from .tree import CONDITIONS, START, Occurrence, Slot, Tree
 
@@ -42,6 +45,8 @@ MOST_NODES = 1_000
 """A region of more is looked at more coarsely."""
 MOST_QUESTIONS = 1_500
 """So is one that needs more answers of z3 to tell its data apart."""
+MOST_CONFIGURATIONS = 3_000
+"""A region of more, data and histories aside, is looked at in parts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,32 +66,8 @@ class Edge:
     after: Node
 
 
-LOOK_AT_CLOCK = 8
-"""Situations between two looks at the clock, which take time themselves."""
-
-
-class OutOfTime(Exception):  # noqa: N818
-    """The time for the check is over."""
-
-
-@dataclass
-class Clock:
-    """How much processor time the whole check may take, and how far it has got."""
-
-    seconds: float
-    started: float = field(default_factory=time.process_time)
-    situations: int = 0
-
-    def count(self) -> None:
-        """One situation more; `OutOfTime` when there is no time for it."""
-        if self.situations % LOOK_AT_CLOCK == 0:
-            self.check()
-        self.situations += 1
-
-    def check(self) -> None:
-        """`OutOfTime` when there is no time left."""
-        if time.process_time() - self.started > self.seconds:
-            raise OutOfTime
+Task = tuple[Node, Configuration, Occurrence | None]
+"""A node, where its step starts, and what it is made for: None for all that may be."""
 
 
 @dataclass
@@ -95,6 +76,7 @@ class Thread:
 
     tree: Tree
     own: tuple[Variable, ...]
+    types: Mapping[Variable, ScalarType]
     nodes: dict[Node, Edge | None] = field(default_factory=dict)
     """Each with the edge that leads to it on a shortest way."""
     edges: list[Edge] = field(default_factory=list)
@@ -105,25 +87,50 @@ class Thread:
     exact: Steps = field(default_factory=dict)
     """The same with histories, where ``steps`` are without."""
     known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
+    answers: dict[tuple[object, ...], tuple[Term, bool]] = field(default_factory=dict)
+    """Whether a condition can be met, with the condition, which keeps its number."""
+    parts: Parts | None = None
+    """Where configurations are looked at in parts."""
 
     @property
     def name(self) -> str:
         """The name of the region or activity."""
         return self.tree.region.name
 
+    def begin(self, start: Node) -> None:
+        """Forget what was seen, but for what steps come to."""
+        self.nodes, self.edges = {start: None}, []
+        if self.parts is not None:
+            self.parts.clear()
+
     @property
-    def is_coarse(self) -> bool:
-        """Whether nothing is left that could be looked at more coarsely."""
-        return not self.own and (self.past is not None or not self.tree.remembered)
+    def tells_more(self) -> bool:
+        """Whether data or histories are told apart."""
+        return bool(self.own) or (self.past is None and bool(self.tree.remembered))
+
+    @property
+    def most(self) -> int | None:
+        """How many nodes it may have until it is looked at more coarsely."""
+        if self.tells_more:
+            return MOST_NODES
+        return None if self.parts is not None or not self.tree.orthogonal else MOST_CONFIGURATIONS
 
     def look_coarser(self) -> None:
-        """Forget what histories remember, or else the data."""
+        """Forget what histories remember, or else the data, or else what regions are together."""
         if self.past is None and self.tree.remembered:
             self.past, self.exact, self.steps = {}, self.steps, {}
-        else:
+        elif self.own:
             self.own = ()
+        else:
+            self.exact = self.steps if self.past is None else self.exact
+            self.parts, self.steps = Parts(self.tree, self.types), {}
         self.questions = 0
         self.known.clear()
+        self.answers.clear()
+
+    def places(self, at: Configuration) -> Iterable[Configuration]:
+        """A configuration, or the parts of it that are looked at."""
+        return (at,) if self.parts is None else self.parts.of(at)
 
     def remember(self, outcome: Outcome) -> None:
         """Note what a step remembers; the steps that recall it have further outcomes then."""
@@ -176,8 +183,7 @@ class Reach:
         for name in logic.tested((*expressions(component), *values)):
             self.symbol(name)
         self._user_bodies()
-        self.plain = logic.solver()
-        self.plain.add(*self.constants_over(self.symbol))
+        self.plain = logic.Questions(self.symbol, self.constants_over(self.symbol))
         self._run()
 
     # --- set-up
@@ -188,7 +194,7 @@ class Reach:
         made = []
         for tree in (*regions, *flows):
             own = (v for v in self.cells if v[1] in tree.region.writes)
-            made.append(Thread(tree, tuple(own)))
+            made.append(Thread(tree, tuple(own), self.types))
         return made
 
     def _working(self, region: str) -> Iterator[str]:
@@ -263,18 +269,10 @@ class Reach:
     def is_published(self, region: str, configurations: Sequence[tuple[str, ...]]) -> Term:
         """That a region has published one of these sets of active states."""
         asked = [name for name in self.symbols if name[:2] == ("in", region)]
-        cases = {tuple(name[2] in active for name in asked) for active in configurations}
-        return z3.Or(
-            [
-                z3.And(
-                    [
-                        self.symbol(name) if holds else z3.Not(self.symbol(name))
-                        for name, holds in zip(asked, case, strict=True)
-                    ]
-                )
-                for case in sorted(cases)
-            ]
-        )
+        thread = self.thread(region)
+        if thread.parts is not None:
+            return is_in_parts(thread.tree, asked, configurations, self.symbol)
+        return is_in(asked, configurations, self.symbol)
 
     # --- the search
 
@@ -315,25 +313,40 @@ class Reach:
         start = Node(
             Configuration(), tuple(self.cell_of(name, self.initial[name]) for name in thread.own)
         )
-        thread.nodes = {start: None}
-        thread.edges = []
-        waiting = deque([start])
+        thread.begin(start)
+        waiting: deque[Task] = deque([(start, start.configuration, None)])
         while waiting:
-            node = waiting.popleft()
+            node, at, only = waiting.popleft()
             self.clock.count()
-            for occurrence in self.occurrences(thread, node.configuration):
-                for outcome in self.steps(thread, node.configuration, occurrence, thread.past):
+            for occurrence in self.occurrences(thread, at) if only is None else (only,):
+                for outcome in self._outcomes(thread, at, occurrence):
                     thread.remember(outcome)
                     for cells in self._successors(thread, node.cells, outcome, solver, context):
-                        after = Node(outcome.after, cells)
-                        edge = Edge(node, outcome, after)
-                        thread.edges.append(edge)
-                        self._show(thread, edge)
-                        if after not in thread.nodes:
-                            if len(thread.nodes) == MOST_NODES and not thread.is_coarse:
-                                raise _TooMany
-                            thread.nodes[after] = edge
-                            waiting.append(after)
+                        for place in thread.places(outcome.after):
+                            edge = Edge(node, outcome, Node(place, cells))
+                            waiting.extend(self._arrive(thread, edge))
+                        if thread.parts is not None and only is None:
+                            met = thread.parts.left(at, outcome)
+                            waiting.extend((Node(p, cells), both, o) for p, both, o in met)
+
+    def _arrive(self, thread: Thread, edge: Edge) -> Iterator[Task]:
+        """Note an edge; what is to be looked at when the node that it leads to is new."""
+        after = edge.after
+        thread.edges.append(edge)
+        self._show(thread, edge)
+        if after in thread.nodes:
+            return
+        if len(thread.nodes) == thread.most:
+            raise _TooMany
+        thread.nodes[after] = edge
+        yield after, after.configuration, None
+        if thread.parts is not None and not after.configuration.stopped:
+            for place in thread.parts.see(after.configuration):
+                yield from self._arrive(
+                    thread, replace(edge, after=replace(after, configuration=place))
+                )
+            for part, both, occurrence in thread.parts.meetings(after.configuration):
+                yield Node(part, after.cells), both, occurrence
 
     def _show(self, thread: Thread, edge: Edge) -> None:
         """What others may see of a step."""
@@ -358,10 +371,14 @@ class Reach:
             return
         for name in at.active:
             done = f"{thread.name}.{name}.{DONE}"
+            if thread.parts is not None and not thread.parts.says(at, name):
+                continue
             if name in tree.working and name not in at.done and done in self.events:
                 yield Occurrence("done", name)
         if at.pending:
             yield Occurrence("completion", at.pending[0])
+            return
+        if thread.parts is not None and thread.parts.is_outer(at):
             return
         triggers = [t for name in at.active for t in tree.outgoing[name]]
         for transition in triggers:
@@ -374,14 +391,27 @@ class Reach:
             yield CONDITIONS
 
     def steps(
-        self, thread: Thread, at: Configuration, occurrence: Occurrence, past: Past | None = None
+        self, thread: Thread, at: Configuration, occurrence: Occurrence
     ) -> tuple[Outcome, ...]:
-        """The outcomes of a step, data aside; with a ``past``, those for all that it has."""
-        made = thread.steps if past is thread.past else thread.exact
+        """The outcomes of a step from a whole configuration, data aside."""
+        is_exact = thread.past is None and thread.parts is None
+        made = thread.steps if is_exact else thread.exact
         key = (at, occurrence)
         if key not in made:
-            made[key] = outcomes(thread.tree, at, occurrence, self.symbol, self.plain, past)
+            made[key] = outcomes(thread.tree, at, occurrence, self.plain)
         return made[key]
+
+    def _outcomes(
+        self, thread: Thread, at: Configuration, occurrence: Occurrence
+    ) -> tuple[Outcome, ...]:
+        """The same as coarsely as a thread is looked at."""
+        key = (at, occurrence)
+        if key not in thread.steps:
+            contested = None if thread.parts is None else thread.parts.contested(at)
+            thread.steps[key] = outcomes(
+                thread.tree, at, occurrence, self.plain, thread.past, contested
+            )
+        return thread.steps[key]
 
     def _successors(
         self, thread: Thread, cells: Cells, outcome: Outcome, solver: Term, context: object
@@ -389,11 +419,11 @@ class Reach:
         """The cells after an outcome; none where it cannot come about."""
         key = (outcome, cells, context)
         if key not in thread.known:
-            thread.known[key] = tuple(self._computed(thread, cells, outcome, solver))
+            thread.known[key] = tuple(self._computed(thread, cells, outcome, solver, context))
         return thread.known[key]
 
     def _computed(
-        self, thread: Thread, cells: Cells, outcome: Outcome, solver: Term
+        self, thread: Thread, cells: Cells, outcome: Outcome, solver: Term, context: object
     ) -> Iterator[Cells]:
         updates = {n: v for n, v in outcome.updates if n in thread.own}
         fixed = list(cells)
@@ -406,11 +436,15 @@ class Reach:
         if not open_ and z3.is_true(outcome.condition):
             yield tuple(fixed)
             return
+        if not open_:
+            if self._can_be_met(thread, cells, outcome.condition, solver, context):
+                yield tuple(fixed)
+            return
         solver.push()
         solver.add(*self.of_node(thread, cells), outcome.condition)
         while (answer := solver.check()) != z3.unsat:
             thread.questions += 1
-            if thread.questions > MOST_QUESTIONS and not thread.is_coarse:
+            if thread.questions > MOST_QUESTIONS and thread.tells_more:
                 raise _TooMany
             if answer == z3.unknown:
                 yield from self._all(fixed, open_)
@@ -421,10 +455,23 @@ class Reach:
                 fixed[index] = self.cell_of(name, model.eval(value, model_completion=True))
                 here.append(self.in_cell(name, value, fixed[index]))
             yield tuple(fixed)
-            if not open_:
-                break
             solver.add(z3.Not(z3.And(here)))
         solver.pop()
+
+    def _can_be_met(
+        self, thread: Thread, cells: Cells, condition: Term, solver: Term, context: object
+    ) -> bool:
+        """Whether some data of a node meet a condition; when in doubt, yes."""
+        key = (condition.get_id(), cells, context)
+        if key not in thread.answers:
+            thread.questions += 1
+            if thread.questions > MOST_QUESTIONS and thread.tells_more:
+                raise _TooMany
+            solver.push()
+            solver.add(*self.of_node(thread, cells), condition)
+            thread.answers[key] = condition, bool(solver.check() != z3.unsat)
+            solver.pop()
+        return thread.answers[key][1]
 
     def _all(self, fixed: list[int], open_: list[tuple[int, Variable, Term]]) -> Iterator[Cells]:
         """Every combination of cells, where the solver gave up."""

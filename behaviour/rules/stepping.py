@@ -7,7 +7,7 @@ answers that some data allow.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -16,7 +16,7 @@ import z3
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
 from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
 
-from .logic import Read, Term, Variable, term, variable
+from .logic import Questions, Term, Variable, term, variable
 from .tree import TOP, Occurrence, Slot, Tree
 
 
@@ -87,10 +87,13 @@ class Step:
     tree: Tree
     before: Configuration
     occurrence: Occurrence
-    symbols: Read
+    questions: Questions
     decide: Callable[[Term], bool]
     recall: Callable[[Slot], str | None] = lambda slot: None
     """What a region remembers of which this step and the configuration before say nothing."""
+    contested: Mapping[Variable, Term] | None = None
+    """Where ``before`` is a part of a configuration (`parts`): what may be set by regions that it
+    says nothing about, with what stands for it once the step has selected."""
     active: set[str] = field(init=False)
     history: dict[Slot, str | None] = field(init=False)
     store: dict[Variable, Term] = field(default_factory=dict)
@@ -103,6 +106,7 @@ class Step:
     beaten: list[Beaten] = field(default_factory=list)
     stopped: bool = False
     deferred: bool = False
+    firing: bool = False
 
     def __post_init__(self) -> None:
         self.active = set(self.before.active)
@@ -124,20 +128,28 @@ class Step:
 
     def read(self, name: Variable) -> Term:
         """The value that a variable has now."""
-        return self.store[name] if name in self.store else self.symbols(name)
+        if self.firing and self.contested and name in self.contested:
+            return self.contested[name]
+        return self.store[name] if name in self.store else self.questions.read(name)
+
+    def value(self, expression: Expression) -> Term:
+        """The value of an expression now."""
+        if self.store or (self.firing and self.contested):
+            return term(expression, self.read)
+        return self.questions.term(expression)
 
     def holds(self, expression: Expression | None) -> bool:
         """Whether a condition holds now; no condition holds."""
-        return expression is None or self.decide(term(expression, self.read))
+        return expression is None or self.decide(self.value(expression))
 
     def perform(self, flow: Flow) -> None:
         """Run a flow."""
         for action in flow:
             match action:
                 case Set(_, data, member, value):
-                    self.store[variable(Reading.DATA, data, member)] = term(value, self.read)
+                    self.store[variable(Reading.DATA, data, member)] = self.value(value)
                 case Raise(_, event, values):
-                    carried = tuple((f, term(value, self.read)) for f, value in values)
+                    carried = tuple((f, self.value(value)) for f, value in values)
                     self.raised.append((event, carried))
                 case If() if raises(action):
                     self.perform(action.then if self.holds(action.condition) else action.otherwise)
@@ -146,7 +158,7 @@ class Step:
 
     def merge(self, action: If) -> None:
         """Run both branches, and take from each what it sets where it is taken."""
-        condition = term(action.condition, self.read)
+        condition = self.value(action.condition)
         before = self.store
         self.store = dict(before)
         self.perform(action.then)
@@ -222,7 +234,7 @@ class Step:
                 for other in transitions[index + 1 :]:
                     if other.trigger == transition.trigger and not other.otherwise:
                         guard = other.guard
-                        can = z3.BoolVal(True) if guard is None else term(guard, self.read)
+                        can = z3.BoolVal(True) if guard is None else self.value(guard)
                         self.rivals.append(Rival(transition.name, other.name, can))
                 return path
         return None
@@ -230,15 +242,23 @@ class Step:
     def joined(self, join: str) -> Path | None:
         """The segments of a join, when every source has completed."""
         incoming = self.tree.incoming[join]
-        if any(t.source not in self.before.completed for t in incoming):
+        if not all(self.has_completed(t.source) for t in incoming):
             return None
         rest = self.way_out(join)
         return None if rest is None else (*incoming, *rest)
+
+    def has_completed(self, state: str) -> bool:
+        """Whether a source of a join has completed; where nothing is known of its region, yes."""
+        if state in self.before.completed or self.contested is None:
+            return state in self.before.completed
+        lane = self.tree.lane_of[state]
+        return all(self.tree.lane_of[name] != lane for name in self.before.active)
 
     # --- firing
 
     def fire_all(self, paths: Sequence[Path]) -> None:
         """Fire what was selected; what an earlier firing conflicts with is dropped."""
+        self.firing = True
         made: list[Path] = []
         leaving: dict[str, Path] = {}
         for index, path in enumerate(paths):

@@ -101,6 +101,27 @@ class Tree:
         """The lane that each state stands in."""
         return {name: self.region.lane(name) for name in self.states}
 
+    def lane_at(self, slot: Slot) -> Lane:
+        """The lane that the states of a region stand in."""
+        owner, name = slot
+        if owner is None:
+            return self.lanes[-1]
+        return Lane(name, owner) if owner in self.orthogonal else self.lane_of[owner]
+
+    @cached_property
+    def orthogonal(self) -> frozenset[str]:
+        """The states of several regions."""
+        return frozenset(name for name, state in self.states.items() if state.is_orthogonal)
+
+    def fills_lane(self, state: str) -> bool:
+        """Whether a state is a leaf of its lane: it has no region, or several."""
+        return len(self.states[state].regions) != 1
+
+    @cached_property
+    def terminates(self) -> bool:
+        """Whether some transition may stop the region."""
+        return PseudoKind.TERMINATE in self.kinds.values()
+
     @cached_property
     def outgoing(self) -> dict[str, tuple[Transition, ...]]:
         """What leaves each vertex, in model order, ``else`` last."""
@@ -193,13 +214,25 @@ class Tree:
             s for s in self.chains[first][1:] if all(s in self.chains[o][1:] for o in others)
         )
 
+    @cached_property
+    def _sources(self) -> dict[str, str]:
+        return {t.name: t.source for t in self.region.transitions}
+
     def source_of(self, transition: str) -> str:
         """Where a transition starts."""
-        return next(t.source for t in self.region.transitions if t.name == transition)
+        return self._sources[transition]
+
+    @cached_property
+    def _triggered(self) -> dict[tuple[str, Occurrence], tuple[Transition, ...]]:
+        return {}
 
     def triggered(self, state: str, occurrence: Occurrence) -> tuple[Transition, ...]:
         """The transitions of a state that an occurrence triggers, guards aside."""
-        return tuple(t for t in self.outgoing[state] if occurs(t, occurrence))
+        key = (state, occurrence)
+        if key not in self._triggered:
+            leaving = self.outgoing[state]
+            self._triggered[key] = tuple(t for t in leaving if occurs(t, occurrence))
+        return self._triggered[key]
 
 
 def occurs(transition: Transition, occurrence: Occurrence) -> bool:

@@ -1,7 +1,8 @@
-"""One chart of many leaf states: what the growth of check, code and proof is measured on.
+"""Charts of many leaf states: what the growth of check, code and proof is measured on.
 
-It is a chain of blocks, one like the other. A block has ten leaf states: a composite state, an
-orthogonal state of two regions, a deep history, a choice, guards over data, and time-outs.
+`large_chart` is a chain of blocks, one like the other. A block has ten leaf states: a
+composite state, an orthogonal state of two regions, a deep history, a choice, guards over data,
+and time-outs.
 """
 
 from __future__ import annotations
@@ -21,20 +22,26 @@ def large_chart(blocks: int) -> str:
     for number in range(1, blocks + 1):
         states |= _states(number)
         transitions |= _transitions(number, number % blocks + 1)
+    events = ["Go", "Stop", "Turn", "Next", "Again"]
+    return _system(f"Chart_{BLOCK * blocks}", "Block_1", states, transitions, events)
+
+
+def _system(name: str, initial: str, states: Json, transitions: Json, events: list[str]) -> str:
+    """One instance of one component with one region."""
     region = {
         "period": "10 ms",
         "wcet": "100 us",
         "queue": 4,
-        "initial": "Block_1",
+        "initial": initial,
         "states": states,
         "transitions": transitions,
     }
     model = {
-        "system": f"Chart_{BLOCK * blocks}",
+        "system": name,
         "types": {"Count": {"range": [0, 100]}},
         "components": {
             "Unit": {
-                "events": ["Go", "Stop", "Turn", "Next", "Again"],
+                "events": events,
                 "data": {name: {"type": "Count", "initial": 0} for name in ("count", "level")},
                 "regions": {"Motion": region},
             }
@@ -109,3 +116,30 @@ def _transitions(n: int, following: int) -> Json:
 
 def _level(n: int) -> list[Json]:
     return [{"set": "level", "to": f"max(count - {n % 10}, 0)"}]
+
+
+def orthogonal_chart(lanes: int, leaves: int) -> str:
+    """A system of one region: an orthogonal state of so many regions, each a ring of leaves.
+
+    It has ``(leaves / lanes) ** lanes`` configurations.
+    """
+    regions: Json = {}
+    transitions: Json = {}
+    each = leaves // lanes
+    for number in range(1, lanes + 1):
+        names = [f"S{index}_of_{number}" for index in range(1, each + 1)]
+        regions[f"Region_{number}"] = {"initial": names[0], "states": {name: {} for name in names}}
+        for index, name in enumerate(names):
+            following = names[(index + 1) % each]
+            row: Json = {"from": name, "to": following, "on": f"Go_{number}"}
+            if index % 3 == 2:
+                row |= {"guard": f"count < {10 * number}", "effect": _counting()}
+            transitions[f"go_{name}"] = row
+            transitions[f"back_{name}"] = {"from": name, "to": names[0], "on": f"Back_{number}"}
+    transitions["start"] = {"from": "Idle", "to": "Running", "on": "Start"}
+    reset = [{"set": "count", "to": 0}]
+    transitions["stop"] = {"from": "Running", "to": "Idle", "on": "Halt", "effect": reset}
+    states: Json = {"Idle": {}, "Running": {"regions": regions}}
+    events = ["Start", "Halt"]
+    events += [f"{word}_{number}" for number in range(1, lanes + 1) for word in ("Go", "Back")]
+    return _system(f"Regions_{leaves}", "Idle", states, transitions, events)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 import pytest
 
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.rules import reach as reach_rules
-from ravenchart.behaviour.rules.reach import Clock, Reach
+from ravenchart.behaviour.rules.clock import Clock
+from ravenchart.behaviour.rules.reach import Reach, Thread
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Shutdown, System
 from tests.support.interpreted import stimuli_of, system_of
@@ -23,12 +25,29 @@ def _raised_outside(system: System) -> System:
     return replace(system, shutdown=Shutdown(tuple(pairs), Ns(0)))
 
 
-@pytest.mark.parametrize("most", [reach_rules.MOST_NODES, 3], ids=["finely", "coarsely"])
+LIMITS = {
+    "finely": (reach_rules.MOST_NODES, reach_rules.MOST_CONFIGURATIONS),
+    "coarsely": (3, reach_rules.MOST_CONFIGURATIONS),
+    "in parts": (3, 3),
+}
+
+
+def _lanes(thread: Thread, active: Collection[str]) -> Iterator[tuple[str, ...]]:
+    """The states around each leaf that is active, or all of them where they are told together."""
+    tree = thread.tree
+    leaves = [s for s in active if tree.fills_lane(s)] if thread.parts is not None else []
+    chains: list[Collection[str]] = [tree.chains[leaf] for leaf in leaves]
+    for chain in chains or [active]:
+        yield tree.ordered(chain)
+
+
+@pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 @pytest.mark.parametrize("seed", CHARTS)
 def test_every_configuration_and_transition_of_a_run_is_found(
-    seed: int, most: int, monkeypatch: pytest.MonkeyPatch
+    seed: int, limits: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reach_rules, "MOST_NODES", most)
+    monkeypatch.setattr(reach_rules, "MOST_NODES", limits[0])
+    monkeypatch.setattr(reach_rules, "MOST_CONFIGURATIONS", limits[1])
     system = _raised_outside(system_of(model_of([seed])))
     reach = Reach(system.components[0], system, Clock(600))
     threads = {t.name: t for t in reach.threads}
@@ -38,7 +57,7 @@ def test_every_configuration_and_transition_of_a_run_is_found(
     regions = machine.instances[instance_name(seed)].regions
     for record in machine.run(stimuli_of(events_of(seed, [seed]), system)):
         for name, run in regions.items():
-            active = tuple(s for s in threads[name].tree.states if s in run.configuration())
-            assert active in found[name], (record.text(), name)
+            for active in _lanes(threads[name], run.configuration()):
+                assert active in found[name], (record.text(), name)
         effects = {b.removesuffix(".effect") for b in record.behaviours if b.endswith(".effect")}
         assert {e for e in effects if not e.startswith("initial(")} <= fired[record.region]

@@ -9,7 +9,8 @@ import pytest
 
 from ravenchart.behaviour.limits import SECONDS, UNFINISHED
 from ravenchart.behaviour.rules import findings
-from ravenchart.behaviour.rules.reach import Clock, Reach
+from ravenchart.behaviour.rules.clock import Clock
+from ravenchart.behaviour.rules.reach import Reach
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.system import System
