@@ -28,6 +28,7 @@ is
       if B.Order = By_Priority then
          while Result > 1 and then Rank_At (B, Result - 1) > Rank loop
             Result := Result - 1;
+            pragma Loop_Variant (Decreases => Result);
             pragma Loop_Invariant (Result <= B.Count);
             pragma Loop_Invariant
               (for all I in Result .. B.Count => Rank_At (B, I) > Rank);

@@ -212,6 +212,7 @@ is
 
    procedure Put_Rpdo_1 (Item : Canopen_Device.Setpoint_Pdo) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Rpdo_1_Mailbox.Put (Item, Status);
       Trace.Buffer.Note

@@ -117,6 +117,7 @@ is
 
    procedure Put_Report_X (Item : Cartesian_Robot.Joint_Report) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Report_X_Mailbox.Put (Item, Status);
       Trace.Buffer.Note
@@ -127,6 +128,7 @@ is
 
    procedure Put_Report_Y (Item : Cartesian_Robot.Joint_Report) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Report_Y_Mailbox.Put (Item, Status);
       Trace.Buffer.Note
@@ -137,6 +139,7 @@ is
 
    procedure Put_Report_Z (Item : Cartesian_Robot.Joint_Report) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Report_Z_Mailbox.Put (Item, Status);
       Trace.Buffer.Note

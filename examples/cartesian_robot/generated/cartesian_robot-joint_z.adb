@@ -127,6 +127,7 @@ is
 
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Feedback_Mailbox.Put (Item, Status);
       Trace.Buffer.Note

@@ -205,6 +205,7 @@ is
 
    procedure Put_Engine (Item : J1939_Node.Coolant_Temperature) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Engine_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Fan_Engine, 0);

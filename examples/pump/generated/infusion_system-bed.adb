@@ -131,6 +131,7 @@ is
 
    procedure Put_Line (Item : Infusion_System.Line) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Line_Mailbox.Put (Item, Status);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Bed_Line, 0);

@@ -355,7 +355,10 @@ class Glue(Site):
             return Subprogram(
                 f"Put_{name}",
                 self._put_spec(port).params,
-                declarations=(Object("Status", "Ravenchart.Queueing.Put_Status"),),
+                declarations=(
+                    Object("Status", "Ravenchart.Queueing.Put_Status"),
+                    Pragma("Unreferenced", (Ref("Status"),)),
+                ),
                 body=tuple(body),
             )
         lost: list[Stmt] = [self._fault("Queue_Overflow")]

@@ -62,6 +62,7 @@ is
 
    procedure Put_Order (Item : Two_Nodes.Servo_Order) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Order_Mailbox.Put (Item, Status);
       Trace.Buffer.Note

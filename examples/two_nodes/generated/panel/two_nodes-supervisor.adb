@@ -59,6 +59,7 @@ is
 
    procedure Put_Report (Item : Two_Nodes.Servo_Report) is
       Status : Ravenchart.Queueing.Put_Status;
+      pragma Unreferenced (Status);
    begin
       Report_Mailbox.Put (Item, Status);
       Trace.Buffer.Note
