@@ -86,11 +86,11 @@ def findings(
 
     ``places`` are the folders with sources. A check without a message has a finding as well.
     """
-    texts = {
-        (found["file"], int(found["line"]), int(found["column"])): found["text"]
-        for found in map(_MESSAGE.fullmatch, output.splitlines())
-        if found is not None
-    }
+    texts: dict[tuple[str, int, int], str] = {}
+    for found in map(_MESSAGE.fullmatch, output.splitlines()):
+        if found is not None:  # of several about a place the first one names the check
+            place = found["file"], int(found["line"]), int(found["column"])
+            texts.setdefault(place, found["text"])
     return tuple(
         _finding(one, texts.get((one.file, one.line, one.column), ""), system, folder, places)
         for one in unproved

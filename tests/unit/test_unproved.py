@@ -42,7 +42,7 @@ def _younger() -> dict[str, Any]:
     checks = [_check("info", 7, stats={"Z3": {}}), _check("medium", 7)]
     flow = [_check("info", 7), _check("warning", 7)]
     modes = {" 7": "all", " 9": "spec"}
-    skipped = {"skip_flow_proof": [], "skip_proof": []}
+    skipped: dict[str, list[int]] = {"skip_flow_proof": [], "skip_proof": []}
     return {"entities": entities, "spark": modes, "flow": flow, "proof": checks, **skipped}
 
 
@@ -77,7 +77,7 @@ def _finding(place: str, text: str, entity: str, folder: Path) -> Finding:
     system = load(ROBOT).system
     assert system is not None
     one = Open(source.name, 168, 27, "VC_RANGE_CHECK", entity)
-    line = f"{source.name}:168:27: high: {text}"
+    line = f"{source.name}:168:27: high: {text}\n{source.name}:168:27: high: in a body at x:1[#2]"
     (found,) = findings(line, [one], system, folder, [source.parent])
     return found
 
