@@ -3,8 +3,27 @@
 Apart from the rules, which import a solver: a result that is kept needs none.
 """
 
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.gen.diagnostics import Diagnostic
+from ravenchart.gen.model.safety import SafeRegion
+
 SECONDS = 10.0
 """What the check of a model may take."""
 
 UNFINISHED = "RV-1110"
 """The code of a check that was not finished."""
+
+ON_MODEL = "RV-1111"
+"""The code of an invariant that is checked on the model alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """What the rules of behaviour find in a model."""
+
+    found: tuple[Diagnostic, ...]
+    safe: tuple[SafeRegion, ...] = ()
+    """The invariants that the generated code is to keep by contract."""

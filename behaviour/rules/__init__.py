@@ -8,17 +8,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.behaviour.limits import SECONDS, UNFINISHED
+from ravenchart.behaviour.limits import SECONDS, UNFINISHED, Behaviour
 from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 
 from .clock import Clock, OutOfTime
 from .control import RULES
-from .invariants import invariants_hold
+from .inductive import contracts
+from .invariants import NOT_PROVED, VIOLATED, invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
 from .reach import Reach
+
+
+def behaviour(system: System, seconds: float = SECONDS) -> Behaviour:
+    """What the behaviour of a valid model gets wrong, and the invariants for its code.
+
+    ``seconds`` are those of the search; what becomes a contract does not depend on time.
+    """
+    found = findings(system, seconds)
+    kept = contracts(system)
+    open_ = {one.origin for one in found if one.code in (VIOLATED, NOT_PROVED)}
+    more = (one for one in kept.found if one.origin not in open_)
+    return Behaviour(in_order([*found, *more]), kept.regions)
 
 
 def findings(system: System, seconds: float = SECONDS) -> tuple[Diagnostic, ...]:

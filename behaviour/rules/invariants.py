@@ -27,6 +27,9 @@ from .search import Search, Violation
 from .stepping import Configuration
 from .words import label, valuation, where
 
+VIOLATED = "RV-1108"
+NOT_PROVED = "RV-1109"
+
 Pairs = Sequence[tuple[Term, Term]]
 """What stands for what in a substitution."""
 
@@ -261,7 +264,7 @@ def _origin(thread: Thread, edge: Edge) -> Origin:
 def _violated(reach: Reach, invariant: Invariant, found: Violation) -> Diagnostic:
     message = f"the invariant {invariant.name} of {reach.component.name} is violated: {found.trace}"
     notes = [(invariant.origin, f"then {found.data}")] if found.data else []
-    return error("RV-1108", invariant.origin, message, notes=notes)
+    return error(VIOLATED, invariant.origin, message, notes=notes)
 
 
 def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnostic:
@@ -274,4 +277,4 @@ def _not_inductive(invariant: Invariant, broken: Broken, looked: int) -> Diagnos
         else "there was no time left to look for a way from the start to it"
     )
     hint = f"{searched}; exclude it by a guard, or say more in the condition of `never`"
-    return warning("RV-1109", invariant.origin, message, notes=notes, hint=hint)
+    return warning(NOT_PROVED, invariant.origin, message, notes=notes, hint=hint)

@@ -329,18 +329,22 @@ class Step:
     def settle(self) -> None:
         """Go on from each pseudostate reached, the first in model order first."""
         while self.arrivals and not self.stopped:
-            vertex = next(self.passing(TOP))
-            self.arrivals.remove(vertex)
-            kind = self.tree.kinds[vertex]
-            if kind is PseudoKind.TERMINATE:
-                self.stopped = True
-            elif kind in (PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY):
-                self.restore(vertex, deep=kind is PseudoKind.DEEP_HISTORY)
-            else:
-                path = self.way_out(vertex)
-                if path is None:
-                    raise Stuck(vertex)
-                self.fire(path)
+            self.go_on()
+
+    def go_on(self) -> None:
+        """Go on from the first pseudostate reached, in model order."""
+        vertex = next(self.passing(TOP))
+        self.arrivals.remove(vertex)
+        kind = self.tree.kinds[vertex]
+        if kind is PseudoKind.TERMINATE:
+            self.stopped = True
+        elif kind in (PseudoKind.HISTORY, PseudoKind.DEEP_HISTORY):
+            self.restore(vertex, deep=kind is PseudoKind.DEEP_HISTORY)
+        else:
+            path = self.way_out(vertex)
+            if path is None:
+                raise Stuck(vertex)
+            self.fire(path)
 
     def passing(self, slot: Slot) -> Iterator[str]:
         """The pseudostates that have been reached inside a region, in model order."""

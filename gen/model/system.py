@@ -21,6 +21,7 @@ from .authentication import Authentication
 from .commands import Binding, Device, Poll, Remote
 from .component import Component
 from .protection import Protection
+from .safety import SafeRegion
 from .signals import Signal
 from .statechart import Timing
 from .transmission import Transmission
@@ -472,6 +473,8 @@ class System:
     polls: tuple[Poll, ...] = ()
     tasks: tuple[Task, ...] = ()
     objects: tuple[SharedObject, ...] = ()
+    safe_regions: tuple[SafeRegion, ...] = ()
+    """The invariants that are contracts of the code, filled in when behaviour was checked."""
 
     @property
     def frames(self) -> tuple[Message, ...]:

@@ -9,18 +9,20 @@ from __future__ import annotations
 import hashlib
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from functools import cache
 from importlib import metadata
 from typing import Any
 
-from ravenchart.behaviour.limits import UNFINISHED
+from ravenchart.behaviour.limits import UNFINISHED, Behaviour
 from ravenchart.gen.diagnostics import Diagnostic, Severity
+from ravenchart.gen.model.safety import Fact, SafeRegion
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import PACKAGE
 from ravenchart.tools import kept
 
 KIND = "checks"
-FORMAT = 1
+FORMAT = 2
 """Part of each key: raised when what an entry holds changes."""
 SOURCES = ("analysis", "behaviour", "gen")
 
@@ -40,7 +42,7 @@ def key(sources: Mapping[str, Sequence[str]]) -> str:
     return kept.digest([_tool(), sorted((name, list(text)) for name, text in sources.items())])
 
 
-def load(key: str, seconds: float, *, finished: bool) -> tuple[Diagnostic, ...] | None:
+def load(key: str, seconds: float, *, finished: bool) -> Behaviour | None:
     """What was found; None when nothing is kept.
 
     One that was not finished counts when it had ``seconds``, unless it must be ``finished``.
@@ -49,14 +51,29 @@ def load(key: str, seconds: float, *, finished: bool) -> tuple[Diagnostic, ...] 
     try:
         found = tuple(_diagnostic(one) for one in entry["found"])
         is_open = any(one.code == UNFINISHED for one in found)
-        return None if is_open and (finished or entry["seconds"] < seconds) else found
+        safe = tuple(_safe(one) for one in entry["safe"])
+        if is_open and (finished or entry["seconds"] < seconds):
+            return None
+        return Behaviour(found, safe)
     except (KeyError, TypeError, ValueError):
         return None
 
 
-def store(key: str, seconds: float, found: Sequence[Diagnostic]) -> None:
+def store(key: str, seconds: float, behaviour: Behaviour) -> None:
     """Keep what was found within so many seconds."""
-    kept.store(KIND, key, {"seconds": seconds, "found": [_entry(one) for one in found]})
+    found = [_entry(one) for one in behaviour.found]
+    safe = [asdict(one) for one in behaviour.safe]
+    kept.store(KIND, key, {"seconds": seconds, "found": found, "safe": safe})
+
+
+def _safe(entry: Any) -> SafeRegion:
+    facts = (
+        Fact(one["vertex"], one["data"], one["field"], tuple((a, b) for a, b in one["spans"]))
+        for one in entry["facts"]
+    )
+    names = tuple(entry["invariants"])
+    home = entry["component"], entry["region"]
+    return SafeRegion(*home, names, tuple(facts), tuple(entry["alone"]))
 
 
 def _entry(found: Diagnostic) -> list[object]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.identifiers import order_of
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.behaviour.limits import SECONDS
+from ravenchart.behaviour.limits import SECONDS, Behaviour
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.identifiers import with_order
 from ravenchart.gen.diagnostics import Diagnostic, Sources, render_all
@@ -95,23 +95,23 @@ def check(
     system, unordered = identified(system)
     analysis = analyse(system)
     late = (unordered or findings(analysis)) if deadlines else ()
-    everything = (*loaded.diagnostics, *_behaviour(loaded, system, patience, finish), *late)
+    behaviour = _behaviour(loaded, system, patience, finish)
+    system = replace(system, safe_regions=behaviour.safe)
+    everything = (*loaded.diagnostics, *behaviour.found, *late)
     if any(d.is_error for d in everything):
         raise Refused(_rendered(loaded, everything), everything)
     warnings = _rendered(loaded, everything)
     return Checked(path, system, analysis, warnings, loaded.sources, everything)
 
 
-def _behaviour(
-    loaded: Loaded, system: System, patience: float, finish: bool
-) -> tuple[Diagnostic, ...]:
+def _behaviour(loaded: Loaded, system: System, patience: float, finish: bool) -> Behaviour:
     """What the rules of behaviour find, or have found before in the same content."""
     key = check_cache.key(loaded.sources)
     found = check_cache.load(key, patience, finished=finish)
     if found is None:
         from ravenchart.behaviour import rules  # imports a solver
 
-        found = rules.findings(system, patience)
+        found = rules.behaviour(system, patience)
         check_cache.store(key, patience, found)
     return found
 

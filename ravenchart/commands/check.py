@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 
 from ravenchart.failures import OK, Unusable
+from ravenchart.gen.draw.words import expression
+from ravenchart.gen.model.safety import SafeRegion
+from ravenchart.gen.model.system import System
 
 from . import common
 from .results import CheckResult
@@ -35,6 +39,24 @@ def execute(options: argparse.Namespace) -> int:
         len(system.instances),
         len(system.processors),
         len(system.messages),
+        {
+            f"{safe.component}.{name}": list(_facts(system, safe))
+            for safe in system.safe_regions
+            for name in safe.invariants
+        },
     )
     print(common.verdict(found))
+    for safe in system.safe_regions:
+        count = common.several(len(safe.invariants), "invariant")
+        names = ", ".join(safe.invariants)
+        print(f"{safe.component}.{safe.region}: its code has contracts of {count}: {names}")
+        for fact in _facts(system, safe):
+            print(f"  their proof uses: {fact}")
     return OK
+
+
+def _facts(system: System, safe: SafeRegion) -> Iterator[str]:
+    """What the proof of a region's invariants says of data, leaf by leaf."""
+    component = next(c for c in system.components if c.name == safe.component)
+    for fact in safe.facts:
+        yield f"in {fact.vertex}, {expression(fact.condition(component))}"

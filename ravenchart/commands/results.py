@@ -29,6 +29,8 @@ class CheckResult(Result):
     """How many command processors."""
     messages: int
     """How many messages of buses."""
+    contracts: dict[str, list[str]]
+    """The invariants that are contracts of the code, each with the facts that its proof uses."""
 
 
 @dataclass(slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator
 
-from ravenchart.behaviour.limits import UNFINISHED
+from ravenchart.behaviour.limits import ON_MODEL, UNFINISHED
 from ravenchart.gen.emit.ada.naming import component_package, region_package, root_package
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
@@ -183,7 +183,33 @@ def _charts(facts: Facts) -> Iterator[Claim]:
                     problems,
                     _inputs(node),
                 )
+            yield from _invariants(facts, component, node, suffix)
             yield from _bodies(facts, component, node, suffix)
+
+
+def _invariants(facts: Facts, component: Component, node: Node, suffix: str) -> Iterator[Claim]:
+    """The invariants that are contracts of the code."""
+    system = facts.checked.system
+    for safe in system.safe_regions:
+        if safe.component != component.name:
+            continue
+        unit = region_package(system, component, component.region(safe.region))
+        verdict, problems, told = _proved_unit(node, unit)
+        for name in safe.invariants:
+            yield Claim(
+                f"code-never-{component.name}.{name}{suffix}",
+                Kind.CHARTS,
+                (f"{component.name}.{name}",),
+                f"{component.name}.{name}: after each step of {safe.region}{_on(facts, node)} the "
+                "condition is false of its states and data",
+                "`Is_Kept` is the predicate of the region's state in each instance, and contract "
+                f"of `Step`; `Is_Safe` is contract of each transition.{told}",
+                "proof",
+                _tool(node.record),
+                verdict,
+                problems,
+                _inputs(node),
+            )
 
 
 def _theorem(region: Region) -> str:
@@ -265,12 +291,16 @@ def _frames(facts: Facts) -> Iterator[Claim]:
 
 # --- Behaviour -------------------------------------------------------------------
 
+_OF_INVARIANTS = ("RV-1108", "RV-1109", ON_MODEL)
+_ALONE = "the invariant is no contract of the generated code"
+_IN_CODE = "that the generated code keeps it is a claim of its own"
+
 
 def _behaviour(facts: Facts) -> Iterator[Claim]:
     system = facts.checked.system
     found = [one for one in facts.checked.diagnostics if one.code.startswith("RV-11")]
     unfinished = [one for one in found if one.code == UNFINISHED]
-    others = [one for one in found if one.code not in (UNFINISHED, "RV-1108", "RV-1109")]
+    others = [one for one in found if one.code not in (UNFINISHED, *_OF_INVARIANTS)]
     regions = tuple(f"{c.name}.{r.name}" for c in system.components for r in c.regions)
     told = tuple(f"{one.origin}: {one.message} ({one.code})" for one in (*others, *unfinished))
     tool = f"{own_tool()}, z3"
@@ -289,7 +319,12 @@ def _behaviour(facts: Facts) -> Iterator[Claim]:
         open_ = open_ or any(one.origin == component.origin for one in unfinished)
         for invariant in component.invariants:
             broken = [one for one in found if one.origin == invariant.origin]
-            reasons = tuple(f"{one.message} ({one.code})" for one in broken)
+            alone = not any(
+                invariant.name in safe.invariants
+                for safe in system.safe_regions
+                if safe.component == component.name
+            )
+            reasons = tuple(f"{o.message} ({o.code})" for o in broken if o.code != ON_MODEL)
             verdict = verdict_of(reasons, shown=bool(reasons) or not open_)
             if verdict is Shown.NOT_SHOWN:
                 reasons = ("the search of the situations was not finished",)
@@ -298,7 +333,7 @@ def _behaviour(facts: Facts) -> Iterator[Claim]:
                 (f"{component.name}.{invariant.name}",),
                 f"{component.name}.{invariant.name}: the condition holds in no reachable situation",
                 "search of all situations, and induction over each step by a solver; about the "
-                "model: the invariant is no contract of the generated code",
+                f"model: {_ALONE if alone else _IN_CODE}",
                 "model checking", tool, verdict, reasons, facts.sources,
             )  # fmt: skip
 

@@ -20,7 +20,8 @@ ORDER = (Shown.NOT_MET, Shown.NOT_SHOWN, Shown.PARTLY, Shown.USERS)
 LIMITS = (
     ("object code", "Proof is about source code. The compiler and its run-time library are taken "
      "as correct (ASM-006, ASM-009)."),
-    ("invariants", "`never` is checked on the model. It is no contract of the generated code."),
+    ("invariants", "`never` is a contract of the generated code only where a claim says so "
+     "(code-never-...). Any other is checked on the model."),
     ("effects", "No postcondition states what an effect or a user's body does to the data."),
     ("coverage", "No structural coverage is measured here."),
     ("mutation", "No mutation score is part of this folder."),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ravenchart.behaviour.rules import findings
+from ravenchart.behaviour.rules import behaviour
 from ravenchart.gen.diagnostics import Diagnostic, in_order, render
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.pipeline import Loaded, load
@@ -31,7 +31,7 @@ def messages(name: str) -> str:
     result = loaded(name)
     late: tuple[Diagnostic, ...] = ()
     if result.system is not None:
-        late = in_order(clashes(result.system), result.sources) or findings(result.system)
+        late = in_order(clashes(result.system), result.sources) or behaviour(result.system).found
     found = (*result.diagnostics, *late)
     return "\n".join(render(item, result.sources) for item in found) + "\n"
 

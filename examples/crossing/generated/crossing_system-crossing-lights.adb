@@ -193,12 +193,15 @@ is
       end if;
    end Poll;
 
-   procedure Fire (Self : in out Region; Chosen : Firing)
+   procedure Fire (Self : in out Region; Item : Event; Chosen : Firing)
    with
      Pre =>
        (if Chosen = Initial_Entry
-           then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Place)),
+           then not Self.Started and then Self.Data = Initial_Data
+        else Self.Started
+           and then In_Source (Chosen, Self.Place)
+           and then Is_Safe (Self.Place, Self.Data)
+           and then Guards_Hold (Chosen, Self.Data, Item)),
      Post =>
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old)
@@ -251,6 +254,7 @@ is
               Self.Place'Old,
               Self.Place,
               Self.Timers'Old (7))
+       and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
       Active_Cars : Chart.Node :=
@@ -268,6 +272,80 @@ is
             then Chart.Innermost_Top (Self.Place)
          else Chart.Nowhere)
       with Ghost;
+      function Data_After_Exit_Held (Data : Variables) return Variables is
+        ((Data with delta Cars_Stopped => False))
+      with Ghost;
+      function Data_After_Exit_On_The_Road
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Road_Free => True))
+      with Ghost;
+      function Data_After_Leave_Red (Data : Variables) return Variables is
+        (case Lights_States.Red'(Self.Place.In_Cars) is
+           when Lights_States.Stopping => Data,
+           when Lights_States.Held => Data_After_Exit_Held (Data))
+      with
+        Ghost,
+        Pre =>
+          Self.Place.Top = Lights_States.Working
+          and then Self.Place.In_Cars in Lights_States.Red;
+      function Data_After_Leave_Cars (Data : Variables) return Variables is
+        (case Self.Place.In_Cars is
+           when Lights_States.Red => Data_After_Leave_Red (Data),
+           when Lights_States.Red_Yellow => Data,
+           when Lights_States.Green => Data,
+           when Lights_States.Yellow => Data)
+      with Ghost, Pre => Self.Place.Top = Lights_States.Working;
+      function Data_After_Leave_Walkers (Data : Variables) return Variables is
+        (case Self.Place.In_Walkers is
+           when Lights_States.Dont_Walk => Data,
+           when Lights_States.On_The_Road =>
+              Data_After_Exit_On_The_Road (Data))
+      with Ghost, Pre => Self.Place.Top = Lights_States.Working;
+      function Data_After_Enter_Blinking (Data : Variables) return Variables is
+        ((Data with delta
+            Cars_See => Crossing_System.Slow,
+            Walkers_See => Crossing_System.Dark))
+      with Ghost;
+      function Data_After_Enter_Red (Data : Variables) return Variables is
+        ((Data with delta Cars_See => Crossing_System.Stop))
+      with Ghost;
+      function Data_After_Enter_Held (Data : Variables) return Variables is
+        ((Data with delta Cars_Stopped => True))
+      with Ghost;
+      function Data_After_Enter_Red_Yellow
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Cars_See => Crossing_System.Ready))
+      with Ghost;
+      function Data_After_Enter_Green (Data : Variables) return Variables is
+        ((Data with delta Cars_See => Crossing_System.Go))
+      with Ghost;
+      function Data_After_Enter_Yellow (Data : Variables) return Variables is
+        ((Data with delta Cars_See => Crossing_System.Slow))
+      with Ghost;
+      function Data_After_Enter_Dont_Walk
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Walkers_See => Crossing_System.Wait))
+      with Ghost;
+      function Data_After_Enter_Nobody (Data : Variables) return Variables is
+        ((Data with delta Requested => False))
+      with Ghost;
+      function Data_After_Enter_Waiting (Data : Variables) return Variables is
+        ((Data with delta Requested => True))
+      with Ghost;
+      function Data_After_Enter_On_The_Road
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Road_Free => False))
+      with Ghost;
+      function Data_After_Enter_Walking (Data : Variables) return Variables is
+        ((Data with delta Walkers_See => Crossing_System.Walk))
+      with Ghost;
+      function Data_After_Enter_Leaving (Data : Variables) return Variables is
+        ((Data with delta Walkers_See => Crossing_System.Wait))
+      with Ghost;
       procedure Exit_Blinking
       with
         Post =>
@@ -278,6 +356,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -294,6 +373,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
@@ -308,6 +388,7 @@ is
             = Chart.Moved (Active_Cars'Old, Chart.Held, Chart.Red)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Exit_Held (Self.Data'Old)
       is
       begin
          Self.Data.Cars_Stopped := False;
@@ -323,6 +404,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
@@ -339,6 +421,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (4));
@@ -354,6 +437,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (5));
@@ -373,6 +457,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Exit_On_The_Road (Self.Data'Old)
       is
       begin
          Self.Data.Road_Free := True;
@@ -393,6 +478,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (6));
@@ -416,6 +502,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Lights_States.On_The_Road'(Self.Place.In_Walkers) is
@@ -446,6 +533,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Lights_States.Green'(Self.Place.In_Cars) is
@@ -473,6 +561,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Leave_Red (Self.Data'Old)
       is
       begin
          case Lights_States.Red'(Self.Place.In_Cars) is
@@ -514,6 +603,7 @@ is
                 (if I not in 2 | 3 | 4 | 5
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Leave_Cars (Self.Data'Old)
       is
       begin
          case Self.Place.In_Cars is
@@ -554,6 +644,7 @@ is
                 (if I not in 6 | 7
                     then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Leave_Walkers (Self.Data'Old)
       is
       begin
          case Self.Place.In_Walkers is
@@ -588,6 +679,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 1 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Blinking (Self.Data'Old)
       is
       begin
          Self.Place.Top := Lights_States.Blinking;
@@ -610,6 +702,7 @@ is
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Red (Self.Data'Old)
       is
       begin
          Active_Cars :=
@@ -629,6 +722,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 2 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Stopping;
@@ -645,6 +739,7 @@ is
             = Chart.Moved (Active_Cars'Old, Chart.Red, Chart.Held)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Held (Self.Data'Old)
       is
       begin
          Self.Place.In_Cars := Lights_States.Held;
@@ -667,6 +762,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 3 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Red_Yellow (Self.Data'Old)
       is
       begin
          Self.Place.In_Cars := Lights_States.Red_Yellow;
@@ -693,6 +789,7 @@ is
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Green (Self.Data'Old)
       is
       begin
          Active_Cars :=
@@ -712,6 +809,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 4 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.In_Cars := Lights_States.Least;
@@ -734,6 +832,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 5 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Yellow (Self.Data'Old)
       is
       begin
          Self.Place.In_Cars := Lights_States.Yellow;
@@ -757,6 +856,7 @@ is
                else Chart.Disorder)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Dont_Walk (Self.Data'Old)
       is
       begin
          Active_Walkers :=
@@ -780,6 +880,7 @@ is
                  Chart.Nobody)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Nobody (Self.Data'Old)
       is
       begin
          Self.Place.In_Walkers := Lights_States.Nobody;
@@ -799,6 +900,7 @@ is
                  Chart.Waiting)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Waiting (Self.Data'Old)
       is
       begin
          Self.Place.In_Walkers := Lights_States.Waiting;
@@ -821,6 +923,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 7 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_On_The_Road (Self.Data'Old)
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (7), 100);
@@ -847,6 +950,7 @@ is
           and then (for all I in Self.Timers'Range =>
                 (if I /= 6 then Self.Timers (I) = Self.Timers'Old (I)))
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Walking (Self.Data'Old)
       is
       begin
          Self.Place.In_Walkers := Lights_States.Walking;
@@ -867,6 +971,7 @@ is
                  Chart.Leaving)
           and then Self.Timers = Self.Timers'Old
           and then Self.Started = Self.Started'Old
+          and then Self.Data = Data_After_Enter_Leaving (Self.Data'Old)
       is
       begin
          Self.Place.In_Walkers := Lights_States.Leaving;
@@ -972,8 +1077,11 @@ is
       with
         Pre =>
           (if T = Initial_Entry
-              then not Self.Started
-           else Self.Started and then In_Source (T, Self.Place))
+              then not Self.Started and then Self.Data = Initial_Data
+           else Self.Started
+              and then In_Source (T, Self.Place)
+              and then Is_Safe (Self.Place, Self.Data)
+              and then Guards_Hold (T, Self.Data, Item))
           and then Fired.Count <= 2,
         Post =>
           Fired.Count = Fired.Count'Old + 1
@@ -982,9 +1090,10 @@ is
           and then (for all J in 1 .. Fired.Count'Old =>
                 Fired.Items (J) = Fired.Items'Old (J))
           and then Self.Place = Target (T, Self.Place'Old)
+          and then Is_Safe (Self.Place, Self.Data)
       is
       begin
-         Fire (Self, T);
+         Fire (Self, Item, T);
          Fired.Count := Fired.Count + 1;
          Fired.Items (Fired.Count) := T;
       end Fire_Whole;
@@ -994,6 +1103,7 @@ is
          Fire_Whole (Initial_Entry);
       else
          C := Choose (Self.Place, Now, Self.Data, Item);
+         pragma Assert ((if C.Walkers = Walk then C.Cars = None));
          if C.Cars /= None then
             Fire_Whole (C.Cars);
          end if;

@@ -445,10 +445,117 @@ is
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
 
+   Initial_Data : constant Variables := (others => <>);
+
+   function Never_Green_For_Both (Data : Variables) return Boolean is
+     (not (Data.Cars_See = Crossing_System.Go
+       and then Data.Walkers_See = Crossing_System.Walk));
+   --  [Crossing.green_for_both] the condition of `never` is false.
+
+   function Never_Walkers_Among_Cars
+     (Place : Lights_States.Configuration)
+     return Boolean is
+     (not ((Place.Top = Lights_States.Working
+        and then Place.In_Walkers in Lights_States.On_The_Road)
+       and then not (Place.Top = Lights_States.Working
+          and then Place.In_Cars = Lights_States.Held)));
+   --  [Crossing.walkers_among_cars] the condition of `never` is false.
+
+   function Never_Road_Forgotten
+     (Place : Lights_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (not ((Place.Top = Lights_States.Working
+        and then Place.In_Walkers in Lights_States.On_The_Road)
+       and then Data.Road_Free));
+   --  [Crossing.road_forgotten] the condition of `never` is false.
+
+   function Never_Request_Forgotten
+     (Place : Lights_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (not ((Place.Top = Lights_States.Working
+        and then Place.In_Walkers = Lights_States.Waiting)
+       and then not Data.Requested));
+   --  [Crossing.request_forgotten] the condition of `never` is false.
+
+   function Data_Are_Known
+     (Place : Lights_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     ((if Place.Top = Lights_States.Blinking then not Data.Cars_Stopped)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Cars = Lights_States.Stopping
+            then Data.Cars_See = Crossing_System.Stop
+               and then not Data.Cars_Stopped)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Cars = Lights_States.Held
+            then Data.Cars_See = Crossing_System.Stop)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Cars = Lights_States.Red_Yellow
+            then Data.Cars_See = Crossing_System.Ready
+               and then not Data.Cars_Stopped
+               and then Data.Walkers_See = Crossing_System.Wait)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Cars = Lights_States.Least
+            then not Data.Cars_Stopped)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Cars = Lights_States.Longer
+            then not Data.Cars_Stopped)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Cars = Lights_States.Yellow
+            then Data.Cars_See = Crossing_System.Slow
+               and then not Data.Cars_Stopped)
+      and then (if Place.Top = Lights_States.Working
+            and then Place.In_Walkers = Lights_States.Nobody
+            then Data.Walkers_See = Crossing_System.Wait));
+   --  What holds of data while a leaf is active: without it a transition
+   --  might break an invariant.
+
+   function Is_Safe
+     (Place : Lights_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (Never_Green_For_Both (Data)
+      and then Never_Walkers_Among_Cars (Place)
+      and then Never_Road_Forgotten (Place, Data)
+      and then Never_Request_Forgotten (Place, Data)
+      and then Data_Are_Known (Place, Data));
+   --  Each transition and each segment keeps it.
+
+   function Is_Kept (Self : Region) return Boolean is
+     (Never_Green_For_Both (Self.Data)
+      and then Never_Walkers_Among_Cars (Self.Place)
+      and then Never_Road_Forgotten (Self.Place, Self.Data)
+      and then Never_Request_Forgotten (Self.Place, Self.Data)
+      and then (if Self.Started
+            then Data_Are_Known (Self.Place, Self.Data)
+         else Self.Data = Initial_Data));
+   --  The region between steps; before the first one its data are initial.
+
+   subtype Safe_Region is Region with Predicate => Is_Kept (Safe_Region);
+
+   function Guards_Hold
+     (T : Firing;
+      Data : Variables;
+      Item : Event)
+     return Boolean is
+     (case T is
+        when Get_Ready => Data.Road_Free and then not Data.Requested,
+        when Slow_Down => Data.Requested,
+        when Walk => Data.Cars_Stopped,
+        when Into_Service => Item.Value_Order = Crossing_System.Work,
+        when Out_Of_Service => Item.Value_Order = Crossing_System.Blink,
+        when others => True);
+   --  The guards of transitions and segments; True where something else may
+   --  have fired before in the same step.
+
    procedure Tick (Self : in out Region)
    with
      Post =>
-       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       (Self.Place = Self.Place'Old
+        and then Self.Started = Self.Started'Old
+        and then Self.Data = Self.Data'Old)
        and then (for all I in Self.Timers'Range =>
              Self.Timers (I)
              = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
@@ -462,7 +569,9 @@ is
    procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
-       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       (Self.Place = Self.Place'Old
+        and then Self.Started = Self.Started'Old
+        and then Self.Data = Self.Data'Old)
        and then (case Now is
             when Expiry_Of_Blink =>
                Ravenchart.Timers.Is_Taken (Self.Timers'Old, Self.Timers, 1),
@@ -494,9 +603,11 @@ is
       Item  : Event;
       Fired : out Firing_List)
    with
-     Pre => (Now = Start_Of_Region) = not Self.Started,
+     Pre =>
+       Is_Kept (Self) and then (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
+       and then Is_Kept (Self)
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (((Now = Start_Of_Region) and Is_Only (Fired, Initial_Entry))
           or ((Now /= Start_Of_Region)

@@ -63,7 +63,7 @@ is
       Ceiling => System.Default_Priority + 1);
 
    --  [school.Lights]
-   Lights_Region : Crossing.Lights.Region;
+   Lights_Region : Crossing.Lights.Safe_Region;
 
    package Lights_Board is new Ravenchart.Blackboards
      (Element_Type => Crossing.Lights_States.Configuration,

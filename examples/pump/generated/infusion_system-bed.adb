@@ -75,7 +75,7 @@ is
    Filled_Own : Infusion_System.Turns := 0;
 
    --  [bed.Infusion]
-   Infusion_Region : Pump.Infusion.Region;
+   Infusion_Region : Pump.Infusion.Safe_Region;
 
    package Infusion_Board is new Ravenchart.Blackboards
      (Element_Type => Pump.Infusion_States.Configuration,

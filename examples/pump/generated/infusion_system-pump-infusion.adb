@@ -505,8 +505,11 @@ is
    with
      Pre =>
        (if Chosen = Initial_Entry
-           then not Self.Started
-        else Self.Started and then In_Source (Chosen, Self.Place)),
+           then not Self.Started and then Self.Data = Initial_Data
+        else Self.Started
+           and then In_Source (Chosen, Self.Place)
+           and then Is_Safe (Self.Place, Self.Data)
+           and then Guards_Hold (Chosen, Self.Data, Ins, Item)),
      Post =>
        Self.Started
        and then Self.Place = Target (Chosen, Self.Place'Old, Self.Past'Old)
@@ -557,6 +560,7 @@ is
                      or (Deferrals.Count (Self.Deferred'Old) = 4))
           else Self.Deferred = Self.Deferred'Old
              and then Self.Lost = Self.Lost'Old)
+       and then Is_Safe (Self.Place, Self.Data)
    is
       use type Chart.Node;
       Active_Motor : Chart.Node :=
@@ -592,6 +596,62 @@ is
          and then Self.Timers (3)
            = Timer_After (3, D, Before, Self.Place, Was (3)))
       with Ghost, Pre => Was'First = 1 and then Was'Last = 3;
+      function Data_After_Exit_Turning (Data : Variables) return Variables is
+        ((Data with delta Speed => 0))
+      with Ghost;
+      function Data_After_Exit_Infusing (Data : Variables) return Variables is
+        ((Data with delta Speed => 0))
+      with Ghost;
+      function Data_After_Exit_Alarm (Data : Variables) return Variables is
+        ((Data with delta Buzzer => False))
+      with Ghost;
+      function Data_After_Leave_Motor (Data : Variables) return Variables is
+        (case Self.Place.In_Motor is
+           when Infusion_States.Turning => Data_After_Exit_Turning (Data),
+           when Infusion_States.Motor_Good => Data)
+      with Ghost, Pre => Self.Place.Top = Infusion_States.Self_Test;
+      function Data_After_Enter_Self_Test
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Lamp => Infusion_System.Flashing))
+      with Ghost;
+      function Data_After_Enter_Turning (Data : Variables) return Variables is
+        ((Data with delta Speed => 10))
+      with Ghost;
+      function Data_After_Enter_Programming
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Lamp => Infusion_System.Dark))
+      with Ghost;
+      function Data_After_Enter_Infusing (Data : Variables) return Variables is
+        ((Data with delta Lamp => Infusion_System.Steady))
+      with Ghost;
+      function Data_After_Enter_Filling (Data : Variables) return Variables is
+        ((Data with delta Speed => 100))
+      with Ghost;
+      function Data_After_Enter_Loading (Data : Variables) return Variables is
+        ((Data with delta
+            Speed => Infusion_System.Unit_Ul'Min (2 * Data.Portion, 500)))
+      with Ghost;
+      function Data_After_Enter_Maintaining
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Speed => Data.Portion))
+      with Ghost;
+      function Data_After_Enter_Trickling
+        (Data : Variables)
+        return Variables is
+        ((Data with delta Speed => Ins.Trickle))
+      with Ghost;
+      function Data_After_Enter_Alarm (Data : Variables) return Variables is
+        ((Data with delta Lamp => Infusion_System.Flashing))
+      with Ghost;
+      function Data_After_Enter_Sounding (Data : Variables) return Variables is
+        ((Data with delta Buzzer => True))
+      with Ghost;
+      function Data_After_Enter_Silent (Data : Variables) return Variables is
+        ((Data with delta Buzzer => False))
+      with Ghost;
       procedure Exit_Self_Test
       with
         Post =>
@@ -616,6 +676,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (1));
@@ -642,6 +703,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Exit_Turning (Self.Data'Old)
       is
       begin
          Self.Data.Speed := 0;
@@ -663,6 +725,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Exit_Infusing (Self.Data'Old)
       is
       begin
          Self.Data.Speed := 0;
@@ -683,6 +746,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Completed_Running := False;
@@ -707,6 +771,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Completed_Filling := False;
@@ -732,6 +797,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (2));
@@ -756,6 +822,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Freed.New_Portion := Deferrals.Count (Self.Deferred);
@@ -780,6 +847,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Maintaining;
@@ -803,6 +871,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.All_Given;
@@ -826,6 +895,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Past.Last_In_Infusing := Infusion_States.Trickling;
@@ -849,6 +919,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Exit_Alarm (Self.Data'Old)
       is
       begin
          Self.Data.Buzzer := False;
@@ -871,6 +942,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Disarm (Self.Timers (3));
@@ -903,6 +975,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Infusion_States.Alarm'(Self.Place.Top) is
@@ -935,6 +1008,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Infusion_States.Giving'(Self.Place.Top) is
@@ -971,6 +1045,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Infusion_States.Running'(Self.Place.Top) is
@@ -1010,6 +1085,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Infusion_States.Infusing'(Self.Place.Top) is
@@ -1048,6 +1124,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Leave_Motor (Self.Data'Old)
       is
       begin
          case Self.Place.In_Motor is
@@ -1080,6 +1157,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          case Self.Place.In_Sensor is
@@ -1119,6 +1197,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Self_Test (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Self_Test;
@@ -1152,6 +1231,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Turning (Self.Data'Old)
       is
       begin
          Self.Place.In_Motor := Infusion_States.Turning;
@@ -1184,6 +1264,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.In_Motor := Infusion_States.Motor_Good;
@@ -1219,6 +1300,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.In_Sensor := Infusion_States.Sensor_Good;
@@ -1248,6 +1330,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Programming (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Programming;
@@ -1269,6 +1352,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Infusing (Self.Data'Old)
       is
       begin
          Active_Top :=
@@ -1290,6 +1374,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Filling (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Filling;
@@ -1315,6 +1400,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Ravenchart.Timers.Arm (Self.Timers (2), 20, 20);
@@ -1336,6 +1422,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Loading (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Loading;
@@ -1359,6 +1446,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Maintaining (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Maintaining;
@@ -1381,6 +1469,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Self.Data'Old
       is
       begin
          Self.Place.Top := Infusion_States.All_Given;
@@ -1403,6 +1492,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Trickling (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Trickling;
@@ -1424,6 +1514,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Alarm (Self.Data'Old)
       is
       begin
          Active_Top := Chart.Moved (Active_Top, Chart.Nowhere, Chart.Alarm);
@@ -1444,6 +1535,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Sounding (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Sounding;
@@ -1468,6 +1560,7 @@ is
           and then Deferrals.Count (Self.Deferred)
             = Deferrals.Count (Self.Deferred'Old)
           and then Self.Lost = Self.Lost'Old
+          and then Self.Data = Data_After_Enter_Silent (Self.Data'Old)
       is
       begin
          Self.Place.Top := Infusion_States.Silent;
@@ -1481,6 +1574,8 @@ is
         Pre =>
           Self.Started
           and then In_Source (Chosen, Self.Place)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
           and then Self.Past = Past
           and then Self.Deferred = Kept
           and then Is_Agreed,
@@ -1520,6 +1615,7 @@ is
                         or (Deferrals.Count (Self.Deferred'Old) = 4))
              else Self.Deferred = Self.Deferred'Old
                 and then Self.Lost = Self.Lost'Old)
+          and then Is_Safe (Self.Place, Self.Data)
           and then Is_Agreed
       is
       begin
@@ -1716,6 +1812,8 @@ is
         Pre =>
           Self.Started
           and then In_Source (Chosen, Self.Place)
+          and then Is_Safe (Self.Place, Self.Data)
+          and then Guards_Hold (Chosen, Self.Data, Ins, Item)
           and then Self.Past = Past
           and then Self.Deferred = Kept
           and then Is_Agreed,
@@ -1755,6 +1853,7 @@ is
                         or (Deferrals.Count (Self.Deferred'Old) = 4))
              else Self.Deferred = Self.Deferred'Old
                 and then Self.Lost = Self.Lost'Old)
+          and then Is_Safe (Self.Place, Self.Data)
           and then Is_Agreed
       is
       begin
@@ -1830,8 +1929,11 @@ is
       with
         Pre =>
           (if T = Initial_Entry
-              then not Self.Started
-           else Self.Started and then In_Source (T, Self.Place))
+              then not Self.Started and then Self.Data = Initial_Data
+           else Self.Started
+              and then In_Source (T, Self.Place)
+              and then Is_Safe (Self.Place, Self.Data)
+              and then Guards_Hold (T, Self.Data, Ins, Item))
           and then Fired.Count <= 6,
         Post =>
           Fired.Count in Fired.Count'Old + 1 .. Fired.Count'Old + 3
@@ -1842,6 +1944,7 @@ is
           and then (for all J in Fired.Count'Old + 2 .. Fired.Count =>
                 Is_Segment (Fired.Items (J)))
           and then Segments_Left (Self.Place) = 0
+          and then Is_Safe (Self.Place, Self.Data)
       is
          Before : constant Firing_List := Fired with Ghost;
          Segment : Selection;
@@ -1858,7 +1961,8 @@ is
                      Fired.Items (J) = Before.Items (J))
                and then (for all J in Before.Count + 2 .. Fired.Count =>
                      Is_Segment (Fired.Items (J)))
-               and then Segments_Left (Self.Place) <= (3 - I));
+               and then Segments_Left (Self.Place) <= (3 - I)
+               and then Is_Safe (Self.Place, Self.Data));
             if Segments_Left (Self.Place) = 0 then
                exit;
             end if;

@@ -727,10 +727,84 @@ is
    --  lane, and nothing else; a lane inside a state that transitions leave
    --  may be overtaken by an earlier one.
 
+   Initial_Data : constant Variables := (others => <>);
+
+   function Never_Alarm_While_Running
+     (Place : Infusion_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (not (Place.Top in Infusion_States.Alarm and then Data.Speed > 0));
+   --  [Pump.alarm_while_running] the condition of `never` is false.
+
+   function Never_Alarm_Without_Sound
+     (Place : Infusion_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (not (Place.Top = Infusion_States.Sounding and then not Data.Buzzer));
+   --  [Pump.alarm_without_sound] the condition of `never` is false.
+
+   function Never_Overdose
+     (Place : Infusion_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (not (not (Place.Top = Infusion_States.Programming)
+       and then Data.Given > Data.Volume));
+   --  [Pump.overdose] the condition of `never` is false.
+
+   function Data_Are_Known
+     (Place : Infusion_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (if Place.Top = Infusion_States.May_Go_On then Data.Speed = 0);
+   --  What holds of data while a leaf is active: without it a transition
+   --  might break an invariant.
+
+   function Is_Safe
+     (Place : Infusion_States.Configuration;
+      Data : Variables)
+     return Boolean is
+     (Never_Alarm_While_Running (Place, Data)
+      and then Never_Alarm_Without_Sound (Place, Data)
+      and then Never_Overdose (Place, Data)
+      and then Data_Are_Known (Place, Data));
+   --  Each transition and each segment keeps it.
+
+   function Is_Kept (Self : Region) return Boolean is
+     (Never_Alarm_While_Running (Self.Place, Self.Data)
+      and then Never_Alarm_Without_Sound (Self.Place, Self.Data)
+      and then Never_Overdose (Self.Place, Self.Data)
+      and then (if Self.Started
+            then Data_Are_Known (Self.Place, Self.Data)
+         else Self.Data = Initial_Data));
+   --  The region between steps; before the first one its data are initial.
+
+   subtype Safe_Region is Region with Predicate => Is_Kept (Safe_Region);
+
+   function Guards_Hold
+     (T : Firing;
+      Data : Variables;
+      Ins : Inputs;
+      Item : Event)
+     return Boolean is
+     (case T is
+        when Loaded => Data.Given >= Ins.Loading,
+        when Change => Item.Value_Portion > 0,
+        when Enough => Data.Given >= Data.Volume,
+        when Start => Data.Portion > 0 and then Data.Volume > 0,
+        when Trouble => Ins.Line.Value /= Infusion_System.Clear,
+        when Go_On =>
+           Ins.Line.State = Ravenchart.Fresh
+           and then Ins.Line.Value = Infusion_System.Clear,
+        when others => True);
+   --  The guards of transitions and segments; True where something else may
+   --  have fired before in the same step.
+
    procedure Tick (Self : in out Region)
    with
      Post =>
-       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       (Self.Place = Self.Place'Old
+        and then Self.Started = Self.Started'Old
+        and then Self.Data = Self.Data'Old)
        and then (for all I in Self.Timers'Range =>
              Self.Timers (I)
              = Ravenchart.Timers.Ticked (Self.Timers'Old (I)));
@@ -741,7 +815,9 @@ is
       Visit : Ravenchart.Event_Count)
    with
      Post =>
-       Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old;
+       Self.Place = Self.Place'Old
+       and then Self.Started = Self.Started'Old
+       and then Self.Data = Self.Data'Old;
    --  A do activity of Turning was done in that visit.
 
    procedure Notice_Filling
@@ -749,7 +825,9 @@ is
       Visit : Ravenchart.Event_Count)
    with
      Post =>
-       Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old;
+       Self.Place = Self.Place'Old
+       and then Self.Started = Self.Started'Old
+       and then Self.Data = Self.Data'Old;
    --  A do activity of Filling was done in that visit.
 
    function To_Occurrence (Item : Event) return Occurrence is
@@ -769,7 +847,9 @@ is
       Item : out Event)
    with
      Post =>
-       (Self.Place = Self.Place'Old and then Self.Started = Self.Started'Old)
+       (Self.Place = Self.Place'Old
+        and then Self.Started = Self.Started'Old
+        and then Self.Data = Self.Data'Old)
        and then Self.Completed_Self_Test
          = (Self.Completed_Self_Test'Old
             and then Now /= Completion_Of_Self_Test)
@@ -834,9 +914,11 @@ is
       Item  : Event;
       Fired : out Firing_List)
    with
-     Pre => (Now = Start_Of_Region) = not Self.Started,
+     Pre =>
+       Is_Kept (Self) and then (Now = Start_Of_Region) = not Self.Started,
      Post =>
        Self.Started
+       and then Is_Kept (Self)
        and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
        and then (if Segments_Left (Self.Place'Old) = 0
              then Segments_Left (Self.Place) = 0)

@@ -48,6 +48,7 @@ from .lanes import declared_lanes
 from .lasting import declared_domains
 from .operations import operations
 from .records import region_types
+from .safety import Safety
 from .shape import START, RegionShape, plain_args
 from .stepping import body_of
 
@@ -66,7 +67,8 @@ def emit_region(
 
 
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
-    return (*_quiet(shape), *region_types(shape), *_declared(shape), *operations(shape))
+    safe = Safety(shape).declared()
+    return (*_quiet(shape), *region_types(shape), *_declared(shape), *safe, *operations(shape))
 
 
 def _quiet(shape: RegionShape) -> tuple[Pragma, ...]:

@@ -49,6 +49,7 @@ from .history import Restoring
 from .lasting import Lasting, terminates
 from .moving import Moving
 from .nodes import NODES, Nodes, joined
+from .safety import Safety
 from .shape import START, RegionShape
 
 MANY = 24
@@ -90,7 +91,8 @@ class Moves:
         self.held = f"Self.{shape.place}"
         self.lasting = Lasting(shape)
         self.nodes = Nodes(shape)
-        self.moving = Moving(shape, self.nodes, self.lasting)
+        self.safety = Safety(shape)
+        self.moving = Moving(shape, self.nodes, self.lasting, self.safety)
         self._effects_given: list[Flow] = []
 
     def chart(self, fire: Subprogram) -> Package:
@@ -106,12 +108,14 @@ class Moves:
         rows = [(f.literal, self._row(f)) for f in shape.firings]
         rows = rows or [("None", (NULL,))]
         sources = call("In_Source", Ref("Chosen"), Ref(self.held))
+        first, later = self.safety.ready("Chosen")
         ready = IfExpr(
-            ((equal(Ref("Chosen"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
-            both(Ref("Self.Started"), sources),
+            ((equal(Ref("Chosen"), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
+            both(Ref("Self.Started"), sources, *later),
         )
+        safe = self.safety.holds()
         moved = equal(Ref(self.held), shape.target("Chosen"))
-        done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"))
+        done = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen"), *safe)
         agreed = self.nodes.agreed(self.held)
         ghost = (Aspect("Ghost"),)
         past: tuple[Object, ...] = ()
@@ -128,8 +132,10 @@ class Moves:
             timed = self.lasting.timing()
             known = both(Ref("Self.Started"), moved, *self.lasting.fired("Chosen", at_once=True))
             claims = (
-                Aspect("Pre", both(Ref("Self.Started"), sources, *before, Ref(agrees.name))),
-                Aspect("Post", both(*flat([known, Ref(agrees.name)]))),
+                Aspect(
+                    "Pre", both(Ref("Self.Started"), sources, *later, *before, Ref(agrees.name))
+                ),
+                Aspect("Post", both(*flat([known, *safe, Ref(agrees.name)]))),
             )
             procedures = (agrees, *timed, *procedures)
             batches = [rows[at : at + MANY] for at in range(0, len(rows), MANY)]
@@ -161,6 +167,7 @@ class Moves:
         reads = named & set(self.shape.inputs)
         idle = set() if reads else {"Ins"}
         idle |= set() if self.shape.fires_with_item else {"Item"}
+        idle -= self.safety.reads()
         params = [p for p in self.shape.step_params() if p.name not in idle]
         if self._fills_outbox():
             params = [p._replace(mode="out") if p.name == "Box" else p for p in params]

@@ -263,8 +263,9 @@ def followed(shape: RegionShape) -> Expr:
 
 def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """Every lane's transition in order; what conflicts with an earlier one is dropped."""
-    work: tuple[Stmt, ...] = tuple(
-        s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))
+    work: tuple[Stmt, ...] = (
+        *moves.safety.alone(),
+        *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), _so_far(shape, lane))),
     )
     if shape.deferring:
         fields = [f"C.{shape.lane_name(n)}" for n in shape.busy_lanes]
@@ -349,9 +350,11 @@ def _so_far(shape: RegionShape, lane: Lane) -> Pragma:
 def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
     """A transition with the segments that its way passes, and note what fired."""
     held = Ref(f"Self.{shape.place}")
+    safe = moves.safety.holds()
+    first, later = moves.safety.ready("T")
     started = IfExpr(
-        ((equal(Ref("T"), Ref(START)), Prefix("not", Ref("Self.Started"))),),
-        both(Ref("Self.Started"), call("In_Source", Ref("T"), held)),
+        ((equal(Ref("T"), Ref(START)), both(Prefix("not", Ref("Self.Started")), *first)),),
+        both(Ref("Self.Started"), call("In_Source", Ref("T"), held), *later),
     )
     most = shape.most_segments
     before = shape.most_firings - 1 - most
@@ -370,7 +373,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
         bound = Chain("<=", (left, Chain("-", (number(most + 1), Ref("I")))))
         counted = equal(_COUNT, Ref("Before.Count + I"))
         noted = _noted(shape, "Before.Count", "Before.Items")
-        going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound),))
+        going_on = Pragma("Loop_Invariant", (both(counted, *noted, bound, *safe),))
         body.append(
             Loop(
                 f"for I in 1 .. {most}",
@@ -390,7 +393,7 @@ def _fire_whole(shape: RegionShape, moves: Moves) -> Subprogram:
         settled = [equal(left, number(0))]
     else:
         settled = [equal(held, shape.target("T"))]
-    facts = (grown, *_noted(shape, "Fired.Count'Old", "Fired.Items'Old"), *settled)
+    facts = (grown, *_noted(shape, "Fired.Count'Old", "Fired.Items'Old"), *settled, *safe)
     return Subprogram(
         "Fire_Whole",
         (Param("T", "in", "Firing"),),

@@ -37,6 +37,7 @@ from ravenchart.gen.model.statechart import After, Every
 from .deferring import freed_by
 from .lasting import Lasting
 from .nodes import Nodes, joined
+from .safety import Safety
 from .shape import RegionShape
 
 
@@ -47,8 +48,9 @@ def _leave_name(place: Place) -> str:
 class Moving:
     """Gives the statements of exits and entries, and remembers which procedures they need."""
 
-    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting) -> None:
+    def __init__(self, shape: RegionShape, nodes: Nodes, lasting: Lasting, safety: Safety) -> None:
         self.shape = shape
+        self.safety = safety
         self.region = shape.region
         self.nodes = nodes
         self.lasting = lasting
@@ -113,9 +115,15 @@ class Moving:
         states = self.region.states
         exits = [self._exit(s.name) for s in states if s.name in self._exited]
         places = [Place(s.name, r.name) for s in reversed(states) for r in s.regions]
-        leavings = [self._leaving(p) for p in places if p in self._left]
+        left = [p for p in places if p in self._left]
+        leavings = [self._leaving(p) for p in left]
         entries = [self._entry(s.name) for s in states if s.name in self._entered]
-        return (*exits, *leavings, *entries)
+        data = self.safety.functions(
+            (s.name for s in states if s.name in self._exited),
+            left,
+            (s.name for s in states if s.name in self._entered),
+        )
+        return (*data, *exits, *leavings, *entries)
 
     def _kept(self) -> Expr:
         return equal(Ref(self.held), Ref(f"{self.held}'Old"))
@@ -124,13 +132,19 @@ class Moving:
         after = self.nodes.after_exit(state)
         return Subprogram(
             f"Exit_{ada_case(state)}",
-            aspects=(Aspect("Post", both(self._kept(), after, *self.lasting.exited(state))),),
+            aspects=(Aspect("Post", both(self._kept(), after, *self._lasting_exit(state))),),
             body=(
                 *self._noted(state, "exit"),
                 *self._work_of_exit(state),
                 self.nodes.exit(state),
             ),
         )
+
+    def _lasting_exit(self, state: str) -> list[Expr]:
+        return [*self.lasting.exited(state), *self.safety.exited(state)]
+
+    def _lasting_entry(self, state: str) -> list[Expr]:
+        return [*self.lasting.entered(state), *self.safety.entered(state)]
 
     def _noted(self, state: str, what: str) -> tuple[Stmt, ...]:
         return () if self.region.state(state).final else self.shape.note(f"{state}.{what}")
@@ -165,7 +179,7 @@ class Moving:
         noted = self._noted(vertex, "entry")
         return Subprogram(
             f"Enter_{ada_case(vertex)}",
-            aspects=(Aspect("Post", both(moved, active, *self.lasting.entered(vertex))),),
+            aspects=(Aspect("Post", both(moved, active, *self._lasting_entry(vertex))),),
             body=(*self._place(vertex), *first, self.nodes.enter(vertex), *noted, *then),
         )
 
@@ -245,7 +259,13 @@ class Moving:
             aspects=(
                 Aspect("Pre", both(*flat([shape.in_state(self.held, place.owner), agrees]))),
                 Aspect(
-                    "Post", both(self._kept(), *self.nodes.empty(place), *self.lasting.left(place))
+                    "Post",
+                    both(
+                        self._kept(),
+                        *self.nodes.empty(place),
+                        *self.lasting.left(place),
+                        *self.safety.left(place),
+                    ),
                 ),
             ),
             body=(Case(Ref(leaf), tuple(rows)),),

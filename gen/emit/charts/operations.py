@@ -33,6 +33,7 @@ from ravenchart.gen.emit.language.events import name_of
 from .deferring import FREED
 from .lanes import followed
 from .lasting import Lasting
+from .safety import Safety
 from .shape import START, RegionShape
 from .working import notices
 
@@ -40,9 +41,11 @@ from .working import notices
 def operations(shape: RegionShape) -> list[Decl]:
     self_out = Param("Self", "in out", "Region")
     held = f"Self.{shape.place}"
+    safety = Safety(shape)
     same = both(
         equal(Ref(held), Ref(f"{held}'Old")),
         equal(Ref("Self.Started"), Ref("Self.Started'Old")),
+        *safety.unchanged(),
     )
     items: list[Decl] = []
     if shape.timers:
@@ -87,8 +90,8 @@ def operations(shape: RegionShape) -> list[Decl]:
                 Param("Fired", "out", fired),
             ),
             aspects=(
-                Aspect("Pre", due),
-                Aspect("Post", both(Ref("Self.Started"), *_stepped(shape))),
+                Aspect("Pre", both(*safety.kept(), due)),
+                Aspect("Post", both(Ref("Self.Started"), *safety.kept(), *_stepped(shape))),
             ),
         ),
         Comment("One run-to-completion step."),

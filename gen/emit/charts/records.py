@@ -31,6 +31,7 @@ from ravenchart.gen.emit.components.packages import reading_type
 from ravenchart.gen.emit.language.events import null_event
 
 from .deferring import freed_field, freed_type
+from .safety import Safety
 from .shape import START, RegionShape, guard_operators, guards_of
 from .working import done_types, work_fields
 
@@ -76,7 +77,7 @@ def _use_types(shape: RegionShape) -> list[Decl]:
         for n in (
             *ordered,
             *(TIMED if shape.timers else ()),
-            *sorted(guard_operators(region)),
+            *sorted(guard_operators(region) | Safety(shape).operators()),
             *sorted(shape.compared_in(guards_of(region))),
         )
     ]

@@ -34,6 +34,7 @@ from ravenchart.gen.emit.language.terms import (
 )
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.statechart import (
     After,
     Completion,
@@ -54,6 +55,7 @@ PASSING = "Passing"
 
 TYPES = frozenset(
     (
+        *("safe_region", "initial_data"),
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
         *("firing_list", "firing_array", "done_states", "freed_events"),
@@ -272,6 +274,18 @@ class RegionShape(Places):
         """The types of other regions' states that expressions compare."""
         compared = compared_states(self.component, expressions)
         return {name for name in compared if not name.startswith(f"{self.states}.")}
+
+    @cached_property
+    def safe(self) -> SafeRegion | None:
+        """The invariants that its code keeps by contract."""
+        own = self.component.name, self.region.name
+        found = (s for s in self.system.safe_regions if (s.component, s.region) == own)
+        return next(found, None)
+
+    @property
+    def kept_as(self) -> str:
+        """The type of the region's state between steps."""
+        return "Region" if self.safe is None else "Safe_Region"
 
     # --- notes
 

@@ -38,6 +38,7 @@ from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 from .deferring import FREED, is_due
 from .firing import MANY, Moves
 from .lanes import fire, lane_step, passing_step
+from .safety import Safety
 from .selection import selectors
 from .shape import START, RegionShape, guard_operators, guards_of, plain_args
 from .working import notice_bodies
@@ -50,7 +51,7 @@ def body_of(shape: RegionShape) -> tuple[Decl, ...]:
     fire = moves.fire()
     compared = shape.compared_in(e for flow in moves.flows() for e in expressions_in(flow))
     operators = {name for flow in moves.flows() for name in flow_operators(flow)}
-    more = sorted(operators - guard_operators(region))
+    more = sorted(operators - guard_operators(region) - Safety(shape).operators())
     more += ["Ravenchart.Event_Count"] if shape.working else []
     more += sorted(compared - shape.compared_in(guards_of(region)))
     return (
@@ -182,6 +183,7 @@ def _sources_hold(shape: RegionShape) -> list[Decl]:
     params = (Param("T", "in", "Transition"), *shape.choice_params())
     enabled = Call("Enabled", plain_args(params))
     source = call("In_Source", Ref("T"), Ref(shape.place))
-    claims = (Aspect("Ghost"), Aspect("Pre", enabled), Aspect("Post", source))
+    known = both(source, *Safety(shape).guarded("T", ""))
+    claims = (Aspect("Ghost"), Aspect("Pre", enabled), Aspect("Post", known))
     spec = Subprogram("Sources_Hold", params, aspects=claims)
     return [spec, Subprogram("Sources_Hold", params, body=(NULL,))]

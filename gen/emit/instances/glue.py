@@ -38,6 +38,7 @@ from ravenchart.gen.emit.ada.syntax import (
     number,
 )
 from ravenchart.gen.emit.ada.syntax import Instance as Instantiation
+from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
     call_body,
     from_afar,
@@ -315,7 +316,8 @@ class Glue(Site):
             name = ada_case(region.name)
             places = Places(region)
             items.append(Comment(f"[{self._element(region.name)}]"))
-            items.append(Object(f"{name}_Region", f"{self.component}.{name}.Region"))
+            kept = RegionShape(self.system, component, region).kept_as
+            items.append(Object(f"{name}_Region", f"{self.component}.{name}.{kept}"))
             items.append(
                 self._board(
                     name, leaf_type(component, region), places.initial(self.component), region.name

@@ -1,0 +1,210 @@
+"""The single moves of a region: what each transition or segment does, guards and data as terms.
+
+A step of the model is a series of moves: a transition in each lane, each with the segments that
+its way passes. The generated code has a contract for each move, so what every move keeps is
+proved of the code. A move knows less than a step: which leaf a history remembers, whether an
+event came, and the guards of a lane that fires after another are unknown here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from dataclasses import dataclass, field
+
+import z3
+
+from ravenchart.gen.language.terms import Expression, Flow, If, Set
+from ravenchart.gen.model.safety import knows_guards
+from ravenchart.gen.model.statechart import PseudoKind, Segment, Transition, When
+
+from .logic import Questions, Read, Term, Variable, term
+from .stepping import Configuration, Path, Step
+from .tree import START, TOP, Slot, Tree
+
+MOST_PLACES = 300
+"""A region with more configurations is not looked into."""
+MOST_MOVES = 6_000
+"""Nor is one with more moves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a region is between two moves: its active states, and pseudostates on the way."""
+
+    active: tuple[str, ...] = ()
+    passing: tuple[str, ...] = ()
+
+    @property
+    def vertices(self) -> tuple[str, ...]:
+        """All of it."""
+        return (*self.active, *self.passing)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Move:
+    """What one transition or segment does, from a place where it can be taken."""
+
+    before: Place | None
+    """None at the start of the region."""
+    condition: Term
+    updates: dict[Variable, Term]
+    after: Place
+    path: Path
+    """The transition or segment, with its way; empty at the start and for what a history enters."""
+
+
+class TooManyMoves(Exception):  # noqa: N818
+    """The region is too large for its moves to be looked at one by one."""
+
+
+def moves_of(tree: Tree, symbols: Read, alone: Container[str]) -> Iterator[Move]:
+    """Every move from every place that control can come to, data aside.
+
+    ``alone`` names the transitions that fire only when nothing has fired before in their step.
+    """
+    if any(kind is PseudoKind.TERMINATE for kind in tree.kinds.values()):
+        raise TooManyMoves
+    questions = Questions(symbols, ())
+    first = _Mover(tree, Configuration(), START, questions, lambda condition: True)
+    first.initial(TOP)
+    begun = first.move(None, z3.BoolVal(True), ())
+    yield begun
+    waiting, seen, made = [begun.after], {begun.after}, 0
+    while waiting:
+        place = waiting.pop(0)
+        for move in _from(tree, place, questions, alone):
+            made += 1
+            if made > MOST_MOVES:
+                raise TooManyMoves
+            yield move
+            if move.after not in seen:
+                if len(seen) == MOST_PLACES:
+                    raise TooManyMoves
+                seen.add(move.after)
+                waiting.append(move.after)
+
+
+@dataclass
+class _Mover(Step):
+    """A step that stops after one move; a condition only says which branch an action takes."""
+
+    remembered: list[str | None] = field(default_factory=list)
+    """What histories answer, one after the other."""
+    asked: list[Slot] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.recall = self._recalled
+
+    def perform(self, flow: Flow) -> None:
+        """Only what a flow does to data: what it sends and raises concerns no move."""
+        for action in flow:
+            if isinstance(action, Set):
+                super().perform((action,))
+            elif isinstance(action, If):
+                self.merge(action)
+
+    def move(self, before: Place | None, condition: Term, path: Path) -> Move:
+        """What has been done so far."""
+        place = Place(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
+        return Move(before, condition, self.store, place, path)
+
+    def _recalled(self, slot: Slot) -> str | None:
+        self.asked.append(slot)
+        if len(self.asked) <= len(self.remembered):
+            return self.remembered[len(self.asked) - 1]
+        return None
+
+
+def _mover(
+    tree: Tree, place: Place, questions: Questions, remembered: tuple[str | None, ...] = ()
+) -> _Mover:
+    made = _Mover(
+        tree,
+        Configuration(place.active),
+        START,
+        questions,
+        lambda condition: True,
+        remembered=list(remembered),
+    )
+    made.arrivals = list(place.passing)
+    return made
+
+
+def _from(tree: Tree, place: Place, questions: Questions, alone: Container[str]) -> Iterator[Move]:
+    if place.passing:
+        yield from _passed(tree, place, questions)
+        return
+    for name in place.active:
+        known = knows_guards(tree.region, tree.lane_of[name])
+        for transition in tree.outgoing[name]:
+            if not isinstance(transition.trigger, Segment):
+                sure = known or transition.name in alone
+                for path in _ways(tree, place, transition):
+                    yield _fired(tree, place, questions, path, known=sure)
+
+
+def _passed(tree: Tree, place: Place, questions: Questions) -> Iterator[Move]:
+    """The moves from the first pseudostate on the way."""
+    vertex = next(_mover(tree, place, questions).passing(TOP))
+    rest = Place(place.active, tuple(n for n in place.passing if n != vertex))
+    if tree.kinds[vertex] is PseudoKind.CHOICE:
+        for transition in tree.outgoing[vertex]:
+            for path in _ways(tree, place, transition):
+                fired = _fired(tree, rest, questions, path, known=True)
+                yield Move(place, fired.condition, fired.updates, fired.after, fired.path)
+        return
+    waiting: list[tuple[str | None, ...]] = [()]
+    while waiting:
+        remembered = waiting.pop()
+        mover = _mover(tree, place, questions, remembered)
+        mover.go_on()
+        yield mover.move(place, z3.BoolVal(True), ())
+        for count in range(len(remembered), len(mover.asked)):
+            unknown = (None,) * (count - len(remembered))
+            leaves = _leaves(tree, mover.asked[count])
+            waiting += [(*remembered, *unknown, leaf) for leaf in leaves]
+
+
+def _leaves(tree: Tree, slot: Slot) -> list[str]:
+    """What a region inside may remember."""
+    return [
+        name
+        for name, state in tree.states.items()
+        if len(state.regions) != 1 and slot in tree.lane_slots(name) and tree.slots[name][0]
+    ]
+
+
+def _ways(tree: Tree, place: Place, transition: Transition) -> Iterator[Path]:
+    """A transition with each way through junctions; a join only where all its sources are."""
+    kind = tree.kinds.get(transition.target)
+    if kind is PseudoKind.JUNCTION:
+        for out in tree.outgoing[transition.target]:
+            yield from ((transition, *rest) for rest in _ways(tree, place, out))
+    elif kind is PseudoKind.JOIN:
+        incoming = tree.incoming[transition.target]
+        if all(one.source in place.active for one in incoming):
+            for out in tree.outgoing[transition.target]:
+                yield from ((*incoming, *rest) for rest in _ways(tree, place, out))
+    else:
+        yield (transition,)
+
+
+def _fired(tree: Tree, place: Place, questions: Questions, path: Path, *, known: bool) -> Move:
+    mover = _mover(tree, place, questions)
+    mover.fire(path)
+    return mover.move(place, guard_of(path, questions.read) if known else z3.BoolVal(True), path)
+
+
+def guard_of(path: Path, symbols: Read) -> Term:
+    """The condition under which a path is enabled, its source and trigger aside."""
+    asked = [term(guard, symbols) for guard in _guards(path)]
+    return z3.And(asked) if asked else z3.BoolVal(True)
+
+
+def _guards(path: Path) -> Iterator[Expression]:
+    for transition in path:
+        if isinstance(transition.trigger, When):
+            yield transition.trigger.condition
+        if transition.guard is not None:
+            yield transition.guard

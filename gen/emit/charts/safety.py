@@ -1,0 +1,410 @@
+"""Invariants of the model as contracts of a region's code.
+
+`Is_Safe` joins the conditions of `never` that are about this region, with the facts without
+which a transition might break one. Each transition and segment keeps it, and so does each step.
+What exits and entries do to data is in their contracts here, so that the proof of `Fire` sees it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+from ravenchart.gen.emit.ada.naming import ada_case
+from ravenchart.gen.emit.ada.syntax import (
+    Aggregate,
+    Arg,
+    Aspect,
+    Call,
+    CaseExpr,
+    Comment,
+    Decl,
+    Expr,
+    IfExpr,
+    Object,
+    Param,
+    PlainType,
+    Pragma,
+    Prefix,
+    Ref,
+    Subprogram,
+    both,
+    call,
+    equal,
+    names_in,
+)
+from ravenchart.gen.emit.language.compound import Firing, Place
+from ravenchart.gen.emit.language.effects import effect_of
+from ravenchart.gen.emit.language.places import flat
+from ravenchart.gen.emit.language.terms import Scope, emit_expression, operators_in
+from ravenchart.gen.language import terms as m
+from ravenchart.gen.model.component import Invariant
+from ravenchart.gen.model.safety import knows_guards
+from ravenchart.gen.model.statechart import When
+
+from .shape import ITEM, RegionShape
+
+DATA = Param("Data", "in", "Variables")
+_GHOST = Aspect("Ghost")
+_INITIAL = "Initial_Data"
+_KEPT = "Is_Kept"
+
+
+class Safety:
+    """What one region's code says of the invariants; nothing where it has none."""
+
+    def __init__(self, shape: RegionShape) -> None:
+        self.shape = shape
+        self.region = shape.region
+        self.safe = shape.safe
+        self.has_data = bool(shape.region.writes)
+        self._left: dict[Place, Subprogram | None] = {}
+
+    def __bool__(self) -> bool:
+        return self.safe is not None
+
+    # --- the declared form
+
+    def declared(self) -> list[Decl]:
+        """`Is_Safe` and all that it is made of; the region as an instance keeps it."""
+        if self.safe is None:
+            return []
+        items: list[Decl] = []
+        if self.has_data:
+            items.append(Object(_INITIAL, "Variables", Ref("(others => <>)"), constant=True))
+        for name, function in zip(self.safe.invariants, self._invariants, strict=True):
+            told = f"[{self.shape.component.name}.{name}] the condition of `never` is false."
+            items += [function, Comment(told)]
+        if self._facts is not None:
+            items += [self._facts, Comment(_FACTS)]
+        items += [self._is_safe, Comment("Each transition and each segment keeps it.")]
+        items += [
+            self._is_kept,
+            Comment("The region between steps; before the first one its data are initial."),
+        ]
+        items.append(PlainType("Safe_Region", _SAFE_REGION, subtype=True))
+        if self._guards is not None:
+            items += [self._guards, Comment(_GUARDS)]
+        return items
+
+    def _place_and_data(self, used: Expr) -> tuple[Param, ...]:
+        place = Param(self.shape.place, "in", self.shape.place_type)
+        return _used([place, DATA], used)
+
+    @cached_property
+    def _invariants(self) -> tuple[Subprogram, ...]:
+        assert self.safe is not None
+        made = []
+        for one in self._conditions():
+            free = Prefix("not", emit_expression(self._scope, self._with_constants(one.condition)))
+            name = f"Never_{ada_case(one.name)}"
+            made.append(Subprogram(name, self._place_and_data(free), "Boolean", expression=free))
+        return tuple(made)
+
+    def _conditions(self) -> tuple[Invariant, ...]:
+        assert self.safe is not None
+        return tuple(m.named(self.shape.component.invariants, n) for n in self.safe.invariants)
+
+    @cached_property
+    def _facts(self) -> Subprogram | None:
+        assert self.safe is not None
+        by_vertex: dict[str, list[Expr]] = {}
+        for fact in self.safe.facts:
+            condition = fact.condition(self.shape.component)
+            said = emit_expression(self._scope, condition)
+            by_vertex.setdefault(fact.vertex, []).append(said)
+        if not by_vertex:
+            return None
+        rows = [
+            IfExpr(((self.shape.in_state(self.shape.place, vertex), both(*flat(said))),), None)
+            for vertex, said in by_vertex.items()
+        ]
+        known = both(*rows)
+        params = self._place_and_data(known)
+        return Subprogram("Data_Are_Known", params, "Boolean", expression=known)
+
+    @cached_property
+    def _is_safe(self) -> Subprogram:
+        parts = [_of(function, "") for function in self._invariants]
+        parts += [] if self._facts is None else [_of(self._facts, "")]
+        safe = both(*parts)
+        return Subprogram("Is_Safe", self._place_and_data(safe), "Boolean", expression=safe)
+
+    @cached_property
+    def _is_kept(self) -> Subprogram:
+        parts: list[Expr] = [_of(function, "Self.") for function in self._invariants]
+        started: list[tuple[Expr, Expr]] = []
+        if self._facts is not None:
+            started.append((Ref("Self.Started"), _of(self._facts, "Self.")))
+        if self.has_data:
+            first = equal(Ref("Self.Data"), Ref(_INITIAL))
+            if started:
+                parts.append(IfExpr(tuple(started), first))
+            else:
+                parts.append(IfExpr(((Prefix("not", Ref("Self.Started")), first),), None))
+        return Subprogram(
+            _KEPT, (Param("Self", "in", "Region"),), "Boolean", expression=both(*parts)
+        )
+
+    @cached_property
+    def _guards(self) -> Subprogram | None:
+        rows = [(f.literal, said) for f in self.shape.firings if (said := self._guard(f))]
+        if not rows:
+            return None
+        choice = CaseExpr(Ref("T"), (*((name, both(*flat(s))) for name, s in rows), _OTHERS))
+        params = _used([DATA, Param("Ins", "in", "Inputs"), ITEM], choice)
+        return Subprogram(
+            "Guards_Hold", (Param("T", "in", "Firing"), *params), "Boolean", expression=choice
+        )
+
+    def _guard(self, firing: Firing) -> list[Expr]:
+        passes = self.region.pseudostate(firing.sources[0]) is not None
+        alone = passes or knows_guards(self.region, firing.lane) or self._is_alone(firing)
+        if not alone:
+            return []
+        scope = self.shape.scope("Data")
+        asked = [t.condition for t in firing.triggers if isinstance(t, When)]
+        return [emit_expression(scope, guard) for guard in (*asked, *firing.guards)]
+
+    def _is_alone(self, firing: Firing) -> bool:
+        assert self.safe is not None
+        return bool(firing.effects) and firing.effects[0].name in self.safe.alone
+
+    def alone(self) -> tuple[Pragma, ...]:
+        """Which transitions are selected only where no lane before theirs selects one."""
+        if self.safe is None:
+            return ()
+        said: list[Expr] = []
+        for firing in self.shape.firings:
+            if self._is_alone(firing):
+                lanes = self.shape.busy_lanes[: self.shape.busy_lanes.index(firing.lane)]
+                none = [equal(Ref(f"C.{self.shape.lane_name(n)}"), Ref("None")) for n in lanes]
+                own = Ref(f"C.{self.shape.lane_name(firing.lane)}")
+                said.append(IfExpr(((equal(own, Ref(firing.literal)), both(*none)),), None))
+        return tuple(Pragma("Assert", (one,)) for one in said)
+
+    @cached_property
+    def _scope(self) -> Scope:
+        """Conditions ask for the region's own states and data."""
+
+        def variable(name: str) -> str:
+            if name.lower() == self.region.name.lower():
+                return self.shape.place
+            return f"Data.{ada_case(name)}"
+
+        return replace(self.shape.scope("Data"), variable=variable)
+
+    def _with_constants(self, expression: m.Expression) -> m.Expression:
+        """A condition with the value of each data item that nothing writes."""
+        match expression:
+            case m.Name(m.Reading.DATA, name, field) if name not in self.region.writes:
+                given = m.named(self.shape.component.data, name)
+                of_type = given.type
+                if isinstance(of_type, m.RecordType):
+                    assert field is not None and isinstance(given.initial, tuple)
+                    return m.Literal(dict(given.initial)[field], of_type.field(field).type)
+                assert not isinstance(given.initial, tuple)
+                return m.Literal(given.initial, of_type)
+            case m.Operation(operands=operands):
+                return replace(
+                    expression, operands=tuple(self._with_constants(o) for o in operands)
+                )
+            case _:
+                return expression
+
+    def operators(self) -> set[str]:
+        """The runtime's types whose operators the declared form uses."""
+        if self.safe is None:
+            return set()
+        said = [self._with_constants(one.condition) for one in self._conditions()]
+        said += [fact.condition(self.shape.component) for fact in self.safe.facts]
+        return {name for expression in said for name in operators_in(expression)}
+
+    # --- the contracts of firings and steps
+
+    def ready(self, chosen: str) -> tuple[list[Expr], list[Expr]]:
+        """What a firing may rely on: at the start of the region, and later."""
+        if self.safe is None:
+            return [], []
+        first: list[Expr] = []
+        if self.has_data:
+            first.append(equal(Ref("Self.Data"), Ref(_INITIAL)))
+        return first, [*self.holds(), *self.guarded(chosen)]
+
+    def holds(self) -> list[Expr]:
+        """That the region is safe, in the middle of a step too."""
+        return [] if self.safe is None else [_of(self._is_safe, "Self.")]
+
+    def guarded(self, chosen: str, prefix: str = "Self.") -> list[Expr]:
+        """That the guard of a transition holds."""
+        if self.safe is None or self._guards is None:
+            return []
+        names = [p.name for p in self._guards.params[1:]]
+        args = (Ref(f"{prefix}{n}" if n == "Data" else n) for n in names)
+        return [call("Guards_Hold", Ref(chosen), *args)]
+
+    def reads(self) -> set[str]:
+        """The parameters of `Guards_Hold`, as `Fire` must have them."""
+        if self.safe is None or self._guards is None:
+            return set()
+        return {p.name for p in self._guards.params}
+
+    def kept(self) -> list[Expr]:
+        """That a region is as instances keep it."""
+        return [] if self.safe is None else [call(_KEPT, Ref("Self"))]
+
+    def unchanged(self) -> list[Expr]:
+        """That data are as before: what no behaviour does to them."""
+        if self.safe is None or not self.has_data:
+            return []
+        return [equal(Ref("Self.Data"), Ref("Self.Data'Old"))]
+
+    # --- the contracts of exits and entries
+
+    def functions(
+        self, exited: Iterable[str], left: Sequence[Place], entered: Iterable[str]
+    ) -> list[Subprogram]:
+        """What the exits and entries with procedures do to data, callees first."""
+        if self.safe is None or not self.has_data:
+            return []
+        made = [self._effect(f"Exit_{ada_case(s)}", self._exit(s)) for s in exited]
+        made += [self._leaving(place) for place in left]
+        made += [self._effect(f"Enter_{ada_case(s)}", self._entry(s)) for s in entered]
+        return [one for one in made if one is not None]
+
+    def exited(self, state: str) -> list[Expr]:
+        """What the exit of a state has done to data."""
+        return self._done(f"Exit_{ada_case(state)}", self._exit(state) is not None)
+
+    def entered(self, state: str) -> list[Expr]:
+        """What the entry of a state has done to data."""
+        return self._done(f"Enter_{ada_case(state)}", self._entry(state) is not None)
+
+    def left(self, place: Place) -> list[Expr]:
+        """What the exits of all that was active in a region have done to data."""
+        return self._done(_leaves(place), self._leaving(place) is not None)
+
+    def _done(self, procedure: str, changes: bool) -> list[Expr]:
+        if self.safe is None or not self.has_data or not changes:
+            return self.unchanged()
+        return [equal(Ref("Self.Data"), call(f"Data_After_{procedure}", Ref("Self.Data'Old")))]
+
+    def _exit(self, state: str) -> Expr | None:
+        return self._data(self.region.state(state).exit)
+
+    def _entry(self, state: str) -> Expr | None:
+        return self._data(self.region.state(state).entry)
+
+    def _data(self, flow: m.Flow) -> Expr | None:
+        """The data after a flow; None where it changes none."""
+        found = effect_of(flow, self.shape.component)
+        if not found:
+            return None
+        scope = self.shape.scope("Data")
+        rows: list[Arg] = []
+        for item in self.shape.component.data:
+            fields = {f: value for (name, f), value in found.items() if name == item.name}
+            target = ada_case(item.name)
+            if None in fields:
+                rows.append(Arg(target, emit_expression(scope, fields[None], _unit(item.type))))
+            elif fields:
+                assert isinstance(item.type, m.RecordType)
+                inner = tuple(
+                    Arg(
+                        ada_case(f or ""),
+                        emit_expression(scope, value, _unit(item.type.field(f or "").type)),
+                    )
+                    for f, value in fields.items()
+                )
+                whole = len(inner) == len(item.type.fields)
+                base = None if whole else f"Data.{target}"
+                rows.append(Arg(target, Aggregate(inner, base=base)))
+        whole = len(rows) == len(self.region.writes)
+        return Aggregate(tuple(rows), base=None if whole else "Data")
+
+    def _effect(self, procedure: str, after: Expr | None) -> Subprogram | None:
+        if after is None:
+            return None
+        params = (DATA,) if _used([DATA], after) else (DATA._replace(name="Unused_Data"),)
+        return Subprogram(
+            f"Data_After_{procedure}", params, "Variables", (_GHOST,), expression=after
+        )
+
+    def _leaving(self, place: Place) -> Subprogram | None:
+        if place not in self._left:
+            self._left[place] = self._made_leaving(place)
+        return self._left[place]
+
+    def _made_leaving(self, place: Place) -> Subprogram | None:
+        assert place.owner is not None
+        shape, held = self.shape, f"Self.{self.shape.place}"
+        rows: list[tuple[str, Expr]] = []
+        for child in self.region.children(place.owner, place.region):
+            after: Expr = Ref("Data")
+            for nested in child.regions:
+                inside = Place(child.name, nested.name)
+                if self._leaving(inside) is not None:
+                    after = call(f"Data_After_{_leaves(inside)}", after)
+            if self._exit(child.name) is not None:
+                after = call(f"Data_After_Exit_{ada_case(child.name)}", after)
+            rows.append((shape.literal(child.name), after))
+        if all(after == Ref("Data") for _, after in rows):
+            return None
+        rows += [(shape.literal(p), Ref("Data")) for p in shape.compounds.passed(place)]
+        leaf = shape.at(held, shape.lane_of(place))
+        if not self.region.state(place.owner).is_orthogonal:
+            leaf = f"{shape.literal(place.owner)}'({leaf})"
+        return Subprogram(
+            f"Data_After_{_leaves(place)}",
+            (DATA,),
+            "Variables",
+            (_GHOST, Aspect("Pre", shape.in_state(held, place.owner))),
+            expression=CaseExpr(Ref(leaf), tuple(rows)),
+        )
+
+
+_SAFE_REGION = f"Region with Predicate => {_KEPT} (Safe_Region)"
+_FACTS = (
+    "What holds of data while a leaf is active: without it a transition might break an invariant."
+)
+_GUARDS = (
+    "The guards of transitions and segments; True where something else may have fired before in "
+    "the same step."
+)
+_OTHERS = ("others", Ref("True"))
+
+
+def _leaves(place: Place) -> str:
+    return f"Leave_{ada_case(place.region or place.owner or '')}"
+
+
+def _unit(of_type: m.Type) -> str | None:
+    return of_type.unit if isinstance(of_type, m.IntegerType) else None
+
+
+def _used(params: Sequence[Param], expression: Expr) -> tuple[Param, ...]:
+    """The parameters that an expression names."""
+    named = {text.partition(".")[0].partition("'")[0] for text in names_in(expression)}
+    named |= {
+        text.partition(".")[0] for one in _aggregates(expression) if (text := one.base) is not None
+    }
+    return tuple(p for p in params if p.name in named)
+
+
+def _aggregates(construct: object) -> Iterable[Aggregate]:
+    if isinstance(construct, Aggregate):
+        yield construct
+    if isinstance(construct, Ref | str) or construct is None:
+        return
+    slots = getattr(construct, "__slots__", ())
+    parts = construct if isinstance(construct, tuple) else [getattr(construct, s) for s in slots]
+    for part in parts:
+        yield from _aggregates(part)
+
+
+def _of(function: Subprogram, prefix: str) -> Call | Ref:
+    """A call with the parameters' own names, those of a region's components behind a prefix."""
+    if not function.params:
+        return Ref(function.name)
+    return call(function.name, *(Ref(f"{prefix}{p.name}") for p in function.params))

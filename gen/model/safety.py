@@ -1,0 +1,112 @@
+"""Invariants that are contracts of the generated code, with what makes them inductive.
+
+`behaviour.rules.inductive` finds them, and the emitter of charts writes them: an invariant over
+the states and data of one region, and the facts without which a transition might break it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravenchart.gen.language.terms import (
+    BOOLEAN,
+    EnumerationType,
+    Expression,
+    Literal,
+    Name,
+    Operation,
+    Reading,
+    RecordType,
+    ScalarType,
+    Type,
+    named,
+)
+
+from .component import Component
+from .statechart import Lane, Region
+
+Span = tuple[int, int]
+"""First and last value; literals of an enumeration count by their position."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """While ``vertex``, a leaf or a choice or history, is active, a data item is in a span."""
+
+    vertex: str
+    data: str
+    field: str | None
+    spans: tuple[Span, ...]
+    """In ascending order; none where the vertex is never active."""
+
+    def condition(self, component: Component) -> Expression:
+        """What holds of the data."""
+        item = Name(Reading.DATA, self.data, self.field, named(component.data, self.data).type)
+        of_type = item.type if self.field is None else _record(item.type).field(self.field).type
+        assert not isinstance(of_type, RecordType)
+        parts = [_within(item, of_type, span) for span in self.spans]
+        return _joined("or", parts) if parts else Literal("False", BOOLEAN)
+
+
+@dataclass(frozen=True, slots=True)
+class SafeRegion:
+    """The invariants that each step of a region keeps, by proof of its code."""
+
+    component: str
+    region: str
+    invariants: tuple[str, ...]
+    """Their names, in model order."""
+    facts: tuple[Fact, ...]
+    alone: tuple[str, ...] = ()
+    """Transitions with a guard that are selected only where no lane before theirs selects."""
+
+
+def _record(of_type: Type) -> RecordType:
+    assert isinstance(of_type, RecordType)
+    return of_type
+
+
+def knows_guards(region: Region, lane: Lane) -> bool:
+    """Whether the guards of a lane's transitions hold when they fire.
+
+    All guards of a step are read before anything fires. They still hold where nothing fired
+    before in the same step: in the first lane, and in one that fires only when those before it,
+    which are inside it, do not.
+    """
+    before = region.lanes()[: region.lanes().index(lane)]
+    return all(_is_inside(region, one, lane) for one in before)
+
+
+def _is_inside(region: Region, lane: Lane, outer: Lane) -> bool:
+    while lane.owner is not None:
+        lane = region.lane(lane.owner)
+        if lane == outer:
+            return True
+    return False
+
+
+def _within(item: Name, of_type: ScalarType, span: Span) -> Expression:
+    first, last = span
+    if of_type == BOOLEAN:
+        return item if first else Operation("not", (item,), BOOLEAN)
+    if isinstance(of_type, EnumerationType):
+        one = [
+            Operation("=", (item, Literal(of_type.literals[at], of_type)), BOOLEAN)
+            for at in range(first, last + 1)
+        ]
+        return _joined("or", list(one))
+    if first == last:
+        return Operation("=", (item, Literal(first, None)), BOOLEAN)
+    parts: list[Expression] = []
+    if first > of_type.first:
+        parts.append(Operation(">=", (item, Literal(first, None)), BOOLEAN))
+    if last < of_type.last:
+        parts.append(Operation("<=", (item, Literal(last, None)), BOOLEAN))
+    return _joined("and", parts)
+
+
+def _joined(operator: str, parts: list[Expression]) -> Expression:
+    made = parts[0]
+    for part in parts[1:]:
+        made = Operation(operator, (made, part), BOOLEAN)
+    return made
