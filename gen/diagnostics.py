@@ -146,6 +146,7 @@ CODES: Mapping[str, str] = {
     "RV-0619": "A message cannot be protected from end to end as it is given.",
     "RV-0620": "A message cannot have that transmission mode.",
     "RV-0621": "A message cannot be authenticated as it is given.",
+    "RV-0622": "A name in databases is malformed, or used twice.",
     "RV-0626": "A value cannot be sent in several frames as it is given.",
     "RV-0701": "An activity, region or port region is allocated to no processor.",
     "RV-0702": "An activity, region or port region is allocated twice.",

@@ -16,6 +16,7 @@ from ravenchart.gen.files.schema import ModelFile
 from ravenchart.gen.language.names import Findings
 from ravenchart.gen.model.system import System
 from ravenchart.gen.resolve.system import resolve
+from ravenchart.gen.rules.buses import names_in_databases
 from ravenchart.gen.rules.cores import shared_across_cores
 from ravenchart.gen.rules.system import violations
 
@@ -49,6 +50,7 @@ def _valid(
     if _has_error(findings):
         return None
     system = completed(resolved.system)
+    findings.items.extend(names_in_databases(system))
     findings.items.extend(shared_across_cores(system))
     return None if _has_error(findings) else system
 

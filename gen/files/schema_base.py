@@ -24,10 +24,13 @@ from pydantic import Field as PydanticField
 from pydantic_core import PydanticCustomError
 
 from ravenchart.gen.language.names import (
+    DATABASE_NAME,
     IDENTIFIER,
+    LONGEST_DATABASE_NAME,
     LONGEST_NAME,
     LONGEST_REQUIREMENT,
     REQUIREMENT,
+    database_problem_of,
     problem_of,
 )
 from ravenchart.gen.language.quantities import (
@@ -62,6 +65,13 @@ def _name(text: str) -> str:
     problem = problem_of(text)
     if problem is not None:
         raise PydanticCustomError("coded", "{message}", {"code": problem[0], "message": problem[1]})
+    return text
+
+
+def _database_name(text: str) -> str:
+    problem = database_problem_of(text)
+    if problem is not None:
+        raise _coded("RV-0622", problem)
     return text
 
 
@@ -117,6 +127,15 @@ Name = Annotated[
     WithJsonSchema({"type": "string", "pattern": IDENTIFIER, "maxLength": LONGEST_NAME}),
 ]
 """An Ada identifier."""
+
+DatabaseName = Annotated[
+    str,
+    AfterValidator(_database_name),
+    WithJsonSchema(
+        {"type": "string", "pattern": DATABASE_NAME, "maxLength": LONGEST_DATABASE_NAME}
+    ),
+]
+"""What a message or signal is called in CAN databases."""
 
 Reference = Annotated[str, WithJsonSchema({"type": "string", "pattern": IDENTIFIER})]
 """The name of something declared elsewhere."""

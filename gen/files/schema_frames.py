@@ -13,6 +13,7 @@ from ravenchart.gen.model.protection import ProfileName
 from .schema_base import (
     BitRate,
     Constant,
+    DatabaseName,
     DataRate,
     Element,
     Flag,
@@ -184,6 +185,10 @@ class SignalForm(Element):
         ]
         | None
     ) = optional("Values of the multiplexor with which it is in the frame; always unless given.")
+    database_name: DatabaseName | None = optional(
+        "Its name in the database of the bus (DBC): an identifier of C, of up to 128 characters, "
+        "that no other signal of the message has; the field's name unless given."
+    )
 
 
 class ProtectionForm(Element):
@@ -383,4 +388,8 @@ class MessageForm(Element):
     deadline: PositiveSpan | None = optional(
         "From the release of what sends it, or from its arrival, until it is received; the period "
         "unless given."
+    )
+    database_name: DatabaseName | None = optional(
+        "Its name in the database of the bus (DBC): an identifier of C, of up to 128 characters, "
+        "that no other message of the bus has; its own name unless given."
     )

@@ -16,6 +16,9 @@ LONGEST_NAME = 60
 REQUIREMENT = r"^[A-Za-z0-9]([-_A-Za-z0-9.:/]*[A-Za-z0-9])?$"
 """The id of a requirement, as a list of requirements has it."""
 LONGEST_REQUIREMENT = 64
+DATABASE_NAME = r"^[A-Za-z_][A-Za-z0-9_]*$"
+"""What a message or signal can be called in a CAN database (DBC): an identifier of C."""
+LONGEST_DATABASE_NAME = 128
 LONG_NAME = 24
 """Names up to this length always fit the lines of the generated program."""
 
@@ -38,6 +41,15 @@ program_error storage_error tasking_error
 """
 PREDEFINED_TYPES = frozenset(_PREDEFINED_TYPES.split())
 """Names that a type would hide from the generated program."""
+
+_DATABASE_KEYWORDS = """
+BA_ BA_DEF_ BA_DEF_DEF_ BA_DEF_DEF_REL_ BA_DEF_REL_ BA_DEF_SGTYPE_ BA_REL_ BA_SGTYPE_ BO_ BO_TX_BU_
+BS_ BU_ BU_BO_REL_ BU_EV_REL_ BU_SG_REL_ CAT_ CAT_DEF_ CM_ ENVVAR_DATA_ EV_ EV_DATA_ FILTER NS_
+NS_DESC_ SGTYPE_ SGTYPE_VAL_ SG_ SG_MUL_VAL_ SIGTYPE_VALTYPE_ SIG_GROUP_ SIG_TYPE_REF_ SIG_VALTYPE_
+VAL_ VAL_TABLE_ VERSION Vector__XXX
+"""
+DATABASE_KEYWORDS = frozenset(_DATABASE_KEYWORDS.split())
+"""Words that have a meaning in a DBC, so that nothing in it is called so."""
 
 GNAT_PREFIXES = frozenset("agis")
 """Parents of GNAT's own units in names of files: `a-*` is a child of Ada, `g-*` one of GNAT."""
@@ -72,6 +84,18 @@ def problem_of(name: str) -> tuple[str, str] | None:
     if name.lower() in RESERVED:
         return "RV-0302", f"`{name}` is a reserved word of Ada"
     return None
+
+
+def database_problem_of(name: str) -> str | None:
+    """Why ``name`` cannot name a message or signal of a CAN database (DBC); None when it can."""
+    if len(name) > LONGEST_DATABASE_NAME:
+        most = LONGEST_DATABASE_NAME
+        return f"a name in databases has at most {most} characters, this one has {len(name)}"
+    if not re.fullmatch(DATABASE_NAME, name):
+        return (
+            f"`{name}` is not a name in databases: letters, digits and underscores, first no digit"
+        )
+    return f"`{name}` is a keyword of DBC files" if name in DATABASE_KEYWORDS else None
 
 
 def meant(name: str, known: Iterable[str]) -> str | None:

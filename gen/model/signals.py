@@ -8,6 +8,7 @@ bit 7 of the next byte. These are the conventions of CAN databases (DBC).
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
@@ -72,11 +73,18 @@ class Signal:
     """The multiplexor: its value tells which of the multiplexed signals are there."""
     pages: tuple[int, ...] = ()
     """Raw values of the multiplexor with which it is there; none: it always is."""
+    database_name: str | None = dataclasses.field(default=None, compare=False)
+    """What databases call it; None: as the model does. No part of the layout."""
 
     @property
     def name(self) -> str:
         """The field's name, or `value` where the value has no fields."""
         return self.field or "value"
+
+    @property
+    def in_database(self) -> str:
+        """Its name in the database of the bus."""
+        return self.database_name or self.name
 
     @property
     def coding(self) -> tuple[int, bool, int, tuple[int, ...], str | None]:

@@ -231,6 +231,13 @@ class Message:
     """Its value travels in several frames, of which it describes each; None: in one."""
     controls: str = ""
     """The message with transport whose flow control it is; "" for all others."""
+    database_name: str | None = None
+    """What databases call it, an identifier of C; None: as the model does."""
+
+    @property
+    def in_database(self) -> str:
+        """Its name in the database of the bus."""
+        return self.database_name or self.name
 
     @property
     def element(self) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
 from ravenchart.gen.language.names import Findings, meant
 from ravenchart.gen.language.terms import EnumerationType, IntegerType, ScalarType, Type
+from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
 from ravenchart.gen.model.protection import PROFILES
 from ravenchart.gen.model.signals import (
     FD_SIZES,
@@ -34,6 +35,9 @@ ROOM = "RV-0615"
 """Two signals share bits, or one reaches beyond the frame."""
 SIZE = "RV-0616"
 """There is no frame of that length, or it is too short."""
+
+DATABASE = "RV-0622"
+"""Two names in databases are equal."""
 
 SIGNED_BITS = 62
 """Bits of a signed signal at most: its values are computed in 64."""
@@ -76,7 +80,7 @@ def layout_of(
     if not sound or (form.multiplexor is not None and selector is None):
         return None
     laid = packed(signals, starts, maker.header)
-    return laid if maker.fits(laid) else None
+    return laid if maker.named_once(laid) and maker.fits(laid) else None
 
 
 def size_of(
@@ -178,7 +182,8 @@ class _Maker:
             hint = "leave `signed` and `offset` out"
             message = f"the raw values of the multiplexor `{key}` must be its values, from 0 on"
             self.wrong(key, None, message, hint)
-        return None if self.findings.count() > before else replace(made, pages=pages)
+        made = replace(made, pages=pages, database_name=form.database_name)
+        return None if self.findings.count() > before else made
 
     def _codes(self, form: SignalForm, key: str, scalar: ScalarType) -> tuple[int, ...]:
         if form.codes is None:
@@ -246,6 +251,29 @@ class _Maker:
             self.wrong(key, "when", message, "name values that have one raw value each")
             return ()
         return tuple(sorted({selector.raw(one) for one in found if one is not None}))
+
+    def named_once(self, signals: tuple[Signal, ...]) -> bool:
+        """Whether databases can tell the signals of the message by their names."""
+        before = self.findings.count()
+        known = dict.fromkeys(self._added, "a signal of the protection")
+        for signal in sorted(signals, key=lambda one: one.database_name is not None):
+            other = known.setdefault(signal.in_database, own := f"`{signal.name}`")
+            if signal.database_name is not None and other != own:
+                message = f"{own} and {other} of {self.name} are both named "
+                message += f"`{signal.in_database}` in the database"
+                key = next(k for k in self.form.signals or {} if k.lower() == signal.name.lower())
+                hint = "give one of them another `database_name`"
+                at = self._at(key, "database_name")
+                self.findings.error(DATABASE, at, message, hint=hint)
+        return self.findings.count() == before
+
+    @property
+    def _added(self) -> tuple[str, ...]:
+        """The names of the signals of protection and authentication."""
+        given = self.form.protection
+        header = () if given is None else PROFILES[given.profile].fields
+        trailer = () if self.form.authentication is None else (FRESHNESS, MAC, REST)
+        return (*(one.name for one in header), *trailer)
 
     def fits(self, signals: tuple[Signal, ...]) -> bool:
         """Whether no two share bits, and none reaches beyond the longest frame there is."""

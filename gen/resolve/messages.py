@@ -99,6 +99,7 @@ def message_of(name: str, form: MessageForm, site: Site) -> Message | None:
         authentication=travels.authentication,
         transmission=travels.transmission,
         transport=travels.transport,
+        database_name=form.database_name,
     )
 
 

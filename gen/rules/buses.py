@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.system import Bus, Message, Slot, System, Work
 from ravenchart.gen.resolve.authentication import AUTHENTICATION
+from ravenchart.gen.resolve.layouts import DATABASE
 from ravenchart.gen.resolve.protection import PROTECTION
 from ravenchart.gen.resolve.system import Resolved
 from ravenchart.gen.resolve.transport import TRANSPORT
@@ -149,7 +150,26 @@ def transports_have_two_ends(resolved: Resolved) -> Iterator[Diagnostic]:
             yield error(TRANSPORT, message.origin, text, notes=notes, hint=hint)
 
 
+def names_in_databases(system: System) -> Iterator[Diagnostic]:
+    """No two messages of a bus have one name in its database, those between nodes included."""
+    known: dict[tuple[str, str], Message] = {}
+    for message in sorted(system.frames, key=lambda one: one.database_name is not None):
+        other = known.setdefault((message.bus, message.in_database), message)
+        if message.database_name is not None and other is not message:
+            text = f"{message.name} and {other.name} are both named `{message.in_database}` in the "
+            text += f"database of {message.bus}"
+            notes = [(other.origin, f"{other.name} is declared here")]
+            hint = "give one of them another `database_name`"
+            yield error(DATABASE, message.origin, text, notes=notes, hint=hint)
+
+
+def databases_tell_messages_apart(resolved: Resolved) -> Iterator[Diagnostic]:
+    """The same of the messages that the model declares."""
+    yield from names_in_databases(resolved.system)
+
+
 BUS_RULES = (
+    databases_tell_messages_apart,
     transports_have_two_ends,
     buses_are_watched,
     bus_events_can_come,

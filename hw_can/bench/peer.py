@@ -21,6 +21,7 @@ import cantools
 from cantools.database import Database
 from cantools.database.errors import Error as CodecFault
 
+from .naming import as_in_model
 from .protection import HEADER, Sender, Wrong, sender_of
 
 OUTSIDE = "Outside"
@@ -59,13 +60,13 @@ class Codec:
 
     @staticmethod
     def from_file(path: Path) -> Codec:
-        """The codec of a DBC file; BenchError when it cannot be read."""
+        """The codec of a DBC file, by the names of the model; BenchError when it cannot be read."""
         try:
             database = cantools.database.load_file(path, database_format="dbc")
         except (OSError, ValueError, CodecFault) as fault:
             raise BenchError(f"{path.name} cannot be read: {fault}") from None
         assert isinstance(database, Database)
-        return Codec(database)
+        return Codec(as_in_model(database))
 
     @property
     def has_fd(self) -> bool:

@@ -17,7 +17,7 @@ from cantools.database.can import Message, Signal
 from cantools.database.errors import Error as DatabaseFault
 
 from ravenchart.failures import Refused
-from ravenchart.gen.language.names import meant
+from ravenchart.gen.language.names import database_problem_of, meant
 from ravenchart.gen.language.quantities import duration
 from ravenchart.gen.model.signals import FD_SIZES
 from ravenchart.gen.resolve.layouts import SIGNED_BITS
@@ -155,6 +155,8 @@ class _Writer:
     left_out: list[str] = field(default_factory=list)
     """Signals that are not in the model, each with its message and the reason."""
 
+    originals: set[str] = field(default_factory=set)
+    """Names of messages in the database that are in the model."""
     identifiers: dict[tuple[int, bool], str] = field(default_factory=dict)
     """Of the messages, and whether they are extended, with their names."""
 
@@ -247,8 +249,11 @@ class _Writer:
         if found.selector is not None:
             lines.append(f"    multiplexor: {own[found.selector.signal]}")
         lines.append("    signals:")
+        originals: set[str] = set()
         for one in found.fields:
             keys = [*one.words.keys, *_pages(one, found.selector)]
+            if one.signal in message.signals:
+                keys += _kept(own[one.signal], one.signal.name, originals)
             lines.append(f"      {own[one.signal]}: {{{', '.join(keys)}}}")
         self.messages += lines
 
@@ -270,6 +275,7 @@ class _Writer:
         if name != message.name:
             self.changes.append((message.name, f"is named {name}"))
         lines = [f"  {name}:", "    bus: bus", f"    id: {message.frame_id:#x}"]
+        lines += [f"    {one}" for one in _kept(name, message.name, self.originals)]
         lines += ["    extended: true"] if message.is_extended_frame else []
         if message.length > CLASSIC and not message.is_fd:
             self.changes.append((message.name, f"is a CAN FD frame: it has {message.length} bytes"))
@@ -317,6 +323,18 @@ class _Writer:
             wanted = f"{self.names[message]}_{signal.name}"
             self.known[definition] = self.type_names.new(wanted, self.literals)
         return self.known[definition]
+
+
+def _kept(name: str, original: str, known: set[str]) -> list[str]:
+    """The key for the name in the database, where that is another one; adds it to the ``known``.
+
+    A name that no DBC can have is not kept, nor that of an earlier message or signal.
+    """
+    if original in known:
+        return []
+    known.add(original)
+    told = name != original and database_problem_of(original) is None
+    return [f'database_name: "{original}"'] if told else []
 
 
 def _pages(one: Field, selector: Field | None) -> list[str]:

@@ -49,6 +49,7 @@ def exported(system: System, bus: Bus, original: Path | None, *, lenient: bool =
     found = Exported("")
     messages: list[DbcMessage] = []
     kept: set[DbcMessage] = set()
+    own_names: set[str] = set()
     for message in (m for m in system.frames if m.bus == bus.name):
         like = _original(message, names)
         if like is not None and _as_imported(message, like):
@@ -60,13 +61,14 @@ def exported(system: System, bus: Bus, original: Path | None, *, lenient: bool =
         if message.is_foreign:
             found.notes.append(f"{message.name} is left out: others send it to others")
             continue
-        messages.append(made.get_message_by_name(message.name))
+        messages.append(made.get_message_by_name(message.in_database))
+        own_names.add(message.name)
         why = "has another layout or identifier" if message.name in names.values() else "is not"
         found.notes.append(f"{message.name} is as in the model: it {why} in {original.name}")
     found.notes += [
         f"{m.name} of {original.name} is not in the model"
         for m, name in names.items()
-        if m not in kept and name not in {one.name for one in messages}
+        if m not in kept and name not in own_names
     ]
     nodes = list(first.nodes)
     nodes += [node for node in made.nodes if node.name not in {one.name for one in first.nodes}]

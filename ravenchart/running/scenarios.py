@@ -20,6 +20,7 @@ from ravenchart.gen.emit.tables.trace_map import CONTROLLER_STATES, elements
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Instance, System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
+from ravenchart.hw_can.bench.naming import as_in_model
 from ravenchart.hw_can.bench.peer import OUTSIDE, BenchError, Codec
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.reading import Path as Place
@@ -68,6 +69,7 @@ def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
         return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
     database = cantools.database.load_string(emit_dbc(system, system.buses[0]), "dbc")
     assert isinstance(database, cantools.database.Database)
+    database = as_in_model(database)
     check = _Check(source, system, {m.name: m for m in database.messages}, Codec(database))
     check.drives(scenario)
     for index, step in enumerate(scenario.steps):

@@ -242,11 +242,13 @@ def test_periods_that_are_wrong_are_refused(
             ["x counts raw values: it has no value within its limits (value = 1 * raw + 0)"],
         ),
         (
-            'end : 0|8@1+ (1,0) [0|9] ""', "end_2", {"start": 0, "width": 8, "offset": 0}, [0, 9],
+            'end : 0|8@1+ (1,0) [0|9] ""', "end_2",
+            {"start": 0, "width": 8, "offset": 0, "database_name": "end"}, [0, 9],
             ["end is named end_2"],
         ),
         (
-            'x__y : 0|8@1+ (1,0) [0|9] ""', "x_y", {"start": 0, "width": 8, "offset": 0}, [0, 9],
+            'x__y : 0|8@1+ (1,0) [0|9] ""', "x_y",
+            {"start": 0, "width": 8, "offset": 0, "database_name": "x__y"}, [0, 9],
             ["x__y is named x_y"],
         ),
     ],

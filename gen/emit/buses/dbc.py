@@ -52,6 +52,11 @@ DATA_ID = DbcAttributeDefinition[str]("SecOCDataID", "", "BO_", "STRING")
 """Of an authenticated message: the name of its key, and its data identifier in hexadecimal."""
 
 
+MODEL_MESSAGE = DbcAttributeDefinition[str]("ModelMessage", "", "BO_", "STRING")
+MODEL_SIGNAL = DbcAttributeDefinition[str]("ModelSignal", "", "SG_", "STRING")
+"""Of a message and a signal with a `database_name`: what the model calls it."""
+
+
 def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
     """The attributes that the messages need."""
     made = _flexible(bus) if any(m.fd for m in messages) else None
@@ -61,21 +66,38 @@ def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
     if any(m.authentication for m in messages):
         made = made or DbcSpecifics()
         made.attribute_definitions.update({one.name: one for one in (KEY, DATA_ID)})
+    if any(m.database_name or any(s.database_name for s in m.signals) for m in messages):
+        made = made or DbcSpecifics()
+        renamed = (MODEL_MESSAGE, MODEL_SIGNAL)
+        made.attribute_definitions.update({one.name: one for one in renamed})
     return made
 
 
-def _checked(message: Message) -> DbcSpecifics | None:
-    """The attributes of a message that is protected or authenticated."""
+Attributes = list[tuple[DbcAttributeDefinition[str], str]]
+"""Attributes with their values."""
+
+
+def _attributes(message: Message) -> Attributes:
+    """Those of a message that is protected, authenticated, or has another name in the model."""
+    found: Attributes = []
     match message.check:
         case Protection() as own:
             ids = " ".join(f"{one:X}" for one in own.data_ids or (own.data_id,))
-            values = ((PROFILE, str(own.name)), (DATA_IDS, ids))
+            found += [(PROFILE, str(own.name)), (DATA_IDS, ids)]
         case Authentication() as own:
-            values = ((KEY, own.key), (DATA_ID, f"{own.data_id:X}"))
+            found += [(KEY, own.key), (DATA_ID, f"{own.data_id:X}")]
         case None:
-            return None
-    found = ((kind.name, DbcAttribute(value, kind)) for kind, value in values)
-    return DbcSpecifics(attributes=OrderedDict(found))
+            pass
+    return found + _renamed(message, MODEL_MESSAGE)
+
+
+def _renamed(one: Message | Signal, kind: DbcAttributeDefinition[str]) -> Attributes:
+    return [] if one.database_name is None else [(kind, one.name)]
+
+
+def _with(attributes: Attributes) -> DbcSpecifics | None:
+    found = ((kind.name, DbcAttribute(value, kind)) for kind, value in attributes)
+    return DbcSpecifics(attributes=OrderedDict(found)) if attributes else None
 
 
 def _flexible(bus: Bus) -> DbcSpecifics:
@@ -96,7 +118,7 @@ def _message(system: System, message: Message) -> DbcMessage:
     selector = next((s for s in signals if s.selects), None)
     return DbcMessage(
         frame_id=message.identifier,
-        name=message.name,
+        name=message.in_database,
         length=message.length,
         signals=[
             *(_signal(s, selector, receivers) for s in signals),
@@ -107,7 +129,7 @@ def _message(system: System, message: Message) -> DbcMessage:
         cycle_time=None if message.longest is None else message.longest // 1_000_000,
         is_extended_frame=message.extended,
         is_fd=message.fd,
-        dbc_specifics=_checked(message),
+        dbc_specifics=_with(_attributes(message)),
         sort_signals=None,
     )
 
@@ -167,7 +189,7 @@ def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> Db
     )
     is_paged = bool(signal.pages) and selector is not None
     return DbcSignal(
-        name=signal.name,
+        name=signal.in_database,
         start=signal.start,
         length=signal.width,
         byte_order="little_endian" if signal.order is ByteOrder.INTEL else "big_endian",
@@ -179,7 +201,8 @@ def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> Db
         receivers=receivers,
         is_multiplexer=signal.selects,
         multiplexer_ids=list(signal.pages) if is_paged else None,
-        multiplexer_signal=selector.name if is_paged and selector is not None else None,
+        multiplexer_signal=selector.in_database if is_paged and selector is not None else None,
+        dbc_specifics=_with(_renamed(signal, MODEL_SIGNAL)),
     )
 
 
