@@ -13,6 +13,7 @@ from pathlib import Path
 from .equipment import Equipment
 from .findings import UnusableError
 from .frames import Frame, length_of
+from .messages import Message, transfer_of
 from .model import Mapping, Model, Text
 
 
@@ -64,50 +65,6 @@ class Task:
         return found
 
 
-@dataclass(slots=True)
-class Message:
-    """A frame on a bus."""
-
-    name: str
-    bus: str
-    period: int
-    deadline: int
-    length: int
-    frame: Frame
-    source: str | None = None
-    """`instance.port`."""
-    node: str | None = None
-    """The node that sends it."""
-    targets: list[str] = field(default_factory=list)
-    identifier: int | None = None
-    extended: bool = False
-    mac: int = 0
-    """The time to compute the MAC of a frame, where it has one."""
-    renewal: int = 0
-    """The longest time from one frame to the next in transmission mode mixed."""
-
-    @property
-    def element(self) -> str:
-        """`bus.message`."""
-        return f"{self.bus}.{self.name}"
-
-    @property
-    def sending(self) -> str:
-        """The driver's work on sending it."""
-        return f"{self.bus}.driver_tx.{self.name}"
-
-    @property
-    def leading(self) -> int:
-        """The first 11 bits of the identifier."""
-        own = self.identifier or 0
-        return own >> 18 if self.extended else own
-
-    @property
-    def rank(self) -> tuple[int, bool, int]:
-        """The lesser wins the arbitration."""
-        return self.leading, self.extended, self.identifier or 0
-
-
 class Deployment:
     """The tasks and messages of a model."""
 
@@ -122,6 +79,7 @@ class Deployment:
         self.equipment = Equipment(model, self.component_of)
         self._refuse_calls()
         self.messages = self._messages()
+        self.messages += self._flows()
         self._identify()
         self.processors = self._processors()
         self._prioritise()
@@ -209,9 +167,6 @@ class Deployment:
         source = None if source is None else self._end(source)
         targets = [self._end(text) for text in form.texts("to")]
         period = form.time("period") if source is None else self._send_period(source)
-        if form.map("transport"):
-            where = f"{form.file}:{form.line}"
-            raise UnusableError(f"{where}: values in several frames are not derived again")
         if form.map("send"):
             period = form.map("send").time("minimum_delay", period)
         fd = form.text("format") == "fd"
@@ -219,6 +174,9 @@ class Deployment:
         kind = self._type_of(ends[0]) if ends else None
         given = form.text("bytes")
         length = length_of(self.model, kind, form, fd) if given is None else form.number("bytes", 0)
+        transfer = transfer_of(form, length, period)
+        if transfer is not None:
+            length, period = 8, transfer.apart
         extended = form.true("extended")
         identifier = None if form.text("id") is None else form.number("id", 0)
         return Message(
@@ -235,7 +193,36 @@ class Deployment:
             extended=extended,
             mac=form.map("authentication").time("mac_wcet", 0),
             renewal=form.map("send").time("period", 0),
+            transfer=transfer,
         )
+
+    def _flows(self) -> list[Message]:
+        """Flow control of values in several frames: the port region that receives sends it."""
+        for message in (m for m in self.messages if m.transfer is not None and m.source):
+            owner = message.targets[0].partition(".")[0]
+            period = self.component_of(owner).map("port_region").time("period")
+            message.flow = Message(
+                name=f"{message.name}_Flow",
+                bus=message.bus,
+                period=period,
+                deadline=period,
+                length=8,
+                frame=Frame(8, message.extended, False),
+                source=message.targets[0],
+                node=self.home(message.targets[0]),
+                targets=[message.source or ""],
+                identifier=message.transfer.flow_id if message.transfer else None,
+                extended=message.extended,
+                controls=True,
+            )
+        return [m.flow for m in self.messages if m.flow is not None]
+
+    def rows_of(self, message: Message) -> set[str]:
+        """The rows that send a message."""
+        source = message.source or ""
+        if message.controls:
+            return {f"{source.partition('.')[0]}.ports"}
+        return {row for row, _ in self.rows_that_send(source)}
 
     def _carried(self, source: str) -> Message:
         """The message that a connection between nodes becomes."""
@@ -413,7 +400,7 @@ class Deployment:
         for message in self.messages:
             ways: list[tuple[str, str, str]] = []
             if message.source is not None and message.node is not None:
-                rows = {row for row, _ in self.rows_that_send(message.source)}
+                rows = self.rows_of(message)
                 sender = next(
                     (t.element for t in self.processors for r in t.rows if r.element in rows), None
                 )

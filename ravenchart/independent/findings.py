@@ -16,6 +16,8 @@ CLASSES = {
     "buses": "buses: bit rates, bit times, errors",
     "messages": "messages: identifier, length, period, deadline, jitter, bits",
     "arbitration": "response times of messages",
+    "receptions": "receptions: wait of frames, time until they are handed over",
+    "transfers": "values in several frames: round trips, transfer times, time-outs",
     "checks": "conditions that the certificate states",
     "names": "numbers of the certificate, known by their names",
     "states": "states of charts",

@@ -15,15 +15,16 @@ from functools import partial
 from pathlib import Path
 
 from .ada import Certificate, certificate
-from .deployment import Deployment, Message, Task, ada
+from .deployment import Deployment, Task, ada
 from .findings import Report, UnusableError
+from .messages import Message
 
 MOST_STEPS = 100_000
 ERROR_BITS = 31
 
 LEFT = (
     (r"chain_.*", "chains from end to end"),
-    (r".*_(done|turn|handed)|.*_turn_.*", "rows and receptions on the way of a chain"),
+    (r".*_done", "rows on the way of a chain"),
     (r".*_(at|w_at|needs_at|since)_\d+|.*_(cycle|reach)", "instants of offsets"),
     (r".*_(stale|stale_needs|max_age|looks)", "staleness of protected ports"),
     (r".*_(data_bits|few|residual|residual_needs|residual_per_hour)", "residual errors"),
@@ -62,6 +63,10 @@ class Timing:
             self._responses(task)
         for name in self.deployment.buses:
             self._arbitration(name)
+            for node in self.deployment.nodes:
+                self._receptions(name, node)
+        for message in self.deployment.messages:
+            self._transfer(message)
         self._strangers()
 
     # --- comparing
@@ -364,17 +369,85 @@ class Timing:
         path, line = self.certificate.path, self.line(f"{own}_R")
         self.report.agree("arbitration", path, line, claim <= message.deadline, text)
 
+    # --- receptions, and values in several frames
+
+    def _receptions(self, bus: str, node: str) -> None:
+        """When the reception of a node, first in first out, has handed over what arrives.
+
+        Each frame takes one separation of the reception, and then its response twice.
+        """
+        heard = self.deployment.heard(bus, node)
+        here = (t for t in self.deployment.processors if (t.bus, t.node) == (bus, node))
+        reception = next(here, None)
+        if reception is None:
+            return
+
+        def served(among: list[tuple[Message, str]], window: int) -> int:
+            late = [(m.period, self.value(f"{ada(driver)}_R")) for m, driver in among]
+            return sum(-(-(window + r) // period) * reception.period for period, r in late)
+
+        def waiting(among: list[tuple[Message, str]], number: int, window: int) -> int:
+            return number * reception.period + served(among, window + 1)
+
+        for message, driver in heard:
+            several = len(self.deployment.receivers(message)) > 1
+            own = ada(f"{message.element}.{node}" if several else message.element)
+            if not self.has(f"{own}_Turn") and not message.transfer and not message.controls:
+                continue
+            if several:
+                self.same("receptions", f"{own}_T", message.period, f"the period of {own}")
+            late = self.value(f"{ada(driver)}_R")
+            self.same("receptions", f"{own}_Turn_J", late, f"the response of {driver}")
+            busy = self.solved(partial(served, heard), 1)
+            self.same("receptions", f"{own}_Turn_Busy", busy, "the busy period of the reception")
+            self.same("receptions", f"{own}_Turn_Busy_Needs", busy, "the demand within it")
+            others = [one for one in heard if one[0] is not message]
+            count = -(-(busy + late) // message.period)
+            turn, window = 0, 0
+            for number in range(count):
+                window = self.solved(partial(waiting, others, number), window)
+                tail = "" if count == 1 else f"_{number + 1}"
+                why = f"the wait of frame {number + 1} of {own}"
+                self.same("receptions", f"{own}_Turn_W{tail}", window, why)
+                self.same("receptions", f"{own}_Turn_Needs{tail}", window, "the demand within it")
+                turn = max(turn, late + window - number * message.period)
+            self.same("receptions", f"{own}_Turn", turn, f"the longest wait of {own}")
+            handed = turn + 2 * self.value(f"{ada(reception.element)}_R")
+            self.same("receptions", f"{own}_Handed", handed, f"turn and two responses of {own}")
+
+    def _transfer(self, message: Message) -> None:
+        """The time of a value in several frames, with the round trips of its flow control."""
+        transfer, flow = message.transfer, message.flow
+        if transfer is None or flow is None:
+            return
+        own = ada(message.element)
+        segment = self.value(f"{own}_Handed")
+        heard = segment + flow.period + self.value(f"{ada(flow.element)}_Handed")
+        trip = max(message.period, -(-heard // transfer.row) * transfer.row)
+        last = transfer.rounds * trip
+        last += (transfer.further - transfer.rounds) * message.period
+        wanted = {
+            "Row": (transfer.row, "the period of the row that sends"),
+            "Round_Trip": (trip, "the longest round trip of flow control"),
+            "Transfer": (last + segment, "the longest transfer"),
+            "Renewal": (last + message.period, "the longest time from one value to the next"),
+            "Timeout": (transfer.timeout, "the time-out"),
+        }
+        for part, (time, why) in wanted.items():
+            self.same("transfers", f"{own}_{part}", time, f"{why} of {message.element}")
+        text = f"{message.element} can be given up: its round trip and delivery take "
+        text += f"{trip + segment} > {transfer.timeout}"
+        line, path = self.line(f"{own}_Timeout"), self.certificate.path
+        self.report.agree("transfers", path, line, trip + segment <= transfer.timeout, text)
+
     # --- the rest
 
     def _strangers(self) -> None:
         """No number but those that follow from the model, and those not derived again."""
-        way = LEFT[1][1]
+        _, way = LEFT[1]
         kept: dict[str, str] = {}
         for row in (row for task in self.deployment.processors for row in task.rows):
             kept |= {f"{ada(row.element)}_{part}".lower(): way for part in ("W", "Needs")}
-        for message in self.deployment.messages:
-            for node in self.deployment.receivers(message):
-                kept[f"{ada(f'{message.element}.{node}')}_T".lower()] = way
         for name, found in self.certificate.numbers.items():
             if name in self.known:
                 self.report.counts["names"] += 1

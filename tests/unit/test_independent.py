@@ -89,6 +89,39 @@ def test_variants_of_a_model_agree(edits: list[tuple[str, str]], tmp_path: Path)
     assert checked(_generated(model)).disagreements == []
 
 
+SEPARATION = "block: 4, separation: 2 ms, timeout: 500 ms"
+PRIORITY = "transmit_depth: 8, buffers: priority"
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [
+        [],
+        [(SEPARATION, "block: 1, separation: 700 us")],
+        [(SEPARATION, "flow_limit: 3"), ("transmit_depth: 16", PRIORITY)],
+        [("id: 0x120", "id: 0x120\n    extended: true"), ("    id: 0x130\n", "")],
+        [("shutdown:", "chains:\n  told: {path: [face.show, table], reaction: 1 s}\nshutdown:")],
+    ],
+    ids=["as it is", "blocks", "priority", "identifiers", "chain"],
+)
+def test_values_in_several_frames_agree(edits: list[tuple[str, str]], tmp_path: Path) -> None:
+    report = checked(_segmented(tmp_path, edits))
+    assert report.disagreements == []
+    assert report.counts["transfers"] > 20 and report.counts["receptions"] > 50
+    assert "rows and receptions" not in " ".join(report.not_derived)
+
+
+def _segmented(folder: Path, edits: list[tuple[str, str]]) -> Path:
+    """A model with values in several frames, edited, and its program."""
+    text = (ROOT / "tests/nodes/segmented/model.yaml").read_text(encoding="utf-8")
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    model = folder / "model.yaml"
+    model.write_text(text, encoding="utf-8")
+    return _generated(model)
+
+
 # --- Alterations ---------------------------------------------------------------------
 
 
@@ -172,6 +205,44 @@ def test_each_number_of_a_certificate_is_found_when_it_is_altered(tmp_path: Path
         path.write_text(f"{text[: one.end()]} 1 + {text[one.end() :]}", encoding="utf-8")
         lines = {item.line for item in checked(home / "model.yaml").disagreements}
         assert _line(text, one[0]) in lines, one[1]
+
+
+def test_each_number_of_a_transfer_is_found_when_it_is_altered(tmp_path: Path) -> None:
+    model = _segmented(tmp_path, [])
+    path = tmp_path / "generated/sensor/segmented-timing_certificate.ads"
+    text = path.read_text(encoding="utf-8")
+    wanted = r"^   (\w+_(?:Turn\w*|Handed|Row|Round_Trip|Transfer|Renewal|Timeout)) : constant :="
+    numbers = [m for m in re.finditer(wanted, text, re.MULTILINE) if "Table" in m[1]]
+    assert len(numbers) == 19
+    for one in numbers:
+        path.write_text(f"{text[: one.end()]} 1 + {text[one.end() :]}", encoding="utf-8")
+        lines = {item.line for item in checked(model).disagreements}
+        assert _line(text, one[0]) in lines, one[1]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "part"),
+    [
+        ("block: 4", "block: 5", "Line_Table_Transfer :"),
+        ("separation: 2 ms", "separation: 5 ms", "Line_Table_T :"),
+        ("timeout: 500 ms", "timeout: 600 ms", "Line_Table_Timeout :"),
+        ("timeout: 500 ms", "timeout: 10 ms", "Line_Table_Timeout :"),
+        ("flow_id: 0x131", "flow_id: 0x132", "Line_Table_Flow_Id :"),
+        ("port_region: {period: 5 ms", "port_region: {period: 10 ms", "Line_Table_Flow_T :"),
+        ("t30: Word\n", "t30: Byte\n", "Line_Table_Transfer :"),
+    ],
+)
+def test_an_edit_of_a_transfer_is_found(old: str, new: str, part: str, tmp_path: Path) -> None:
+    model = _segmented(tmp_path, [])
+    text = model.read_text(encoding="utf-8")
+    assert old in text
+    if "Byte" in new:  # 57 bytes have one frame fewer
+        for number in range(24, 31):
+            text = text.replace(f"t{number}: Word", f"t{number}: Byte")
+    model.write_text(text.replace(old, new), encoding="utf-8")
+    path = tmp_path / "generated/sensor/segmented-timing_certificate.ads"
+    line = _line(path.read_text(encoding="utf-8"), part)
+    assert line in {one.line for one in checked(model).disagreements if one.kind != "digest"}
 
 
 def test_each_state_in_a_declared_form_is_found_when_it_is_altered(tmp_path: Path) -> None:
