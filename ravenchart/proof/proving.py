@@ -91,11 +91,11 @@ def prove(
 ) -> Proof:
     """Run gnatprove, or take the results of an earlier run on the same content.
 
-    NotProved when anything is left, ToolFailed when gnatprove ended for another reason. ``fresh``
-    runs it in any case, and each prover with it; else only formulas that were not proved before go
-    to a prover, and those that the ``memcached`` server of a team does not have. The result
-    folders are emptied first, so the results are those of this run alone. How far the run is goes
-    to ``tell``.
+    NotProved when anything is left, ToolFailed when gnatprove ended for another reason or a source
+    was changed meanwhile. ``fresh`` runs it in any case, and each prover with it; else only
+    formulas that were not proved before go to a prover, and those that the ``memcached`` server of
+    a team does not have. The result folders are emptied first, so the results are those of this
+    run alone. How far the run is goes to ``tell``.
     """
     version = ages.version()
     inputs = _inputs(task.sources)
@@ -112,6 +112,9 @@ def prove(
             except ToolFailed as problem:
                 failed = problem
         results = spark_results.read_results(task.results, task.units)
+        edited = sorted(path for path, _ in _inputs(task.sources).items() ^ inputs.items())
+        if edited:
+            raise ToolFailed(f"{edited[0]}: error: it was changed during the proof; prove again")
         if failed is None:
             proof_cache.store(key, results)
     read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
