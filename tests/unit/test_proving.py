@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.failures import ToolFailed
-from ravenchart.proof import ages, earlier, proving
+from ravenchart.proof import ages, earlier, proving, spark_results
 from ravenchart.proof.spark_results import Results
 
 
@@ -23,7 +23,7 @@ def test_sources_that_change_during_a_proof_give_no_result(
     monkeypatch.setattr(ages, "tool_text", lambda _: "tool")
     monkeypatch.setattr(earlier, "load", lambda _: None)
     monkeypatch.setattr(earlier, "store", lambda key, _: stored.append(key))
-    monkeypatch.setattr(proving.spark_results, "read_results", lambda *_: empty)
+    monkeypatch.setattr(spark_results, "read_results", lambda *_: empty)
 
     def run(_task: proving.Task, _server: object, _tell: object) -> None:
         source.write_text(text)
