@@ -32,6 +32,19 @@ is
        Due >= Window and then Is_Counted (Period, Cost, Taken, Due);
    --  Count those within Window.
 
+   procedure Take_One
+     (Period, Cost : Times;
+      J            : Task_Number;
+      Window       : Ticks;
+      Taken, Due   : in out Times)
+   with
+     Pre  =>
+       Are_Plain (J, Period, Cost)
+       and then Window in 1 .. Limit
+       and then Are_Counted (Period, Cost, Taken, Due, J - 1),
+     Post => Are_Counted (Period, Cost, Taken, Due, J);
+   --  Count the releases of task J besides those of the tasks before it.
+
    procedure Take_In
      (Period, Cost : Times;
       Before       : Task_Count;
@@ -143,6 +156,55 @@ is
      Post => Taken >= ((Window - 1) / Period + 1) * Cost;
    --  Up to the next release nothing is added.
 
+   procedure Prove_Unchanged
+     (Period, Cost             : Times;
+      Taken_Before, Due_Before : Times;
+      Taken, Due               : Times;
+      J                        : Task_Number)
+   with
+     Ghost,
+     Pre  =>
+       Are_Plain (J, Period, Cost)
+       and then Are_Counted (Period, Cost, Taken_Before, Due_Before, J - 1)
+       and then (for all K in 1 .. J - 1 => Taken (K) = Taken_Before (K))
+       and then (for all K in 1 .. J - 1 => Due (K) = Due_Before (K))
+       and then Is_Counted (Period (J), Cost (J), Taken (J), Due (J)),
+     Post => Are_Counted (Period, Cost, Taken, Due, J);
+   --  What was counted of the tasks before J still is.
+
+   procedure Prove_Next
+     (Period, Cost : Times;
+      Taken, Due   : Times;
+      K            : Task_Number)
+   with
+     Ghost,
+     Pre  =>
+       Are_Plain (K, Period, Cost)
+       and then Are_Counted (Period, Cost, Taken, Due, K - 1)
+       and then Is_Counted (Period (K), Cost (K), Taken (K), Due (K)),
+     Post => Are_Counted (Period, Cost, Taken, Due, K);
+   --  One task more.
+
+   procedure Prove_Replaced
+     (Period, Cost             : Times;
+      Taken_Before, Due_Before : Times;
+      Taken, Due               : Times;
+      Level, J                 : Task_Number)
+   with
+     Ghost,
+     Pre  =>
+       J <= Level
+       and then Are_Plain (Level, Period, Cost)
+       and then Are_Counted (Period, Cost, Taken_Before, Due_Before, Level)
+       and then
+         (for all K in 1 .. Level =>
+            (if K /= J then Taken (K) = Taken_Before (K)))
+       and then
+         (for all K in 1 .. Level => (if K /= J then Due (K) = Due_Before (K)))
+       and then Is_Counted (Period (J), Cost (J), Taken (J), Due (J)),
+     Post => Are_Counted (Period, Cost, Taken, Due, Level);
+   --  What was counted of the other tasks still is.
+
    -----------------
    -- Prove_Taken --
    -----------------
@@ -156,6 +218,59 @@ is
         (((Window - 1) / Period + 1) * Cost <= Due / Period * Cost);
       pragma Assert (Taken = Due / Period * Cost);
    end Prove_Taken;
+
+   ---------------------
+   -- Prove_Unchanged --
+   ---------------------
+
+   procedure Prove_Unchanged
+     (Period, Cost             : Times;
+      Taken_Before, Due_Before : Times;
+      Taken, Due               : Times;
+      J                        : Task_Number) is
+   begin
+      for K in 1 .. J - 1 loop
+         pragma Assert
+           (Is_Counted
+              (Period (K), Cost (K), Taken_Before (K), Due_Before (K)));
+         pragma Assert
+           (Is_Counted (Period (K), Cost (K), Taken (K), Due (K)));
+         pragma Loop_Invariant (Are_Counted (Period, Cost, Taken, Due, K));
+      end loop;
+   end Prove_Unchanged;
+
+   ----------------
+   -- Prove_Next --
+   ----------------
+
+   procedure Prove_Next
+     (Period, Cost : Times;
+      Taken, Due   : Times;
+      K            : Task_Number)
+   is null;
+
+   --------------------
+   -- Prove_Replaced --
+   --------------------
+
+   procedure Prove_Replaced
+     (Period, Cost             : Times;
+      Taken_Before, Due_Before : Times;
+      Taken, Due               : Times;
+      Level, J                 : Task_Number) is
+   begin
+      for K in 1 .. Level loop
+         pragma Assert
+           (K = J
+            or else
+              Is_Counted
+                (Period (K), Cost (K), Taken_Before (K), Due_Before (K)));
+         pragma Assert
+           (Is_Counted (Period (K), Cost (K), Taken (K), Due (K)));
+         Prove_Next (Period, Cost, Taken, Due, K);
+         pragma Loop_Invariant (Are_Counted (Period, Cost, Taken, Due, K));
+      end loop;
+   end Prove_Replaced;
 
    --------------------
    -- Count_Releases --
@@ -174,6 +289,23 @@ is
       pragma Assert (Due / Period = Releases);
    end Count_Releases;
 
+   --------------
+   -- Take_One --
+   --------------
+
+   procedure Take_One
+     (Period, Cost : Times;
+      J            : Task_Number;
+      Window       : Ticks;
+      Taken, Due   : in out Times)
+   is
+      Taken_Before : constant Times := Taken with Ghost;
+      Due_Before   : constant Times := Due with Ghost;
+   begin
+      Count_Releases (Period (J), Cost (J), Window, Taken (J), Due (J));
+      Prove_Unchanged (Period, Cost, Taken_Before, Due_Before, Taken, Due, J);
+   end Take_One;
+
    -------------
    -- Take_In --
    -------------
@@ -187,8 +319,7 @@ is
    is
    begin
       for J in Before + 1 .. Level loop
-         Count_Releases (Period (J), Cost (J), Window, Taken (J), Due (J));
-         pragma Assert (Are_Counted (Period, Cost, Taken, Due, J - 1));
+         Take_One (Period, Cost, J, Window, Taken, Due);
          pragma Loop_Invariant (Are_Counted (Period, Cost, Taken, Due, J));
       end loop;
    end Take_In;
@@ -203,17 +334,12 @@ is
       Window       : Ticks;
       Taken, Due   : in out Times)
    is
-      Own_Taken, Own_Due : Ticks;
+      Taken_Before : constant Times := Taken with Ghost;
+      Due_Before   : constant Times := Due with Ghost;
    begin
-      Count_Releases (Period (J), Cost (J), Window, Own_Taken, Own_Due);
-      Taken (J) := Own_Taken;
-      Due (J)   := Own_Due;
-      pragma Assert
-        (Is_Counted (Period (J), Cost (J), Taken (J), Due (J)));
-      pragma Assert
-        (for all K in 1 .. Level =>
-           (if K /= J then
-              Is_Counted (Period (K), Cost (K), Taken (K), Due (K))));
+      Count_Releases (Period (J), Cost (J), Window, Taken (J), Due (J));
+      Prove_Replaced
+        (Period, Cost, Taken_Before, Due_Before, Taken, Due, Level, J);
    end Renew;
 
    ----------
