@@ -3,14 +3,13 @@
 A chart with orthogonal states has as many configurations as the product of their regions. Where
 those are too many, a region is looked at in *parts*: a leaf with the states around it, and nothing
 of the regions beside it. A step is then made from each part as if the other regions selected
-nothing. What they do in the same step is found from their own parts, with three exceptions:
+nothing. What they do in the same step is found from their own parts, with three exceptions.
 
-- A transition from inside an orthogonal state that leaves this state exits the other regions too.
-  Its step is made with each of their parts besides (`Parts.meetings`).
-- An orthogonal state completes when each of its regions is in a final state. It may, as soon as
-  each of them was seen to be in one (`Parts.completed`).
-- Data that other regions set may change between the selection of a step and its end
-  (`Parts.contested`).
+A transition from inside an orthogonal state that leaves this state exits the other regions too. Its
+step is made with each of their parts besides (`Parts.meetings`). An orthogonal state completes when
+each of its regions is in a final state: it may, as soon as each of them was seen to be in one
+(`Parts.completed`). Data that other regions set may change between the selection of a step and its
+end (`Parts.contested`).
 
 So each leaf, transition and event that configurations lead to is found, and perhaps more.
 """

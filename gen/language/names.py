@@ -16,7 +16,7 @@ LONGEST_NAME = 60
 REQUIREMENT = r"^[A-Za-z0-9]([-_A-Za-z0-9.:/]*[A-Za-z0-9])?$"
 """The id of a requirement, as a list of requirements has it."""
 LONGEST_REQUIREMENT = 64
-DATABASE_NAME = r"^[A-Za-z_][A-Za-z0-9_]*$"
+DATABASE_NAME = r"^[_A-Za-z][_A-Za-z0-9]*$"
 """What a message or signal can be called in a CAN database (DBC): an identifier of C."""
 LONGEST_DATABASE_NAME = 128
 LONG_NAME = 24
