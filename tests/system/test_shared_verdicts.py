@@ -70,4 +70,6 @@ def test_a_second_machine_starts_no_prover_and_finds_the_same(
 def test_what_changed_is_proved_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
     assert not _proof(tmp_path / "here", SPEC).unproved
-    assert _proof(tmp_path / "here", WRONG_SPEC).unproved
+    with pytest.raises(proving.NotProved) as left:
+        _proof(tmp_path / "here", WRONG_SPEC)
+    assert left.value.proof.results.unproved
