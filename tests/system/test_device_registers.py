@@ -144,7 +144,8 @@ FAULTS = {
     "an access to memory that is not there": (
         "with System;\n\n",
         """declare
-            Nothing : Natural with Import, Volatile, Address => System.Null_Address;
+            Nothing : Natural
+            with Import, Volatile, Address => System.Null_Address;
          begin
             Turns := Nothing;
          end;""",
