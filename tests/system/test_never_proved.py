@@ -10,6 +10,7 @@ import pytest
 from ravenchart.building import checking, generation
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
+from ravenchart.proof import ages
 from ravenchart.tools import toolchain
 
 pytestmark = pytest.mark.skipif(
@@ -42,5 +43,6 @@ def test_an_effect_that_breaks_an_invariant_is_not_proved(program: Path, what: s
     body.write_text(text.replace(old, new))
     variables = {"RAVENCHART_BUILD": str(program.parent / "build")}
     options = ["-P", "never_feature.gpr", "-q", "--output=oneline", "--no-subprojects"]
+    options += ages.switches()
     with pytest.raises(ToolFailed, match=rf"might fail, cannot prove .*{claim}"):
         toolchain.run("gnatprove", [*options, "-u", FILLING], program, variables)
