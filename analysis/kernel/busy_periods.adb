@@ -156,22 +156,6 @@ is
      Post => Taken >= ((Window - 1) / Period + 1) * Cost;
    --  Up to the next release nothing is added.
 
-   procedure Prove_Unchanged
-     (Period, Cost             : Times;
-      Taken_Before, Due_Before : Times;
-      Taken, Due               : Times;
-      J                        : Task_Number)
-   with
-     Ghost,
-     Pre  =>
-       Are_Plain (J, Period, Cost)
-       and then Are_Counted (Period, Cost, Taken_Before, Due_Before, J - 1)
-       and then (for all K in 1 .. J - 1 => Taken (K) = Taken_Before (K))
-       and then (for all K in 1 .. J - 1 => Due (K) = Due_Before (K))
-       and then Is_Counted (Period (J), Cost (J), Taken (J), Due (J)),
-     Post => Are_Counted (Period, Cost, Taken, Due, J);
-   --  What was counted of the tasks before J still is.
-
    procedure Prove_Next
      (Period, Cost : Times;
       Taken, Due   : Times;
@@ -195,7 +179,11 @@ is
      Pre  =>
        J <= Level
        and then Are_Plain (Level, Period, Cost)
-       and then Are_Counted (Period, Cost, Taken_Before, Due_Before, Level)
+       and then
+         (for all K in 1 .. Level =>
+            (if K /= J then
+               Is_Counted
+                 (Period (K), Cost (K), Taken_Before (K), Due_Before (K))))
        and then
          (for all K in 1 .. Level =>
             (if K /= J then Taken (K) = Taken_Before (K)))
@@ -218,26 +206,6 @@ is
         (((Window - 1) / Period + 1) * Cost <= Due / Period * Cost);
       pragma Assert (Taken = Due / Period * Cost);
    end Prove_Taken;
-
-   ---------------------
-   -- Prove_Unchanged --
-   ---------------------
-
-   procedure Prove_Unchanged
-     (Period, Cost             : Times;
-      Taken_Before, Due_Before : Times;
-      Taken, Due               : Times;
-      J                        : Task_Number) is
-   begin
-      for K in 1 .. J - 1 loop
-         pragma Assert
-           (Is_Counted
-              (Period (K), Cost (K), Taken_Before (K), Due_Before (K)));
-         pragma Assert
-           (Is_Counted (Period (K), Cost (K), Taken (K), Due (K)));
-         pragma Loop_Invariant (Are_Counted (Period, Cost, Taken, Due, K));
-      end loop;
-   end Prove_Unchanged;
 
    ----------------
    -- Prove_Next --
@@ -303,7 +271,8 @@ is
       Due_Before   : constant Times := Due with Ghost;
    begin
       Count_Releases (Period (J), Cost (J), Window, Taken (J), Due (J));
-      Prove_Unchanged (Period, Cost, Taken_Before, Due_Before, Taken, Due, J);
+      Prove_Replaced
+        (Period, Cost, Taken_Before, Due_Before, Taken, Due, J, J);
    end Take_One;
 
    -------------
