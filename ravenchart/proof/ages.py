@@ -8,6 +8,7 @@ well. What both understand stands in switches.gpr, so that gnatprove called by h
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -41,6 +42,16 @@ def version() -> str:
 def switches() -> tuple[str, ...]:
     """The switches that are those of the age of the gnatprove on PATH."""
     return age_of(version()).switches
+
+
+def run(
+    arguments: Sequence[str],
+    where: Path,
+    scenario: Mapping[str, str],
+    taken: Callable[[str], bool] = lambda _: False,
+) -> str:
+    """Run the gnatprove on PATH with the switches of its age, as `toolchain.run` does."""
+    return toolchain.run("gnatprove", [*arguments, *switches()], where, scenario, taken)
 
 
 def age_of(version: str) -> Age:

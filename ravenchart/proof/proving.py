@@ -18,7 +18,6 @@ from pathlib import Path
 
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
 
 from . import ages, spark_results, steps, verdicts
 from . import earlier as proof_cache
@@ -141,7 +140,7 @@ def examples(task: Task, proof: Proof, tell: Callable[[str], None] = lambda _: N
 
 
 def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str) -> None:
-    arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline", *ages.switches(), *more]
+    arguments = ["-P", task.project.name, "-f", "-q", "--output=oneline", *more]
     arguments.append(steps.SWITCH)
     arguments.append(f"--warnings={task.warnings}")
     if not task.whole:
@@ -151,7 +150,7 @@ def _run(task: Task, server: str | None, tell: Callable[[str], None], *more: str
     if task.units:
         arguments += ["-u", *task.units]
     taken = steps.Steps(tell).takes
-    toolchain.run("gnatprove", arguments, task.project.parent, task.scenario, taken)
+    ages.run(arguments, task.project.parent, task.scenario, taken)
 
 
 SOURCES = (".ads", ".adb", ".gpr", ".adc")

@@ -41,10 +41,9 @@ def _break(path: Path, old: str, new: str) -> None:
 
 
 def _prove(checkout: Path, *units: str) -> str:
-    options = ["-P", "three_components.gpr", "-q", "--output=oneline", *ages.switches()]
-    options += ["-u", *units]
+    options = ["-P", "three_components.gpr", "-q", "--output=oneline", "-u", *units]
     variables = {"MODE": "checks", "RAVENCHART_BUILD": str(checkout / "build")}
-    return toolchain.run("gnatprove", options, checkout / "three" / "generated", variables)
+    return ages.run(options, checkout / "three" / "generated", variables)
 
 
 @needs_gnatprove

@@ -43,6 +43,5 @@ def test_an_effect_that_breaks_an_invariant_is_not_proved(program: Path, what: s
     body.write_text(text.replace(old, new))
     variables = {"RAVENCHART_BUILD": str(program.parent / "build")}
     options = ["-P", "never_feature.gpr", "-q", "--output=oneline", "--no-subprojects"]
-    options += ages.switches()
     with pytest.raises(ToolFailed, match=rf"might fail, cannot prove .*{claim}"):
-        toolchain.run("gnatprove", [*options, "-u", FILLING], program, variables)
+        ages.run([*options, "-u", FILLING], program, variables)
