@@ -240,4 +240,20 @@ is
       end case;
    end Take;
 
+   -------------
+   -- Give_Up --
+   -------------
+
+   procedure Give_Up
+     (State   : in out Receiver;
+      S       : Setting;
+      Now     : Nanoseconds;
+      Expired : out Boolean) is
+   begin
+      Expired := State.Is_Open and then Now - State.Last > S.Patience;
+      if Expired then
+         State.Is_Open := False;
+      end if;
+   end Give_Up;
+
 end Ravenchart.Can.Iso_Tp.Receivers;

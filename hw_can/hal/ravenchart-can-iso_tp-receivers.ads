@@ -8,7 +8,8 @@
 --  Timing       linear in the room for a value
 --
 --  N_Cr is Timeout. It counts from the segment before, so that the time until
---  flow control is sent is part of it.
+--  flow control is sent is part of it. Take finds a segment that is late,
+--  Give_Up one that does not come.
 
 package Ravenchart.Can.Iso_Tp.Receivers
   with SPARK_Mode, Pure
@@ -16,11 +17,14 @@ is
    use type Fd_Frames.Fd_Bytes;
 
    type Setting is record
-      Length  : Value_Length         := 8;
-      Block   : Block_Size           := 0;
-      Timeout : Positive_Nanoseconds := 1;
+      Length   : Value_Length         := 8;
+      Block    : Block_Size           := 0;
+      Timeout  : Positive_Nanoseconds := 1;
+      Patience : Positive_Nanoseconds := 1;
    end record;
    --  Length: bytes of a value. Block: segments that are asked for at once.
+   --  Patience: the silence that ends a transfer, which is Timeout and the
+   --  longest time from the Stamp of a segment until it is taken.
 
    type Receiver is record
       Is_Open  : Boolean         := False;
@@ -97,5 +101,24 @@ is
        and then (if Reply = Ask_For_More then State.Is_Open)
        and then (if Reply = Refuse then Result = Wrong_Length);
    --  A frame of Length bytes has come at Stamp.
+
+   procedure Give_Up
+     (State   : in out Receiver;
+      S       : Setting;
+      Now     : Nanoseconds;
+      Expired : out Boolean)
+   with
+     Global => null,
+     Post   =>
+       Expired
+         = (State'Old.Is_Open and then Now - State'Old.Last > S.Patience)
+       and then
+         State.Is_Open = (State'Old.Is_Open and then not Expired)
+       and then State.Data = State'Old.Data
+       and then State.Got = State'Old.Got
+       and then State.Sequence = State'Old.Sequence
+       and then State.Left = State'Old.Left
+       and then State.Last = State'Old.Last;
+   --  The time is Now: end a transfer that no segment has come for.
 
 end Ravenchart.Can.Iso_Tp.Receivers;

@@ -130,7 +130,11 @@ begin
       Timeout  => 100,
       Waits    => 2,
       Row      => 1_000);
-   R := (S.Length, Block_Size'Value (Ada.Command_Line.Argument (2)), 10**9);
+   R :=
+     (Length   => S.Length,
+      Block    => Block_Size'Value (Ada.Command_Line.Argument (2)),
+      Timeout  => 10**9,
+      Patience => 2 * 10**9);
    while not Ada.Text_IO.End_Of_File loop
       declare
          Line : constant String := Ada.Text_IO.Get_Line;

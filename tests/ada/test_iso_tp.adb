@@ -141,7 +141,7 @@ procedure Test_Iso_Tp is
                   S : constant Senders.Setting :=
                     (Length, Distance, 10, 0, 1_000);
                   R : constant Receivers.Setting :=
-                    (Length, Block, 50_000_000);
+                    (Length, Block, 50_000_000, 60_000_000);
                   V : constant Value_Bytes := Value_Of (Length);
                   L : Link;
                   --  After the first segment so many follow.
@@ -189,7 +189,7 @@ procedure Test_Iso_Tp is
 
    procedure Check_Separation is
       S : constant Senders.Setting := (64, 1, 10, 0, 1_000);
-      R : constant Receivers.Setting := (64, 0, 50_000_000);
+      R : constant Receivers.Setting := (64, 0, 50_000_000, 60_000_000);
       L : Link;
       Last, Turn_Number : Natural := 0;
       Least : Natural := Natural'Last;
@@ -228,7 +228,7 @@ procedure Test_Iso_Tp is
 
    procedure Check_Faults is
       S : constant Senders.Setting := (19, 1, 5, 1, 1_000);
-      R : constant Receivers.Setting := (19, 0, 3_000_000);
+      R : constant Receivers.Setting := (19, 0, 3_000_000, 4_000_000);
       L : Link;
       V : constant Value_Bytes := Value_Of (19);
 
@@ -300,6 +300,23 @@ procedure Test_Iso_Tp is
          L.Result = Receivers.Timed_Out and then not L.To.Is_Open);
 
       Begin_Anew;
+      declare
+         Early, Late, Again : Boolean;
+         Last : constant Ravenchart.Nanoseconds := L.To.Last;
+      begin
+         Give_Up (L.To, R, Last + R.Patience, Early);
+         Give_Up (L.To, R, Last + R.Patience + 1, Late);
+         Give_Up (L.To, R, Last + R.Patience + 2, Again);
+         Facts.Check
+           ("no segment ends the value when patience is over, once",
+            not Early and then Late and then not Again);
+         Turn (L, S, R);
+         Facts.Check
+           ("a segment that comes after all is none of a value",
+            L.Result = Ignored and then not L.To.Is_Open);
+      end;
+
+      Begin_Anew;
       L.From := (others => <>);
       Give (L.From, V);
       Turn (L, S, R);
@@ -338,7 +355,7 @@ procedure Test_Iso_Tp is
    ---------------------
 
    procedure Check_Any_Bytes is
-      R      : Receivers.Setting := (64, 3, 5_000_000);
+      R      : Receivers.Setting := (64, 3, 5_000_000, 6_000_000);
       To     : Receiver;
       From   : Sender;
       Flow   : Flow_Notice;

@@ -26,8 +26,8 @@ from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import Controller, controller, run_nodes
 from ravenchart.tools import toolchain
 
-STALE_INPUT = "3"
-"""Its number among the kinds of faults."""
+STALE_INPUT, PROTECTION_ERROR = "3", "7"
+"""Their numbers among the kinds of faults."""
 
 PATIENCE = 20.0
 """Seconds that something may take on a busy host."""
@@ -232,6 +232,38 @@ def test_a_silent_receiver_ends_each_transfer_and_is_counted(gauge: Played) -> N
     assert set(faults) == {STALE_INPUT}
     #  no consecutive frame without flow control: each frame began a value
     assert len(list(seen.of("sent", "report"))) <= len(faults) + 2
+    assert list(seen.of("arrived", "table")) == []
+
+
+def test_a_sender_that_falls_silent_is_counted_once_and_may_begin_again(
+    gauge: Played, built: Built
+) -> None:
+    table = built.messages["table"]
+    assert table.transport is not None
+    sent = _coded(table, {s.name: number for number, s in enumerate(table.signals)})
+    first = bytes([0x10, len(sent), *sent[:6]])
+    asked: list[int] = []
+
+    def play(bench: RavenchartBus) -> None:
+        def answered() -> bool:
+            frame = bench.recv(timeout=0.1)
+            return frame is not None and frame.arbitration_id == 0x131
+
+        for _ in range(2):
+            bench.send(can.Message(arbitration_id=0x130, is_extended_id=False, data=first))
+            until = time.monotonic() + PATIENCE
+            while not answered():
+                assert time.monotonic() < until
+            asked.append(1)
+            #  no frame tells the receiver that the time is over
+            time.sleep(2.0)
+
+    seen = gauge(play)
+    assert len(asked) == 2
+    #  each silence by itself: the second transfer did not have to end the first
+    assert [record.text for record in seen.of("fault", "table")] == [PROTECTION_ERROR] * 2
+    apart = [record.time for record in seen.of("fault", "table")]
+    assert apart[1] - apart[0] > table.transport.timeout
     assert list(seen.of("arrived", "table")) == []
 
 

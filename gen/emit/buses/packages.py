@@ -66,8 +66,8 @@ from .transmission import (
 )
 from .transport import (
     ISO_TP,
+    RECEIVERS,
     STAMP,
-    assembly,
     body_units,
     is_plain,
     noticed,
@@ -282,7 +282,7 @@ def _segmented_spec(system: System, message: Message) -> list[Decl]:
         return []
     if message.source is not None:
         return sender_spec(system, message, message.transport)
-    return receiver_spec(message, message.transport)
+    return receiver_spec(system, message, message.transport)
 
 
 def _segmented(system: System, messages: Sequence[Message]) -> tuple[Decl, ...]:
@@ -299,8 +299,9 @@ def _segmented(system: System, messages: Sequence[Message]) -> tuple[Decl, ...]:
             bodies += sender_bodies(system, message, *_handed(system, message), ended)
         else:
             flow = next(m for m in messages if m.controls == message.name)
-            objects += receiver_objects(system, message)
-            bodies += receiver_bodies(message, flow, transport, *_handed(system, flow))
+            objects += receiver_objects(message)
+            ended = _counted(system, message, "Protection_Error")
+            bodies += receiver_bodies(message, flow, transport, *_handed(system, flow), ended)
     return (*objects, *bodies)
 
 
@@ -419,7 +420,6 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
         Object("Frame", f"{ANY}.Any_Frame", Ref(f"{ANY}.Null_Any_Frame")),
         *(state for m in received for state in receiver_of(m)),
         *(state for m in received for state in authentication.receiver_of(m)),
-        *(assembly(m) for m in received if m.transport),
         *((kept_stamp,) if stamp == STAMP else ()),
         Subprogram(
             "Wait",
@@ -438,9 +438,10 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     context |= {f"{root}.{ada_case(t.instance)}" for m in valued for t in m.targets}
     if traced(system):
         context |= {f"{root}.Trace", "Ravenchart.Traces"}
-    for message in received:
-        context |= {ISO_TP, *units_of(message)} if not is_plain(message) else set()
+    if not all(is_plain(m) for m in received):
+        context |= {ISO_TP}
     if any(m.transport for m in received):
+        context |= {RECEIVERS}
         context |= {"Ravenchart.Health", f"{root}.Health_Counts"}
     kept = [m.check for m in received if m.check is not None]
     if kept:
@@ -479,7 +480,7 @@ def _refused(system: System, message: Message) -> tuple[Stmt, ...]:
 def _data(message: Message) -> Expr:
     """The data of a frame, as the codec of a message takes them."""
     if message.transport is not None:
-        return value_of(message)
+        return value_of()
     if not message.fd:
         return call(f"{ANY}.Payload", Ref("Frame"))
     words = f"{ANY}.Words (Frame)"

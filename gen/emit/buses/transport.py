@@ -1,8 +1,9 @@
 """Values in several frames: the two ends of a transfer in the code of a bus.
 
 The sender's row makes a segment at the end of an execution, and looks at flow control, which
-the reception has put on a board. The reception of the receiver puts the flow control to send
-on a board, and the port region of the receiver sends it at the end of an execution.
+the reception has put on a board. The reception of the receiver puts segments together in an
+object that it shares with the port region of the receiver: at the end of an execution this one
+sends the flow control that is due, and gives up a transfer that has fallen silent.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ from .layout_tables import ANY, LAYOUTS
 ISO_TP = "Ravenchart.Can.Iso_Tp"
 SENDERS = f"{ISO_TP}.Senders"
 RECEIVERS = f"{ISO_TP}.Receivers"
+REASSEMBLIES = f"{ISO_TP}.Reassemblies"
+EPOCHS = "Ravenchart.Epochs"
 BOARDS = "Ravenchart.Blackboards"
 NOTICE = f"{SENDERS}.Flow_Notice"
 STAMP = "Stamp"
@@ -63,19 +66,24 @@ def is_plain(message: Message) -> bool:
 
 
 def units_of(message: Message) -> set[str]:
-    """The units that the spec of a bus needs for a message."""
-    return set() if is_plain(message) else {SENDERS, RECEIVERS}
+    """The units that the spec of a bus needs for a message, which it sends or receives."""
+    sends = message.source is not None
+    if message.transport is None:
+        return {ISO_TP} if message.controls and not sends else set()
+    return {SENDERS} if sends else {REASSEMBLIES}
 
 
 def body_units(root: str, sent: Sequence[Message], received: Sequence[Message]) -> set[str]:
     """The units that the body of a bus needs for segments, and that its spec does not name."""
-    found = {BOARDS}
+    found: set[str] = set()
+    if any(m.transport for m in received):
+        found |= {EPOCHS} if any(m.controls for m in received) else {EPOCHS, ISO_TP}
     if not any(is_plain(m) for m in sent):
         found |= {ANY, LAYOUTS}
     if not any(is_plain(m) for m in (*sent, *received)):
         found |= {f"{root}.Codecs"}
-    if not any(m.transport for m in sent):
-        found |= {SENDERS}
+    if any(m.transport for m in sent):
+        found |= {BOARDS}
     return found
 
 
@@ -121,8 +129,8 @@ def sender_spec(system: System, message: Message, transport: Transport) -> list[
     }
     made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
     return [
-        Object(_own("Segmentation", name), f"{SENDERS}.Setting", made, constant=True),
         Comment(f"[{message.name}] its segments; times in executions of the row that sends it"),
+        Object(_own("Segmentation", name), f"{SENDERS}.Setting", made, constant=True),
         Subprogram(f"Send_{name}", (Param("Item", "in", type_name(system, message.type)),)),
         Comment(f"[{message.name}] keep the value until a transfer can begin."),
         Subprogram(f"Transmit_{name}"),
@@ -214,32 +222,43 @@ def sender_bodies(
 # --- The receiver
 
 
-def receiver_spec(message: Message, transport: Transport) -> list[Decl]:
-    """What the reception and the port region call, and how values are put together."""
+def _patience(system: System, message: Message, transport: Transport) -> int:
+    """Silence after which no segment that came in time can still wait for the reception.
+
+    So many frames as the queue of the bus holds may be before it, and the reception takes one
+    in each of its periods.
+    """
+    bus = next(b for b in system.buses if b.name == message.bus)
+    reception = next(p for p in system.processors if p.released_by == message.bus)
+    return transport.timeout + (bus.receive_depth + 1) * reception.period
+
+
+def receiver_spec(system: System, message: Message, transport: Transport) -> list[Decl]:
+    """Where values are put together, and what the port region calls."""
     name = ada_case(message.name)
     columns: dict[str, Expr] = {
         "Length": number(transport.length),
         "Block": number(transport.block),
         "Timeout": number(transport.timeout),
+        "Patience": number(_patience(system, message, transport)),
     }
     made = Aggregate(tuple(Arg(key, value) for key, value in columns.items()))
+    ceiling = system.object(f"{message.bus}.{message.name}.flow").ceiling
     return [
-        Object(_own("Reassembly", name), f"{RECEIVERS}.Setting", made, constant=True),
+        Instance(
+            _own("Reassembly", name),
+            REASSEMBLIES,
+            arguments(Segments=made, Ceiling=priority(ceiling)),
+        ),
         Comment(f"[{message.name}] its segments"),
-        Subprogram(f"Ask_{name}", (Param("Status", "in", f"{ISO_TP}.Flow_Status"),)),
-        Comment(f"[{message.name}] by the reception: flow control is to be sent."),
         Subprogram(f"Answer_{name}"),
         Comment(f"[{transport.flow}] at the end of each execution of the port region."),
     ]
 
 
-def receiver_objects(system: System, message: Message) -> list[Decl]:
-    """The flow control to send, and how much of it has gone."""
-    return [
-        Object(_own("Wanted", message.name), NOTICE),
-        Object(_own("Answered", message.name), "Ravenchart.Event_Count", number(0)),
-        _board(system, message.name, message.bus),
-    ]
+def receiver_objects(message: Message) -> list[Decl]:
+    """How much of the flow control has gone."""
+    return [Object(_own("Answered", message.name), "Ravenchart.Event_Count", number(0))]
 
 
 def receiver_bodies(
@@ -248,19 +267,15 @@ def receiver_bodies(
     transport: Transport,
     handed: tuple[Stmt, ...],
     lost: tuple[Stmt, ...],
+    failed: tuple[Stmt, ...],
 ) -> tuple[Subprogram, ...]:
-    """Note that flow control is to be sent, and send it."""
-    name, board = ada_case(message.name), f"Flow_Board_{ada_case(message.name)}"
-    wanted, answered = _own("Wanted", name), _own("Answered", name)
-    asked = Subprogram(
-        f"Ask_{name}",
-        (Param("Status", "in", f"{ISO_TP}.Flow_Status"),),
-        body=(
-            Assign(f"{wanted}.Count", _next(f"{wanted}.Count")),
-            Assign(f"{wanted}.Status", Ref("Status")),
-            Do(f"{board}.Write", arguments(Ref(wanted))),
-        ),
-    )
+    """Give up a transfer that has fallen silent, and send the flow control that is due.
+
+    ``handed`` gives a frame to the controller; ``lost`` is for one that finds no room,
+    ``failed`` for the transfer.
+    """
+    name = ada_case(message.name)
+    store, answered = _own("Reassembly", name), _own("Answered", name)
     payload = call(
         f"{ISO_TP}.Flow_Payload",
         Ref("Wanted.Status"),
@@ -274,12 +289,16 @@ def receiver_bodies(
         declarations=(
             UseType("Ravenchart.Can.Send_Status"),
             UseType("Ravenchart.Event_Count"),
-            Object("Wanted", NOTICE),
+            Object("Now", "Ravenchart.Nanoseconds"),
+            Object("Wanted", f"{store}.Flow_Request"),
+            Object("Expired", "Boolean"),
             Object("Frame", f"{ANY}.Any_Frame"),
             Object("Status", "Ravenchart.Can.Send_Status"),
         ),
         body=(
-            Do(f"{board}.Read", arguments(Ref("Wanted"))),
+            Do(f"{EPOCHS}.Since_Start", arguments(Ref("Now"))),
+            Do(f"{store}.Look", arguments(Ref("Now"), Ref("Wanted"), Ref("Expired"))),
+            If(((Ref("Expired"), failed),)),
             If(
                 (
                     (
@@ -294,16 +313,15 @@ def receiver_bodies(
             ),
         ),
     )
-    return asked, answer
+    return (answer,)
 
 
 def taken(
     message: Message, unpacked: tuple[Stmt, ...], refused: tuple[Stmt, ...]
 ) -> tuple[Stmt, ...]:
     """What the reception does with a segment."""
-    name = ada_case(message.name)
+    store = _own("Reassembly", message.name)
     frame = (call(f"{ANY}.Payload", Ref("Frame")), Ref("Frame.Plain.Length"))
-    given = (Ref(_own("Assembly", name)), Ref(_own("Reassembly", name)), *frame)
     complete = equal(Ref("Outcome"), Ref(f"{RECEIVERS}.Complete"))
     faulty = member(Ref("Outcome"), f"{RECEIVERS}.Fault")
     plain = Chain(
@@ -313,25 +331,15 @@ def taken(
             equal(Ref("Frame.Plain.Kind"), Ref("Ravenchart.Can.Data")),
         ),
     )
-    asks = [
-        (
-            equal(Ref("Reply"), Ref(f"{RECEIVERS}.{reply}")),
-            (Do(f"Ask_{name}", arguments(Ref(f"{ISO_TP}.{status}"))),),
-        )
-        for reply, status in (("Ask_For_More", "Continue_To_Send"), ("Refuse", "Overflow"))
-    ]
+    whole = (Do(f"{store}.Read", arguments(Ref("Value"))), *unpacked)
     return (
         If(
             (
                 (
                     plain,
                     (
-                        Do(
-                            f"{RECEIVERS}.Take",
-                            arguments(*given, Ref(STAMP), Ref("Outcome"), Ref("Reply")),
-                        ),
-                        If(tuple(asks)),
-                        If(((complete, unpacked), (faulty, refused))),
+                        Do(f"{store}.Take", arguments(*frame, Ref(STAMP), Ref("Outcome"))),
+                        If(((complete, whole), (faulty, refused))),
                     ),
                 ),
             )
@@ -339,14 +347,9 @@ def taken(
     )
 
 
-def value_of(message: Message) -> Expr:
+def value_of() -> Expr:
     """The value that has come, as its codec takes it."""
-    return call(f"{ISO_TP}.Words_Of", Ref(f"{_own('Assembly', message.name)}.Data"))
-
-
-def assembly(message: Message) -> Object:
-    """The value that is being put together."""
-    return Object(_own("Assembly", message.name), f"{RECEIVERS}.Receiver")
+    return call(f"{ISO_TP}.Words_Of", Ref("Value"))
 
 
 def noticed(flow: Message) -> tuple[Stmt, ...]:
@@ -369,10 +372,9 @@ def reception_declarations(received: tuple[Message, ...]) -> list[Decl]:
     if any(m.transport for m in received):
         found += [
             UseType(f"{RECEIVERS}.Outcome"),
-            UseType(f"{RECEIVERS}.Answer"),
             UseType("Ravenchart.Can.Frame_Kind"),
             Object("Outcome", f"{RECEIVERS}.Outcome"),
-            Object("Reply", f"{RECEIVERS}.Answer"),
+            Object("Value", f"{ISO_TP}.Value_Bytes"),
         ]
     if any(m.controls for m in received):
         found += [
