@@ -38,7 +38,7 @@ from .calls import (
     replies_read,
     rows_of,
 )
-from .distribution import as_one, part_of
+from .distribution import as_one, part_of, without_idle_buses
 from .ways import routed
 
 MAIN = "main"
@@ -434,9 +434,9 @@ def _works_in(item: Region | Activity, region: str) -> bool:
 def programs(system: System) -> tuple[System, ...]:
     """What runs on each node, as a system of its own; the system itself where there is one node.
 
-    Nodes without a processor have no program.
+    Nodes without a processor have no program, and a bus that the node only knows has no code.
     """
-    return (system,) if len(system.nodes) == 1 else _programs(system)
+    return (without_idle_buses(system),) if len(system.nodes) == 1 else _programs(system)
 
 
 @lru_cache(maxsize=1)

@@ -176,6 +176,17 @@ def _raised_here(check: Check | None, here: set[str]) -> Check | None:
     return replace(check, on_error=tuple(pair for pair in check.on_error if pair[0] in here))
 
 
+def without_idle_buses(system: System) -> System:
+    """The system without the buses on which its only node sends and receives nothing.
+
+    A bus that the node watches stays.
+    """
+    used = {m.bus for m in system.messages if m.source is not None or m.targets}
+    used |= {bus.name for bus in system.buses if bus.watch is not None}
+    buses = tuple(bus for bus in system.buses if bus.name in used)
+    return system if buses == system.buses else replace(system, buses=buses)
+
+
 def part_of(system: System, node: Node) -> System:
     """What runs on a node, as a system of its own, without tasks, objects and chains."""
     here = {instance.name for instance in system.instances if instance.node == node.name}

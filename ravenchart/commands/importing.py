@@ -1,4 +1,4 @@
-"""`ravenchart import`: the messages of a CAN database as parts of a model."""
+"""`ravenchart import`: a model of the messages of a CAN database."""
 
 from __future__ import annotations
 
@@ -30,6 +30,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         help="the same for single messages, in YAML: `message: 20 ms`",
     )  # fmt: skip
     sub.add_argument(
+        "--parts", action="store_true",
+        help="print only types, ports and messages, for a model that includes them",
+    )  # fmt: skip
+    sub.add_argument(
         "--lenient", action="store_true",
         help="read a database whose signals share bits or reach beyond their frame",
     )  # fmt: skip
@@ -39,7 +43,12 @@ def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status."""
     given = database.periods(options.period, options.periods)
     found = database.imported(
-        options.database, options.node, given, lenient=options.lenient, bus=options.bus
+        options.database,
+        options.node,
+        given,
+        lenient=options.lenient,
+        bus=options.bus,
+        parts=options.parts,
     )
     options.answer.result = ImportResult(found.text)
     print(found.text, end="")

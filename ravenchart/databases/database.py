@@ -25,6 +25,7 @@ from ravenchart.gen.resolve.layouts import SIGNED_BITS
 from .fields import Field, Fields, fields_of, raw_fields
 from .names import HIDDEN, Names
 from .signals import Unsayable, Words, named_values
+from .whole import Frames, Sent, behaviour, bit_rate, sections
 
 FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
 """Databases by the ending of their files; a file with another one is read as DBC."""
@@ -84,12 +85,16 @@ def imported(
     *,
     lenient: bool = False,
     bus: str | None = None,
+    parts: bool = False,
 ) -> Imported:
-    """The messages of a database as seen from one of its nodes. Refused when it cannot be read.
+    """A model of the messages of a database, as seen from one of its nodes.
+
+    Refused when the database cannot be read.
 
     None: seen by a node that receives all of them. A signal that cannot be said is left out; what
     the node sends has constants for its bits. ``lenient``: signals that share bits or reach
     beyond their frame are left out, too. ``bus``: only the messages of that bus of the database.
+    ``parts``: only the sections for a model that includes them.
     """
     given = given or Periods()
     database = read(path, lenient=lenient)
@@ -116,7 +121,9 @@ def imported(
         except Unsayable as problem:
             problems.append(f"{path}: error: {message.name} is left out: {problem}")
     problems += [f"{path}: error: {left}" for left in writer.left_out]
-    return Imported(writer.text(path.name), problems)
+    rates = {one.name: one.baudrate for one in database.buses}
+    rate = rates.get(bus) if bus is not None else next(iter(rates.values()), None)
+    return Imported(writer.text(path, rate, parts=parts), problems)
 
 
 def read(path: Path, *, lenient: bool) -> Database:
@@ -155,6 +162,14 @@ class _Writer:
     left_out: list[str] = field(default_factory=list)
     """Signals that are not in the model, each with its message and the reason."""
 
+    frames: list[Frames] = field(default_factory=list)
+    """What is on the bus."""
+    sent: list[Sent] = field(default_factory=list)
+    """What the node sends."""
+    received: list[Frames] = field(default_factory=list)
+    """What it receives with a port."""
+    flexible: bool = False
+    """A frame is CAN FD."""
     originals: set[str] = field(default_factory=set)
     """Names of messages in the database that are in the model."""
     identifiers: dict[tuple[int, bool], str] = field(default_factory=dict)
@@ -179,13 +194,28 @@ class _Writer:
         """What the text takes the component's instance to be called."""
         return self.own_name.lower()
 
-    def text(self, source: str) -> str:
-        """All of it; what a database cannot know is left to the reader."""
+    def text(self, source: Path, known_rate: int | None, *, parts: bool) -> str:
+        """All of it, or the parts of it that the database has."""
         seen = self.node or "a node that receives everything"
+        if parts:
+            told = [
+                f"# From {source.name}, as seen by {seen}. Add what the ports do, "
+                f"`{self.instance}:` under",
+                "# `instances:`, and a bus called `bus`.",
+            ]
+        else:
+            told = [
+                f"# From {source.name}, as seen by {seen}. Set what a database does not know:",
+                "# periods of the node, execution times (wcet), stacks, queues of the bus.",
+            ]
+        rate = bit_rate(self.frames, known_rate)
+        if not parts and known_rate not in (None, rate):
+            why = "its frames do not fit in it with these periods"
+            self.changes.append(("bus", f"has {rate} bit/s, not {known_rate}: {why}"))
         lines = [
-            f"# From {source}, as seen by {seen}. Add what the ports do, `{self.instance}:` under",
-            "# `instances:`, and a bus called `bus`.",
+            *told,
             *self._table(),
+            *([] if parts else [f"system: {self._system(source.stem)}"]),
             "types:" if self.known or self.records else "types: {}",
             *(f"  {name}: {definition}" for definition, name in self.known.items()),
             *self.records,
@@ -193,10 +223,24 @@ class _Writer:
             f"  {self.component}:",
             "    ports:" if self.ports else "    ports: {}",
             *self.ports,
-            "messages:" if self.messages else "messages: {}",
-            *self.messages,
         ]
+        if not parts:
+            lines += behaviour(self.sent, receives=bool(self.received))
+            lines += sections(
+                self.instance,
+                self.component,
+                self.sent,
+                received=self.received,
+                rate=rate,
+                flexible=self.flexible,
+            )
+        lines += ["messages:" if self.messages else "messages: {}", *self.messages]
         return "\n".join(lines) + "\n"
+
+    def _system(self, stem: str) -> str:
+        """A name for the model, which no type has."""
+        name = Names().new(stem)
+        return self.type_names.new(f"{name[:1].upper()}{name[1:]}_Bus", self.literals)
 
     def _table(self) -> list[str]:
         """What is otherwise than in the database."""
@@ -219,6 +263,8 @@ class _Writer:
                 "it has no cycle time, which a message from outside needs; `--period` gives one"
             )
         self._claim(message)
+        self.flexible |= message.is_fd or message.length > CLASSIC
+        self.frames.append(Frames(message.length, message.is_extended_frame, period))
         lines = self._head(message)
         if not sends and not takes:
             self.messages += [*lines, f"    period: {period}"]
@@ -244,6 +290,10 @@ class _Writer:
         way = "out" if sends else "in"
         often = f"  # every {period}" if sends and period is not None else ""
         self.ports.append(f"      {name}: {{{way}: {record}}}{often}")
+        if sends:
+            self.sent.append(Sent(name, period))
+        else:
+            self.received.append(self.frames[-1])
         end = f"{self.instance}.{name}"
         lines += [f"    from: {end}"] if sends else [f"    to: {end}", f"    period: {period}"]
         if found.selector is not None:

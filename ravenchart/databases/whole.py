@@ -1,0 +1,140 @@
+"""What a model has besides the messages of a database: figures that no database knows.
+
+They are chosen so that the model passes `check` and a program can be made of it at once. The
+text says which of them to set.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from ravenchart.gen.language.quantities import duration, shown
+
+BIT_RATES = (500_000, 1_000_000)
+"""Of a bus whose database does not say it, or says one that its frames do not leave room on."""
+LOAD = 0.6
+"""What frames may take of a rate that is chosen for them."""
+PORTS_PERIOD = "20 ms"
+SENDING_PERIOD = "100 ms"
+"""Of a message that the node sends, and that no cycle time is known of."""
+DATA_RATE = "5 Mbit/s"
+"""Of CAN FD frames after their identifier."""
+US = 1000
+TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
+"""Periods of the reception: the first one that leaves it half of its time."""
+HALF = 0.5
+DEPTHS = (8, 1024)
+"""Frames that a queue of the bus has room for, at least and at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """The frames of one message on the bus."""
+
+    bytes: int
+    extended: bool
+    period: str | None
+
+    @property
+    def bits_each_second(self) -> float:
+        """Bits with all stuff bits, as classic frames; an FD frame at a constant rate is alike."""
+        head = 54 if self.extended else 34
+        length = head + 13 + 8 * self.bytes + (head + 8 * self.bytes - 1) // 4
+        return length / (_nanoseconds(self.period) / 1e9)
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """A port that the node sends from."""
+
+    port: str
+    period: str | None
+
+
+def _nanoseconds(period: str | None) -> int:
+    found = duration(period or SENDING_PERIOD)
+    assert isinstance(found, int)
+    return found
+
+
+def bit_rate(frames: Sequence[Frames], known: int | None) -> int:
+    """That of the database, where frames with these periods fit; else the first that is enough."""
+    needed = sum(one.bits_each_second for one in frames)
+    if known is not None and needed < known:
+        return known
+    return next((rate for rate in BIT_RATES if needed <= LOAD * rate), BIT_RATES[-1])
+
+
+def _depth(count: int) -> int:
+    return min(max(count, DEPTHS[0]), DEPTHS[1])
+
+
+def _rows(sent: Iterable[Sent]) -> dict[str, list[str]]:
+    """The ports that are sent from with each period, the shortest one first."""
+    found: dict[str, list[str]] = {}
+    for one in sorted(sent, key=lambda one: _nanoseconds(one.period)):
+        found.setdefault(one.period or SENDING_PERIOD, []).append(one.port)
+    return found
+
+
+def _named(period: str) -> str:
+    return f"every_{period.replace('.', '_').replace(' ', '_')}"
+
+
+def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
+    """What the component does with its ports, as keys of it."""
+    lines = [f"    port_region: {{period: {PORTS_PERIOD}, wcet: 10 us}}"] if receives else []
+    rows = _rows(sent)
+    if not rows and not receives:
+        rows = {SENDING_PERIOD: []}
+    if rows:
+        lines.append("    activities:")
+    for period, ports in rows.items():
+        sends = f", sends: [{', '.join(ports)}]" if ports else ""
+        lines.append(f"      {_named(period)}: {{period: {period}, wcet: 10 us, body: user{sends}}}")
+    return lines
+
+
+def sections(
+    instance: str,
+    component: str,
+    sent: Sequence[Sent],
+    *,
+    received: Sequence[Frames],
+    rate: int,
+    flexible: bool,
+) -> list[str]:
+    """The sections that make it a model.
+
+    ``received``: the frames that have a port. ``flexible``: some frames are CAN FD.
+    """
+    arrivals = sum(1 / _nanoseconds(one.period) for one in received)
+    turn = next((t for t in TURNS if arrivals * t <= HALF), TURNS[-1])
+    short = 4 * US * (len(received) + len(sent)) > turn
+    cost = "100 ns" if short else "1 us"
+    lines = [
+        "nodes:",
+        f"  {instance}: {{context_switch: {cost}, critical_section: {cost}, trace: 1024}}",
+        "buses:",
+        "  bus:",
+        f"    bit_rate: {rate // 1000} kbit/s",
+        *([f"    data_rate: {DATA_RATE}"] if flexible else []),
+        f"    driver_wcet: {cost}",
+        f"    receive_depth: {_depth(2 * len(received))}",
+        f"    transmit_depth: {_depth(len(sent))}",
+        "instances:",
+        f"  {instance}: {{component: {component}, node: {instance}}}",
+        "processors:",
+    ]
+    if received:
+        lines += [
+            f"  reception: {{released_by: bus, period: {shown(turn)}, stack: 32 KiB, "
+            "activities: [bus.receive]}",
+            f"  handling: {{stack: 32 KiB, activities: [{instance}.ports]}}",
+        ]
+    rows = _rows(sent)
+    for period in rows or ([] if received else [SENDING_PERIOD]):
+        name = _named(period)
+        lines.append(f"  {name}: {{stack: 32 KiB, activities: [{instance}.{name}]}}")
+    return lines
