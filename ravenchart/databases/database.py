@@ -25,7 +25,7 @@ from ravenchart.gen.resolve.layouts import SIGNED_BITS
 from .fields import Field, Fields, fields_of, raw_fields
 from .names import HIDDEN, Names
 from .signals import Unsayable, Words, named_values
-from .whole import Frames, Sent, behaviour, bit_rate, sections
+from .whole import Frames, Sent, behaviour, bit_rate, deadline, sections
 
 FORMATS = (".dbc", ".kcd", ".sym", ".arxml")
 """Databases by the ending of their files; a file with another one is read as DBC."""
@@ -156,7 +156,8 @@ class _Writer:
     """In lower case: no type has such a name."""
     records: list[str] = field(default_factory=list)
     ports: list[str] = field(default_factory=list)
-    messages: list[str] = field(default_factory=list)
+    messages: list[tuple[list[str], Frames]] = field(default_factory=list)
+    """The lines of each, and its frames."""
     changes: list[tuple[str, str]] = field(default_factory=list)
     """What is otherwise than in the database: where, and how."""
     left_out: list[str] = field(default_factory=list)
@@ -234,7 +235,11 @@ class _Writer:
                 rate=rate,
                 flexible=self.flexible,
             )
-        lines += ["messages:" if self.messages else "messages: {}", *self.messages]
+        lines.append("messages:" if self.messages else "messages: {}")
+        for own, frames in self.messages:
+            lines += own
+            if not parts:
+                lines += deadline(frames, self.frames, rate)
         return "\n".join(lines) + "\n"
 
     def _system(self, stem: str) -> str:
@@ -267,7 +272,7 @@ class _Writer:
         self.frames.append(Frames(message.length, message.is_extended_frame, period))
         lines = self._head(message)
         if not sends and not takes:
-            self.messages += [*lines, f"    period: {period}"]
+            self.messages.append(([*lines, f"    period: {period}"], self.frames[-1]))
             return
         found = fields_of(message, taken=self.type_names.taken, sends=sends)
         self.left_out += [
@@ -279,7 +284,7 @@ class _Writer:
             if period is None:
                 raise Unsayable("its frame has no data, and a port has a value")
             self.changes.append((message.name, "is on the bus alone: no port has its value"))
-            self.messages += [*lines, f"    period: {period}"]
+            self.messages.append(([*lines, f"    period: {period}"], self.frames[-1]))
             return
         name = self.names[message]
         own = self._named(message, found)
@@ -305,7 +310,7 @@ class _Writer:
             if one.signal in message.signals:
                 keys += _kept(own[one.signal], one.signal.name, originals)
             lines.append(f"      {own[one.signal]}: {{{', '.join(keys)}}}")
-        self.messages += lines
+        self.messages.append((lines, self.frames[-1]))
 
     def _claim(self, message: Message) -> None:
         """The message's identifier, which no other one has; else `Unsayable`."""

@@ -20,7 +20,7 @@ SENDING_PERIOD = "100 ms"
 """Of a message that the node sends, and that no cycle time is known of."""
 DATA_RATE = "5 Mbit/s"
 """Of CAN FD frames after their identifier."""
-US = 1000
+US, MS = 1000, 1_000_000
 TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
 """Periods of the reception: the first one that leaves it half of its time."""
 HALF = 0.5
@@ -37,11 +37,15 @@ class Frames:
     period: str | None
 
     @property
-    def bits_each_second(self) -> float:
-        """Bits with all stuff bits, as classic frames; an FD frame at a constant rate is alike."""
+    def bits(self) -> int:
+        """Those of a frame with all stuff bits, as a classic one, which takes no less time."""
         head = 54 if self.extended else 34
-        length = head + 13 + 8 * self.bytes + (head + 8 * self.bytes - 1) // 4
-        return length / (_nanoseconds(self.period) / 1e9)
+        return head + 13 + 8 * self.bytes + (head + 8 * self.bytes - 1) // 4
+
+    @property
+    def bits_each_second(self) -> float:
+        """What its frames take of a bit rate."""
+        return self.bits / (_nanoseconds(self.period) / 1e9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +68,17 @@ def bit_rate(frames: Sequence[Frames], known: int | None) -> int:
     if known is not None and needed < known:
         return known
     return next((rate for rate in BIT_RATES if needed <= LOAD * rate), BIT_RATES[-1])
+
+
+def deadline(own: Frames, frames: Sequence[Frames], rate: int) -> list[str]:
+    """The key of a message that is sent more often than one frame of each can go.
+
+    A database has no deadlines, and that of a message is its period unless it is given.
+    """
+    round_trip = 1_000_000_000 * sum(one.bits for one in frames) // rate
+    if own.period is None or _nanoseconds(own.period) > 2 * round_trip:
+        return []
+    return [f"    deadline: {shown(-(-2 * round_trip // MS) * MS)}"]
 
 
 def _depth(count: int) -> int:
@@ -92,7 +107,9 @@ def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
         lines.append("    activities:")
     for period, ports in rows.items():
         sends = f", sends: [{', '.join(ports)}]" if ports else ""
-        lines.append(f"      {_named(period)}: {{period: {period}, wcet: 10 us, body: user{sends}}}")
+        lines.append(
+            f"      {_named(period)}: {{period: {period}, wcet: 10 us, body: user{sends}}}"
+        )
     return lines
 
 
