@@ -269,7 +269,8 @@ class _Writer:
             )
         self._claim(message)
         self.flexible |= message.is_fd or message.length > CLASSIC
-        self.frames.append(Frames(message.length, message.is_extended_frame, period))
+        frames = Frames(message.frame_id, message.is_extended_frame, message.length, period)
+        self.frames.append(frames)
         lines = self._head(message)
         if not sends and not takes:
             self.messages.append(([*lines, f"    period: {period}"], self.frames[-1]))

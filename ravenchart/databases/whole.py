@@ -20,6 +20,8 @@ SENDING_PERIOD = "100 ms"
 """Of a message that the node sends, and that no cycle time is known of."""
 DATA_RATE = "5 Mbit/s"
 """Of CAN FD frames after their identifier."""
+EXTENSION = 18
+"""Bits by which an extended identifier is longer."""
 US, MS = 1000, 1_000_000
 TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
 """Periods of the reception: the first one that leaves it half of its time."""
@@ -32,9 +34,15 @@ DEPTHS = (8, 1024)
 class Frames:
     """The frames of one message on the bus."""
 
-    bytes: int
+    identifier: int
     extended: bool
+    bytes: int
     period: str | None
+
+    @property
+    def rank(self) -> int:
+        """Of two frames the one with the lower rank goes first."""
+        return self.identifier if self.extended else self.identifier << EXTENSION
 
     @property
     def bits(self) -> int:
@@ -71,14 +79,16 @@ def bit_rate(frames: Sequence[Frames], known: int | None) -> int:
 
 
 def deadline(own: Frames, frames: Sequence[Frames], rate: int) -> list[str]:
-    """The key of a message that is sent more often than one frame of each can go.
+    """The key of a message whose period leaves no room for one frame of each that goes before.
 
     A database has no deadlines, and that of a message is its period unless it is given.
     """
-    round_trip = 1_000_000_000 * sum(one.bits for one in frames) // rate
-    if own.period is None or _nanoseconds(own.period) > 2 * round_trip:
+    before = sum(one.bits for one in frames if one.rank <= own.rank)
+    behind = max((one.bits for one in frames if one.rank > own.rank), default=0)
+    room = 2 * 1_000_000_000 * (before + behind) // rate
+    if own.period is None or _nanoseconds(own.period) > room:
         return []
-    return [f"    deadline: {shown(-(-2 * round_trip // MS) * MS)}"]
+    return [f"    deadline: {shown(-(-room // MS) * MS)}"]
 
 
 def _depth(count: int) -> int:

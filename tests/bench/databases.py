@@ -15,7 +15,7 @@ import sys
 import tempfile
 import traceback
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -63,6 +63,11 @@ def _checked(text: str, folder: Path) -> checking.Checked:
     return checking.check(model)
 
 
+def _sent_of(names: Set[str], sends: re.Match[str]) -> str:
+    """The key `sends` with those of these names."""
+    return f"sends: [{', '.join(name for name in sends[1].split(', ') if name in names)}]"
+
+
 def _parts(text: str) -> Iterator[str]:
     """The model with so many of its messages at a time, and with their ports."""
     head, messages = text.split("\nmessages:", 1)
@@ -75,11 +80,7 @@ def _parts(text: str) -> Iterator[str]:
             for line in head.splitlines()
             if not (port := re.match(r"      (\w+): \{(?:in|out):", line)) or port[1] in names
         )
-        made = re.sub(
-            r"sends: \[(.*)\]",
-            lambda sent: f"sends: [{', '.join(n for n in sent[1].split(', ') if n in names)}]",
-            "\n".join(kept),
-        )
+        made = re.sub(r"sends: \[(.*)\]", partial(_sent_of, names), "\n".join(kept))
         yield made + "\nmessages:\n" + "\n".join(some)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -146,9 +147,32 @@ def test_the_certificate_of_such_a_model_holds(supervised: bool, tmp_path: Path)
     assert "Right_Section" in text
 
 
-def test_a_bus_that_nothing_uses_has_no_program(tmp_path: Path) -> None:
-    bus = "buses:\n  line: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8,"
-    text = MODEL.replace("nodes:\n", f"{bus} transmit_depth: 8}}\nnodes:\n")
+BUS = (
+    "buses:\n  line: {bit_rate: 500 kbit/s, driver_wcet: 40 us, receive_depth: 8,"
+    " transmit_depth: 8WATCH}\nnodes:\n"
+)
+
+
+def test_a_bus_that_nothing_uses_has_no_code(tmp_path: Path) -> None:
+    for name, text in (
+        ("with", MODEL.replace("nodes:\n", BUS.replace("WATCH", ""))),
+        ("without", MODEL),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "model.yaml").write_text(text)
+        generation.write_program(checking.check(tmp_path / name / "model.yaml"))
+    units = {
+        name: {one.name for one in (tmp_path / name / "generated").glob("*.ad?")}
+        for name in ("with", "without")
+    }
+    assert units["with"] == units["without"]
+    assert (tmp_path / "with" / "generated" / "line.dbc").exists()
+
+
+def test_a_watched_bus_that_nothing_uses_has_no_program(tmp_path: Path) -> None:
+    watched = BUS.replace("WATCH", ", watch: {period: 20 ms, wcet: 50 us}")
+    text = MODEL.replace("nodes:\n", watched)
+    text = re.sub(r"(activities: \[)", r"\1line.watch, ", text, count=1)
     (tmp_path / "model.yaml").write_text(text)
     with pytest.raises(Refused, match=r"sends and receives nothing on line .RV-0804"):
         generation.write_program(checking.check(tmp_path / "model.yaml"))
