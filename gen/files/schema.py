@@ -14,6 +14,7 @@ from pydantic import Field as PydanticField
 
 from .schema_base import (
     Constant,
+    DatabaseName,
     Element,
     ExpressionText,
     Name,
@@ -470,6 +471,10 @@ class NodeForm(Element):
         ge=1,
         le=64,
         description="How many cores; with several the model is analysed, not generated yet.",
+    )
+    database_name: DatabaseName | None = optional(
+        "Its name in the databases of its buses (DBC): an identifier of C, of up to 128 "
+        "characters, that no other node has; the node's name unless given."
     )
 
 

@@ -31,6 +31,7 @@ from ravenchart.gen.language.names import (
     LONGEST_REQUIREMENT,
     REQUIREMENT,
     database_problem_of,
+    database_text_problem_of,
     problem_of,
 )
 from ravenchart.gen.language.quantities import (
@@ -70,6 +71,13 @@ def _name(text: str) -> str:
 
 def _database_name(text: str) -> str:
     problem = database_problem_of(text)
+    if problem is not None:
+        raise _coded("RV-0622", problem)
+    return text
+
+
+def _database_text(text: str) -> str:
+    problem = database_text_problem_of(text)
     if problem is not None:
         raise _coded("RV-0622", problem)
     return text
@@ -135,7 +143,14 @@ DatabaseName = Annotated[
         {"type": "string", "pattern": DATABASE_NAME, "maxLength": LONGEST_DATABASE_NAME}
     ),
 ]
-"""What a message or signal is called in CAN databases."""
+"""What a message, a signal or a node is called in CAN databases."""
+
+DatabaseText = Annotated[
+    str,
+    AfterValidator(_database_text),
+    WithJsonSchema({"type": "string", "minLength": 1, "maxLength": LONGEST_DATABASE_NAME}),
+]
+"""What a value of a signal is called in CAN databases."""
 
 Reference = Annotated[str, WithJsonSchema({"type": "string", "pattern": IDENTIFIER})]
 """The name of something declared elsewhere."""

@@ -14,6 +14,7 @@ from .schema_base import (
     BitRate,
     Constant,
     DatabaseName,
+    DatabaseText,
     DataRate,
     Element,
     Flag,
@@ -188,6 +189,11 @@ class SignalForm(Element):
     database_name: DatabaseName | None = optional(
         "Its name in the database of the bus (DBC): an identifier of C, of up to 128 characters, "
         "that no other signal of the message has; the field's name unless given."
+    )
+    value_names: dict[Reference, DatabaseText] | None = optional(
+        "Of an enumeration: literals, each with its name in the database of the bus, printable "
+        'ASCII of up to 128 characters without `"` and `\\`; the literal unless given.',
+        min_length=1,
     )
 
 

@@ -98,6 +98,15 @@ def database_problem_of(name: str) -> str | None:
     return f"`{name}` is a keyword of DBC files" if name in DATABASE_KEYWORDS else None
 
 
+def database_text_problem_of(text: str) -> str | None:
+    """Why ``text`` cannot name a value in a CAN database (DBC); None when it can."""
+    if not 0 < len(text) <= LONGEST_DATABASE_NAME:
+        return f"the name of a value in databases has 1 to {LONGEST_DATABASE_NAME} characters"
+    if not (text.isascii() and text.isprintable()) or '"' in text or "\\" in text:
+        return 'the name of a value in databases is printable ASCII, without `"` and `\\`'
+    return None
+
+
 def meant(name: str, known: Iterable[str]) -> str | None:
     """A hint for an unknown name: the nearest one, or else the few that there are."""
     names = list(dict.fromkeys(known))

@@ -75,6 +75,8 @@ class Signal:
     """Raw values of the multiplexor with which it is there; none: it always is."""
     database_name: str | None = dataclasses.field(default=None, compare=False)
     """What databases call it; None: as the model does. No part of the layout."""
+    value_names: tuple[tuple[str, str], ...] = dataclasses.field(default=(), compare=False)
+    """Literals that databases call otherwise, with what they call them. No part of the layout."""
 
     @property
     def name(self) -> str:
@@ -122,6 +124,12 @@ class Signal:
             return {}
         codes = zip(self.type.literals, self.codes or itertools.count(), strict=False)
         return {name: code for name, code in codes if name != self.other}
+
+    @property
+    def codes_in_database(self) -> dict[str, int]:
+        """The same by what databases call the literals."""
+        names = dict(self.value_names)
+        return {names.get(name, name): code for name, code in self.named_codes.items()}
 
     def bits(self) -> tuple[int, ...]:
         """The frame's bit for each bit of the raw value, its least significant first."""

@@ -80,6 +80,13 @@ class Node:
     """What makes timed releases late by up to its period; None: a timer that is exact."""
     cores: int = 1
     supervision: Supervision | None = None
+    database_name: str | None = None
+    """What databases call it; None: as the model does."""
+
+    @property
+    def in_database(self) -> str:
+        """Its name in the databases of its buses."""
+        return self.database_name or self.name
 
     @property
     def core_names(self) -> tuple[str, ...]:

@@ -83,6 +83,7 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
         tick,
         form.cores,
         _supervision(form.supervision, findings),
+        form.database_name,
     )
 
 

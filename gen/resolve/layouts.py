@@ -182,8 +182,35 @@ class _Maker:
             hint = "leave `signed` and `offset` out"
             message = f"the raw values of the multiplexor `{key}` must be its values, from 0 on"
             self.wrong(key, None, message, hint)
-        made = replace(made, pages=pages, database_name=form.database_name)
+        names = self._value_names(form, key, made)
+        made = replace(
+            made, pages=pages, database_name=form.database_name, value_names=tuple(names.items())
+        )
         return None if self.findings.count() > before else made
+
+    def _value_names(self, form: SignalForm, key: str, made: Signal) -> dict[str, str]:
+        """What databases call literals: each value of the signal by another name."""
+        given = form.value_names or {}
+        if given and isinstance(made.type, IntegerType):
+            message = f"{made.type.name} is no enumeration and has no `value_names`"
+            self.wrong(key, "value_names", message)
+            return {}
+        coded = made.named_codes
+        own = {name.lower(): name for name in coded}
+        found: dict[str, str] = {}
+        for text, name in given.items():
+            if text.lower() not in own:
+                message = f"no value of `{key}` is `{text}`"
+                self.wrong(key, "value_names", message, meant(text, coded))
+                return {}
+            found[own[text.lower()]] = name
+        called = [found.get(name, name) for name in coded]
+        twice = next((name for name in called if called.count(name) > 1), None)
+        if twice is not None:
+            at = self._at(key, "value_names")
+            message = f"two values of `{key}` are named `{twice}` in the database"
+            self.findings.error(DATABASE, at, message, hint="give one of them another name")
+        return found
 
     def _codes(self, form: SignalForm, key: str, scalar: ScalarType) -> tuple[int, ...]:
         if form.codes is None:

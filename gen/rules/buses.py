@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.model.system import Bus, Message, Slot, System, Work
+from ravenchart.gen.model.system import Bus, Message, Node, Slot, System, Work
 from ravenchart.gen.resolve.authentication import AUTHENTICATION
 from ravenchart.gen.resolve.layouts import DATABASE
 from ravenchart.gen.resolve.protection import PROTECTION
@@ -163,12 +163,26 @@ def names_in_databases(system: System) -> Iterator[Diagnostic]:
             yield error(DATABASE, message.origin, text, notes=notes, hint=hint)
 
 
+def databases_tell_nodes_apart(resolved: Resolved) -> Iterator[Diagnostic]:
+    """No two nodes have one name in the databases of their buses."""
+    known: dict[str, Node] = {}
+    nodes = resolved.system.nodes
+    for node in sorted(nodes, key=lambda one: one.database_name is not None):
+        other = known.setdefault(node.in_database, node)
+        if node.database_name is not None and other is not node:
+            text = f"{node.name} and {other.name} are both named `{node.in_database}` in databases"
+            notes = [(other.origin, f"{other.name} is declared here")]
+            hint = "give one of them another `database_name`"
+            yield error(DATABASE, node.origin, text, notes=notes, hint=hint)
+
+
 def databases_tell_messages_apart(resolved: Resolved) -> Iterator[Diagnostic]:
     """The same of the messages that the model declares."""
     yield from names_in_databases(resolved.system)
 
 
 BUS_RULES = (
+    databases_tell_nodes_apart,
     databases_tell_messages_apart,
     transports_have_two_ends,
     buses_are_watched,

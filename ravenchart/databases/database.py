@@ -234,6 +234,7 @@ class _Writer:
                 received=self.received,
                 rate=rate,
                 flexible=self.flexible,
+                database_name=self._node_name(),
             )
         lines.append("messages:" if self.messages else "messages: {}")
         for own, frames in self.messages:
@@ -241,6 +242,13 @@ class _Writer:
             if not parts:
                 lines += deadline(frames, self.frames, rate)
         return "\n".join(lines) + "\n"
+
+    def _node_name(self) -> str | None:
+        """What the database calls the node, where a DBC can have it and the model has another."""
+        own = self.node
+        if own is None or own == self.instance or database_problem_of(own) is not None:
+            return None
+        return own
 
     def _system(self, stem: str) -> str:
         """A name for the model, which no type has."""

@@ -13,6 +13,7 @@ from decimal import Decimal
 
 from cantools.database.can import Signal
 
+from ravenchart.gen.language.names import database_text_problem_of
 from ravenchart.gen.model.signals import RAW_LIMIT, ByteOrder, positions
 from ravenchart.gen.resolve.layouts import SIGNED_BITS
 
@@ -183,7 +184,15 @@ def _enumeration(
         literals, codes = (*literals, names.new(OTHER)), (*codes, other)
     keys += (f"codes: [{', '.join(map(str, codes))}]",)
     keys += () if other is None else (f"other: {literals[-1]}",)
+    kept = [f'{new}: "{old}"' for old, new in renamed if _is_kept(old, choices)]
+    keys += (f"value_names: {{{', '.join(kept)}}}",) if kept else ()
     return Words(literals, codes, "", keys, None, renamed, other=other)
+
+
+def _is_kept(name: str, choices: Mapping[int, str]) -> bool:
+    """Can the database of the model have this name for the value?"""
+    alone = list(choices.values()).count(name) == 1
+    return alone and database_text_problem_of(name) is None
 
 
 def _free(signal: Signal, choices: Mapping[int, str], limits: tuple[int, int]) -> int:

@@ -131,18 +131,21 @@ def sections(
     received: Sequence[Frames],
     rate: int,
     flexible: bool,
+    database_name: str | None,
 ) -> list[str]:
     """The sections that make it a model.
 
     ``received``: the frames that have a port. ``flexible``: some frames are CAN FD.
+    ``database_name``: what the database calls the node, where that is something else.
     """
     arrivals = sum(1 / _nanoseconds(one.period) for one in received)
     turn = next((t for t in TURNS if arrivals * t <= HALF), TURNS[-1])
     short = 4 * US * (len(received) + len(sent)) > turn
     cost = "100 ns" if short else "1 us"
+    named = "" if database_name is None else f", database_name: {database_name}"
     lines = [
         "nodes:",
-        f"  {instance}: {{context_switch: {cost}, critical_section: {cost}, trace: 1024}}",
+        f"  {instance}: {{context_switch: {cost}, critical_section: {cost}, trace: 1024{named}}}",
         "buses:",
         "  bus:",
         f"    bit_rate: {rate // 1000} kbit/s",

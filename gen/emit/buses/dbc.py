@@ -35,7 +35,7 @@ def emit_dbc(system: System, bus: Bus) -> str:
     """The text of the bus's database."""
     own = [m for m in system.messages if m.bus == bus.name]
     messages = [_message(system, m) for m in own]
-    nodes = [Node(name=n.name, comment=None) for n in system.nodes]
+    nodes = [Node(name=n.in_database, comment=None) for n in system.nodes]
     nodes.append(Node(name=OUTSIDE, comment=None))
     specifics = _specifics(bus, own)
     database = Database(messages=messages, nodes=nodes, version="", dbc_specifics=specifics)
@@ -55,6 +55,8 @@ DATA_ID = DbcAttributeDefinition[str]("SecOCDataID", "", "BO_", "STRING")
 MODEL_MESSAGE = DbcAttributeDefinition[str]("ModelMessage", "", "BO_", "STRING")
 MODEL_SIGNAL = DbcAttributeDefinition[str]("ModelSignal", "", "SG_", "STRING")
 """Of a message and a signal with a `database_name`: what the model calls it."""
+MODEL_VALUES = DbcAttributeDefinition[str]("ModelValues", "", "SG_", "STRING")
+"""Of a signal with `value_names`: each raw value with what the model calls it, `0=Off 1=On`."""
 
 
 def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
@@ -70,6 +72,9 @@ def _specifics(bus: Bus, messages: Sequence[Message]) -> DbcSpecifics | None:
         made = made or DbcSpecifics()
         renamed = (MODEL_MESSAGE, MODEL_SIGNAL)
         made.attribute_definitions.update({one.name: one for one in renamed})
+    if any(s.value_names for m in messages for s in m.signals):
+        made = made or DbcSpecifics()
+        made.attribute_definitions[MODEL_VALUES.name] = MODEL_VALUES
     return made
 
 
@@ -93,6 +98,13 @@ def _attributes(message: Message) -> Attributes:
 
 def _renamed(one: Message | Signal, kind: DbcAttributeDefinition[str]) -> Attributes:
     return [] if one.database_name is None else [(kind, one.name)]
+
+
+def _valued(signal: Signal) -> Attributes:
+    if not signal.value_names:
+        return []
+    named = (f"{code}={name}" for name, code in signal.named_codes.items())
+    return [(MODEL_VALUES, " ".join(named))]
 
 
 def _with(attributes: Attributes) -> DbcSpecifics | None:
@@ -135,7 +147,8 @@ def _message(system: System, message: Message) -> DbcMessage:
 
 
 def _node(system: System, end: End) -> str:
-    return system.instance(end.instance).node
+    name = system.instance(end.instance).node
+    return next(node.in_database for node in system.nodes if node.name == name)
 
 
 def _header(message: Message, receivers: list[str]) -> list[DbcSignal]:
@@ -177,7 +190,7 @@ def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> Db
     low, high = signal.raw_range
     scale, unit = Decimal(1), None
     if isinstance(signal.type, EnumerationType):
-        pairs = ((code, name) for name, code in signal.named_codes.items())
+        pairs = ((code, name) for name, code in signal.codes_in_database.items())
         choices = OrderedDict[int, str | NamedSignalValue](pairs)
         if signal.other is not None:
             low, high = range_of(signal.width, signed=signal.signed)
@@ -202,7 +215,7 @@ def _signal(signal: Signal, selector: Signal | None, receivers: list[str]) -> Db
         is_multiplexer=signal.selects,
         multiplexer_ids=list(signal.pages) if is_paged else None,
         multiplexer_signal=selector.in_database if is_paged and selector is not None else None,
-        dbc_specifics=_with(_renamed(signal, MODEL_SIGNAL)),
+        dbc_specifics=_with([*_renamed(signal, MODEL_SIGNAL), *_valued(signal)]),
     )
 
 
