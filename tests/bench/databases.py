@@ -41,13 +41,14 @@ Tally = Counter[str]
 
 
 def files_in(places: Iterable[Path]) -> list[Path]:
-    """The databases in these folders and below."""
-    return sorted(
+    """The databases in these folders and below, the shortest ones first."""
+    found = (
         path
         for place in places
         for path in place.rglob("*")
         if path.suffix.lower() in database.FORMATS
     )
+    return sorted(found, key=lambda path: (path.stat().st_size, path))
 
 
 def busiest(read: Database) -> str | None:
@@ -75,6 +76,9 @@ def _parts(text: str) -> Iterator[str]:
     for first in range(0, len(each), MOST):
         some = each[first : first + MOST]
         names = {one.strip().partition(":")[0] for one in some}
+        ports = re.findall(r"^      (\w+): \{(?:in|out):", head, re.M)
+        if names.isdisjoint(ports):
+            continue
         kept = (
             line
             for line in head.splitlines()
