@@ -32,63 +32,41 @@ is
    --  The sum of three parts, each of which fits the Integer by which
    --  Ada.Real_Time multiplies a span.
 
+   function Rate return Product
+   is (Product (Ticks_Per_Second))
+   with Global => null;
+
    function Ceiling (Dividend, Divisor : Product) return Product
    is (Dividend / Divisor + (if Dividend mod Divisor = 0 then 0 else 1))
    with
      Global => null,
-     Pre    => Divisor > 0;
+     Pre    => Divisor > 0 and then Dividend <= Product'Last - Divisor,
+     Post   =>
+       Ceiling'Result * Divisor in Dividend .. Dividend + Divisor - 1;
    --  The quotient, rounded up.
-
-   function Rate return Product
-   is (Product (Ticks_Per_Second))
-   with Global => null;
 
    function Tick_Length return Positive_Nanoseconds
    is (Positive_Nanoseconds (Ceiling (Per_Second, Rate)))
    with Global => null;
    --  Of one tick, rounded up.
 
-   function Is_Ceiling
-     (Quotient, Dividend, Divisor : Product) return Boolean
-   is (Quotient * Divisor >= Dividend
-       and then Quotient * Divisor - Dividend < Divisor)
-   with
-     Ghost,
-     Global => null,
-     Pre    =>
-       Divisor in 1 .. Product'Max (Per_Second, Rate)
-       and then Quotient <= Product'Max (Per_Second, Rate);
-   --  Is it the quotient, rounded up?
-
-   function Whole_Seconds (Span : Tick_Span) return Nanoseconds
-   is (Nanoseconds (Span.Minutes) * 60 + Nanoseconds (Span.Seconds))
-   with Global => null;
-   --  The seconds of its first two parts.
-
    function To_Ticks (Length : Nanoseconds) return Tick_Span
-   with
-     Global => null,
-     Post   =>
-       Whole_Seconds (To_Ticks'Result) = Length / Per_Second
-       and then Is_Ceiling
-         (Product (To_Ticks'Result.Ticks),
-          Product (Length mod Per_Second) * Rate,
-          Per_Second);
+   is ((Minutes => Minute_Count (Length / Per_Second / 60),
+        Seconds => Second_Count (Length / Per_Second mod 60),
+        Ticks   => Tick_Count
+          (Ceiling
+             (Product (Length mod Per_Second) * Rate, Per_Second))))
+   with Global => null;
    --  The shortest span that is not shorter than Length.
 
    function To_Nanoseconds (Span : Tick_Span) return Nanoseconds
-   with
-     Global => null,
-     Post   =>
-       (if Whole_Seconds (Span) < Nanoseconds'Last / Per_Second
-        then To_Nanoseconds'Result >= Whole_Seconds (Span) * Per_Second
-          and then To_Nanoseconds'Result - Whole_Seconds (Span) * Per_Second
-            <= Per_Second
-          and then Is_Ceiling
-            (Product
-               (To_Nanoseconds'Result - Whole_Seconds (Span) * Per_Second),
-             Product (Span.Ticks) * Per_Second,
-             Rate));
+   is (Nanoseconds
+         (Product'Min
+            ((Product (Span.Minutes) * 60 + Product (Span.Seconds))
+             * Per_Second
+             + Ceiling (Product (Span.Ticks) * Per_Second, Rate),
+             Product (Nanoseconds'Last))))
+   with Global => null;
    --  The shortest length that is not shorter than Span; the last value where
    --  Span is longer.
 
@@ -113,6 +91,17 @@ is
      Pre    => Is_Whole (Length),
      Post   => To_Nanoseconds (To_Ticks (Length)) = Length;
    --  A whole number of ticks is kept as it is, both ways.
+
+   procedure Lemma_Sum_Is_Whole (Left, Right : Nanoseconds)
+   with
+     Ghost,
+     Global => null,
+     Pre    =>
+       Is_Whole (Left)
+       and then Is_Whole (Right)
+       and then Left <= Nanoseconds'Last - Right,
+     Post   => Is_Whole (Left + Right);
+   --  Two whole numbers of ticks are one.
 
    procedure Lemma_No_Drift
      (Offset  : Nanoseconds;
