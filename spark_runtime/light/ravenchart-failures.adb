@@ -221,6 +221,16 @@ is
    function Stop_Needed return Boolean
    is (Record_Of_All.Any);
 
+   ---------------
+   -- Put_Error --
+   ---------------
+
+   procedure Put_Error (Text : String) is
+   begin
+      Boards.Put (Text);
+      Boards.Put ((1 => ASCII.LF));
+   end Put_Error;
+
    -----------------
    -- Put_Reasons --
    -----------------
