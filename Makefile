@@ -8,7 +8,7 @@ export RAVENCHART_WARNINGS := errors
 RESULTS    := build/tests.xml
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-long hw-test check prove generate bench bench-proof mutate docs site
+.PHONY: help setup demo test test-long hw-test board-test check prove generate bench bench-proof mutate docs site
 .PHONY: lock clean
 
 help:
@@ -16,6 +16,7 @@ help:
 	@echo 'make test      every test'
 	@echo 'make test-long  the same with 2,000 random charts, millions of frames and lines: hours'
 	@echo 'make hw-test   drivers on SocketCAN and CTU CAN FD in a guest of QEMU, tests on other machines: minutes'
+	@echo 'make board-test  controllers and runtime on an emulated board; what cannot run is skipped'
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
 	@echo 'make generate  the examples'' generated/ from their models'
@@ -40,6 +41,10 @@ test-long: setup
 hw-test: setup
 	@scripts/setup.sh guest || true
 	@$(PYTHON) -P -m tests.hardware
+
+board-test: setup
+	@scripts/setup.sh board || true
+	@$(PYTHON) -P -m pytest -q -rs tests/system/test_boards.py
 
 check: setup
 	@$(PYTHON) -P -m ruff check .

@@ -4,6 +4,7 @@
 # With the word "arm" also the compiler for 32-bit Arm, which only figures need;
 # with the word "guest" QEMU, the compilers for s390x and 32-bit Arm and, unpacked
 # below build/guest and not installed, Debian's kernel, which only `make hw-test` needs.
+# With the word "board" the emulator and the compiler for `make board-test`.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -17,6 +18,12 @@ python3 -c 'import ensurepip, venv' 2>/dev/null || packages="$packages python3-v
 if [ "${1:-}" = arm ]; then
    command -v arm-linux-gnueabihf-gcc-12 >/dev/null 2>&1 ||
       packages="$packages gnat-12-arm-linux-gnueabihf"
+fi
+if [ "${1:-}" = board ]; then
+   command -v qemu-system-aarch64 >/dev/null 2>&1 || packages="$packages qemu-system-arm"
+   command -v aarch64-linux-gnu-gnatls >/dev/null 2>&1 ||
+      packages="$packages gnat-12-aarch64-linux-gnu"
+   command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 || packages="$packages gcc-aarch64-linux-gnu"
 fi
 if [ "${1:-}" = guest ]; then
    command -v qemu-system-x86_64 >/dev/null 2>&1 || packages="$packages qemu-system-x86"

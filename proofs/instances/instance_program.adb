@@ -6,6 +6,8 @@ with Ada.Real_Time;
 with Instance_Authentication;
 pragma Unreferenced (Instance_Authentication);
 with Instance_Bus;
+with Instance_Clocks;
+pragma Unreferenced (Instance_Clocks);
 with Instance_Iso_Tp;
 pragma Unreferenced (Instance_Iso_Tp);
 with Instance_Protection;

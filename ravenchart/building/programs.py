@@ -22,6 +22,7 @@ from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
 from ravenchart.tools import toolchain
 
+from . import targets
 from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {
@@ -79,13 +80,14 @@ class Program:
         """Its GNAT project."""
         return self.generated / f"{self.checked.stem}.gpr"
 
-    def home(self, driver: str) -> Path:
+    def home(self, driver: str, target: str = targets.NATIVE) -> Path:
         """Where its objects and the program itself go."""
-        return build_home(self.checked, driver) / self.folder
+        return build_home(self.checked, driver, target) / self.folder
 
-    def scenario(self, mode: str, driver: str) -> dict[str, str]:
+    def scenario(self, mode: str, driver: str, target: str = targets.NATIVE) -> dict[str, str]:
         """The scenario variables of a build: mode, CAN driver, and where objects go."""
-        return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(self.home(driver))}
+        home = self.home(driver, target)
+        return {"MODE": mode, "CAN_DRIVER": driver, "RAVENCHART_BUILD": str(home)}
 
     def build(
         self,
@@ -93,24 +95,32 @@ class Program:
         driver: str | None = None,
         registers: str = "simulated",
         warn: Callable[[str], None] = to_standard_error,
+        board: targets.Board | None = None,
     ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words.
 
-        ``warn`` gets the compiler's warnings.
+        ``warn`` gets the compiler's warnings. Without a ``board`` it is for this machine.
 
         Refused where ``driver`` cannot do what the model wants, and with ``registers`` of the
         hardware where a device has no address.
         """
-        chosen = driver or default_driver(self.checked)
-        check_driver(self.checked, chosen)
+        target = board.target if board else targets.target(targets.NATIVE)
+        chosen = driver or default_driver(self.checked, target)
+        check_driver(self.checked, chosen, target)
         if registers == HARDWARE:
             self._check_addresses()
-        variables = {**self.scenario(mode, chosen), "RAVENCHART_REGISTERS": registers}
+        variables = {
+            **self.scenario(mode, chosen, target.name),
+            "RAVENCHART_REGISTERS": registers,
+        }
         options = ["-p", "-q", "-j0", "-P", self.project.name]
+        if board:
+            variables |= board.scenario()
+            options = [*board.options(), *options]
         warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
         if warnings.strip():
             warn(warnings.rstrip())
-        return self.home(chosen) / mode / f"{self.checked.stem}_main"
+        return self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
 
     def _check_addresses(self) -> None:
         """Refused where a device with registers has no address."""
@@ -179,9 +189,10 @@ def programs_of(checked: Checked) -> tuple[Program, ...]:
     )
 
 
-def build_home(checked: Checked, driver: str) -> Path:
-    """What is built of a model, below build/ of the place of work, apart for each driver."""
-    return work() / "build" / f"{checked.stem}-{_mark(checked.path)}-{driver}"
+def build_home(checked: Checked, driver: str, target: str = targets.NATIVE) -> Path:
+    """What is built of a model, below build/ of the place of work, apart for driver and target."""
+    place = driver if target == targets.NATIVE else f"{driver}-{target}"
+    return work() / "build" / f"{checked.stem}-{_mark(checked.path)}-{place}"
 
 
 def homes_of(model: Path) -> list[Path]:
@@ -195,11 +206,14 @@ def _mark(model: Path) -> str:
     return hashlib.sha256(str(place.resolve()).encode()).hexdigest()[:8]
 
 
-def default_driver(checked: Checked) -> str:
+def default_driver(checked: Checked, target: targets.Target | None = None) -> str:
     """For one node with a bus slcan: python-can talks to it. For several what joins a bus.
 
-    So does one whose transmit buffers are by priority: an slcan adapter has none.
+    So does one whose transmit buffers are by priority: an slcan adapter has none. On another
+    target it is the first of that target's drivers.
     """
+    if target is not None and target.name != targets.NATIVE:
+        return target.facts.drivers[0]
     if len(checked.system.nodes) > 1 or _by_priority(checked):
         return "bus"
     return "slcan" if checked.system.buses else "loopback"
@@ -214,8 +228,14 @@ def _by_priority(checked: Checked) -> str | None:
     return next((bus.name for bus in checked.system.buses if bus.by_priority), None)
 
 
-def check_driver(checked: Checked, driver: str) -> None:
-    """Refused where the driver cannot do what the model wants."""
+def check_driver(checked: Checked, driver: str, target: targets.Target | None = None) -> None:
+    """Refused where the driver is not one of the target's, or cannot do what the model wants."""
+    if target is not None and driver not in target.facts.drivers:
+        known = ", ".join(target.facts.drivers)
+        raise Refused(
+            f"ravenchart: error: the target {target.name} has no driver {driver}\n"
+            f"  hint: take one of {known}"
+        )
     bus = _by_priority(checked)
     if bus is not None and driver not in BY_PRIORITY:
         raise Refused(

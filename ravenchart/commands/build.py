@@ -17,6 +17,7 @@ from .results import BuildResult, Built
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what the command is told."""
     common.add_model(sub)
+    common.add_target(sub)
     sub.add_argument("--driver", choices=programs.DRIVERS, help="the CAN driver")
     sub.add_argument(
         "--mode", choices=("checks", "release"), default="checks",
@@ -31,12 +32,13 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Build every program of the model; the exit status."""
     checked = common.checked(options)
+    board = common.board(options, checked)
     generated = common.tell_written(generation.write_program(checked), options.answer)
     answer = options.answer.result = BuildResult(generated, [])
     warn = partial(say, options.answer, severity="warning")
     for made in programs.programs_of(checked):
         with progress(f"compile {made.node}"):
-            program = made.build(options.mode, options.driver, options.registers, warn)
+            program = made.build(options.mode, options.driver, options.registers, warn, board)
         answer.programs.append(Built(made.node, str(program)))
         print(f"built {program}")
     return OK

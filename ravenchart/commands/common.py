@@ -13,11 +13,38 @@ from .results import GenerateResult
 if TYPE_CHECKING:
     from ravenchart.building.checking import Checked
     from ravenchart.building.generation import Written
+    from ravenchart.building.targets import Board
 
 
 def add_model(sub: argparse.ArgumentParser) -> None:
     """The model that the command is about."""
     sub.add_argument("model", type=Path, metavar="MODEL", help="the model's YAML file")
+
+
+def add_target(sub: argparse.ArgumentParser) -> None:
+    """What the program is built for."""
+    from ravenchart.building import targets
+
+    sub.add_argument(
+        "--target", choices=targets.names(), default=targets.NATIVE,
+        help="what the program runs on (default: this machine)",
+    )  # fmt: skip
+    sub.add_argument(
+        "--rts", type=Path, metavar="DIR",
+        help=f"the target's Ada run-time library (default: {targets.RTS_VARIABLE})",
+    )  # fmt: skip
+
+
+def board(options: argparse.Namespace, found: Checked) -> Board | None:
+    """The board that the program is built for, its warnings printed; None: this machine."""
+    from ravenchart.building import targets
+
+    if options.target == targets.NATIVE:
+        return None
+    made = targets.board(targets.target(options.target), options.rts)
+    for text in targets.check_system(made, found.system):
+        say(options.answer, text)
+    return made
 
 
 def add_log(sub: argparse.ArgumentParser) -> None:

@@ -24,6 +24,7 @@ from ravenchart.analysis.system.observed import (
 )
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.building.programs import Program, to_standard_error
+from ravenchart.building.targets import Board
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
@@ -50,9 +51,17 @@ class Controller:
     trace_json: Path
 
 
-def controller(made: Program, warn: Callable[[str], None] = to_standard_error) -> Controller:
-    """A program built, to be run. ToolFailed with the compiler's words."""
-    return Controller(made.node, made.build(warn=warn), made.generated / "trace.json")
+def controller(
+    made: Program,
+    warn: Callable[[str], None] = to_standard_error,
+    board: Board | None = None,
+) -> Controller:
+    """A program built, to be run. ToolFailed with the compiler's words.
+
+    On a board nothing excuses an execution time, so contracts are not executed there.
+    """
+    executable = made.build("release" if board else "checks", warn=warn, board=board)
+    return Controller(made.node, executable, made.generated / "trace.json")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,50 +86,55 @@ def joins_a_server(system: System, programs: int) -> bool:
     return programs > 1 or any(one.by_priority for one in system.buses)
 
 
+def run_on_this_machine(request: RunRequest, progress: Progress) -> RunResult:
+    """Run as processes of this machine. Raises as `run_controller`."""
+    first = request.controllers[0]
+    if joins_a_server(request.analysis.system, len(request.controllers)):
+        return run_nodes(
+            request.controllers,
+            request.analysis,
+            _dbc(request),
+            request.scenario,
+            request.seconds,
+            request.folder,
+            progress,
+            log=request.log,
+        )
+    if request.scenario is None:
+        return run_alone(
+            first.executable,
+            first.trace_json,
+            request.seconds,
+            request.folder,
+            analysis=request.analysis,
+        )
+    return run_controller(
+        first.executable,
+        first.trace_json,
+        _dbc(request),
+        request.scenario,
+        None,
+        request.folder,
+        progress,
+        analysis=request.analysis,
+        log=request.log,
+    )
+
+
 def run_model(
     request: RunRequest,
     console: Console | None = None,
     refuse: Callable[[str], None] = lambda text: None,
+    execute: Callable[[RunRequest, Progress], RunResult] = run_on_this_machine,
 ) -> RunResult | None:
     """Run, print the summary and write the report.
 
     None where nothing could be run: ``refuse`` gets the reason, which is printed too.
     """
     out = console or terminal.console()
-    first = request.controllers[0]
     try:
         with terminal.progress("start the controller") as progress:
-            if joins_a_server(request.analysis.system, len(request.controllers)):
-                outcome = run_nodes(
-                    request.controllers,
-                    request.analysis,
-                    _dbc(request),
-                    request.scenario,
-                    request.seconds,
-                    request.folder,
-                    progress,
-                    log=request.log,
-                )
-            elif request.scenario is None:
-                outcome = run_alone(
-                    first.executable,
-                    first.trace_json,
-                    request.seconds,
-                    request.folder,
-                    analysis=request.analysis,
-                )
-            else:
-                outcome = run_controller(
-                    first.executable,
-                    first.trace_json,
-                    _dbc(request),
-                    request.scenario,
-                    None,
-                    request.folder,
-                    progress,
-                    analysis=request.analysis,
-                    log=request.log,
-                )
+            outcome = execute(request, progress)
     except (ScenarioError, BenchError, TraceError) as fault:
         out.print(str(fault), markup=False, soft_wrap=True)
         refuse(str(fault))

@@ -1,4 +1,4 @@
-with GNAT.IO;
+with Ravenchart.Failures;
 
 package body Ravenchart.Device_Failures
   with SPARK_Mode => Off
@@ -10,9 +10,8 @@ is
 
    procedure Note (Device : String) is
    begin
-      GNAT.IO.Put_Line
-        (GNAT.IO.Standard_Error,
-         "error: the device " & Device
+      Failures.Put_Error
+        ("error: the device " & Device
          & " has failed its initialisation or self-test: the controller does"
          & " not start");
    end Note;
@@ -23,9 +22,8 @@ is
 
    procedure Note_Late is
    begin
-      GNAT.IO.Put_Line
-        (GNAT.IO.Standard_Error,
-         "error: the devices were not ready by the first release: the"
+      Failures.Put_Error
+        ("error: the devices were not ready by the first release: the"
          & " controller does not start");
    end Note_Late;
 

@@ -96,9 +96,6 @@ is
    function Bounded (Text : String) return Bounded_Text;
    --  Text, or as much of it as there is place for.
 
-   procedure Put_Error (Text : String);
-   --  A line on standard error, if it can be written.
-
    Of_Memory : constant String :=
      "a stack overflow, or an access to memory that the task does not have";
 

@@ -26,13 +26,19 @@ is
 
    function To_Span (Length : Nanoseconds) return Ada.Real_Time.Time_Span
    with Global => null;
-   --  Length as a span, exact, also beyond the 2.1 s that GNAT's own
-   --  conversion of nanoseconds can take.
+   --  Length as a span, rounded up to a tick of the clock, also beyond the
+   --  2.1 s that GNAT's own conversion of nanoseconds can take.
 
    function To_Nanoseconds
      (Span : Ada.Real_Time.Time_Span) return Nanoseconds
    with Global => null;
-   --  Span in nanoseconds; 0 when negative, the last value when too long.
+   --  Span in nanoseconds, rounded up; 0 when negative, the last value when
+   --  too long.
+
+   function Instant (Elapsed : Nanoseconds) return Ada.Real_Time.Time
+   with Global => Start;
+   --  The first tick of the clock at or after Elapsed from Start. The rounding
+   --  of one instant has no part in that of another.
 
    procedure Since_Start (Elapsed : out Nanoseconds)
    with

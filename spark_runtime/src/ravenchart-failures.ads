@@ -5,8 +5,9 @@
 --               until Put_Reasons; a task that ends by itself or by an
 --               exception is a failure without any call; an exception in the
 --               environment task ends the program
---  Tasking      any task; nothing here blocks but Put_Reasons and Give_Up
---  Timing       constant; Put_Reasons and Give_Up may wait for the host
+--  Tasking      any task; nothing here blocks but what begins with Put, and
+--               Give_Up
+--  Timing       constant; these may wait for the host
 --  Assumptions  ASM-014, the body does what is said here
 
 package Ravenchart.Failures
@@ -36,6 +37,12 @@ is
    function Stop_Needed return Boolean
    with Volatile_Function, Global => State;
    --  Is there a failure? Then the controller shuts down.
+
+   procedure Put_Error (Text : String)
+   with
+     Global => (In_Out => State),
+     Pre    => Text'Length in 1 .. 400;
+   --  Hand a line over to the host.
 
    procedure Put_Reasons
    with Global => (In_Out => State);

@@ -1,15 +1,13 @@
-with Ada.Real_Time;
 with Ravenchart.Blackboards;
 with Ravenchart.Epochs;
 with Ravenchart.Failures;
+with Ravenchart.Schedules;
 
 package body Ravenchart.Host_Probes
   with
     SPARK_Mode,
     Refined_State => (State => (Board.State, Probe))
 is
-   use type Ada.Real_Time.Time;
-
    package Board is new Blackboards
      (Element_Type => Nanoseconds,
       Initial      => 0,
@@ -31,26 +29,24 @@ is
    end Read;
 
    task body Probe is
-      Step  : constant Ada.Real_Time.Time_Span := Epochs.To_Span (Period);
-      Due   : Ada.Real_Time.Time := Epochs.Start;
-      Late  : Nanoseconds;
-      Worst : Nanoseconds := 0;
-      Now   : Ada.Real_Time.Time;
+      Last    : constant Event_Count := Schedules.Last_Release (0, Period);
+      Release : Event_Count := 0;
+      Due     : Nanoseconds;
+      Now     : Nanoseconds;
+      Worst   : Nanoseconds := 0;
    begin
       Failures.Register (Name);
       loop
-         delay until Due;
-         Now  := Ada.Real_Time.Clock;
-         Late := Epochs.To_Nanoseconds (Now - Due);
-         if Late > Worst then
-            Worst := Late;
+         pragma Loop_Invariant (Release <= Last);
+         Due := Schedules.Due (0, Period, Release);
+         delay until Epochs.Instant (Due);
+         Epochs.Since_Start (Now);
+         if Now > Due and then Now - Due > Worst then
+            Worst := Now - Due;
             Board.Write (Worst);
          end if;
-         Due := Due + Step;
-         if Due < Now then
-            Due := Now + Step;
-            --  wake-ups that a long stall has swallowed tell nothing new
-         end if;
+         Release := Event_Count'Min (Next (Event_Count (Now / Period)), Last);
+         --  Wake-ups that a long stall has swallowed tell nothing new.
       end loop;
    end Probe;
 

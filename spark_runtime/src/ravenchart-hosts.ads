@@ -1,19 +1,20 @@
---  The process around a controller on a Unix host: signals, scheduling
---  policy, and the run's report.
+--  What is around a controller: requests to stop, its report, and its end.
 --
---  Guarantees   a full disk or a closed file never disturbs the controller:
---               the report is then cut short
+--  Guarantees   a report that cannot be written never disturbs the controller:
+--               it is then cut short
 --  Tasking      the environment task only, at the lowest priority; gnatprove
 --               refuses a second task, since the state is not synchronous
---  Timing       not bounded: it may wait for the disk
+--  Timing       not bounded: it may wait for a disk or a serial line
+--  Assumptions  ASM-002, what the target does for it
 --
---  The report goes to the file that the environment variable RAVENCHART_TRACE
---  names, and nowhere when it is not set. Lines: E clock, the time of this
---  machine's real-time clock at Start of Epochs; M digest, of the model from
---  which the program was generated; T time kind element value; P processor
---  releases misses worst_response; A activity worst_execution; H kind count;
---  L what count; W host_latency; N now, the time at which the statistics
---  were read; F feeds of the watchdog; END last. Times are in nanoseconds.
+--  On a Unix host the report goes to the file that the environment variable
+--  RAVENCHART_TRACE names, and nowhere when it is not set; on a board to its
+--  serial line. Lines: E clock, the time of the real-time clock of the machine
+--  at Start of Epochs; M digest, of the model from which the program was
+--  generated; T time kind element value; P processor releases misses
+--  worst_response; A activity worst_execution; H kind count; L what count;
+--  W host_latency; N now, the time at which the statistics were read; F feeds
+--  of the watchdog; END last. Times are in nanoseconds.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -31,12 +32,12 @@ package Ravenchart.Hosts
 is
    procedure Start
    with Global => (Input => Epochs.Start, In_Out => Process);
-   --  Catch SIGTERM and SIGINT, begin the report, and warn on standard error
-   --  when the process has no real-time priorities.
+   --  Be ready for requests to stop (SIGTERM and SIGINT on a Unix host), and
+   --  begin the report. A host warns when it gives no real-time priorities.
 
    function Stop_Requested return Boolean
    with Volatile_Function, Global => (Process, Failures.State);
-   --  Has a signal asked the controller to end, or is there a failure?
+   --  Has the target been asked to end the controller, or is there a failure?
 
    procedure Put_Model (Digest : String)
    with
@@ -87,7 +88,7 @@ is
 
    procedure Finish (Success : Boolean)
    with Global => (In_Out => (Process, Failures.State));
-   --  Write the END line, the reasons of failures on standard error, and end
-   --  the process: status 0 on Success where there is no failure, else 1.
+   --  Write the END line and the reasons of failures, and end the program:
+   --  status 0 on Success where there is no failure, else 1.
 
 end Ravenchart.Hosts;

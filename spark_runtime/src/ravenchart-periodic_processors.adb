@@ -5,20 +5,19 @@ with Ravenchart.Failures;
 package body Ravenchart.Periodic_Processors
   with SPARK_Mode
 is
-   use type Ada.Real_Time.Time;
-
    task body Processor is
-      Step    : constant Ada.Real_Time.Time_Span := Epochs.To_Span (Period);
-      Due     : Ada.Real_Time.Time := Epochs.Start + Epochs.To_Span (Offset);
-      Release : Natural := 0;
-      --  The number of the release, as far as the table can tell.
+      Last    : constant Event_Count :=
+        Schedules.Last_Release (Offset, Period);
+      Release : Event_Count := 0;
+      Due     : Ada.Real_Time.Time;
    begin
       Failures.Register (Name);
       loop
+         pragma Loop_Invariant (Release <= Last);
+         Due := Epochs.Instant (Schedules.Due (Offset, Period, Release));
          delay until Due;
-         Releases.Run (Release, Due);
-         Due     := Due + Step;
-         Release := (if Release < Cycle - 1 then Release + 1 else 0);
+         Releases.Run (Natural (Release mod Event_Count (Cycle)), Due);
+         Release := Event_Count'Min (Next (Release), Last);
       end loop;
    end Processor;
 

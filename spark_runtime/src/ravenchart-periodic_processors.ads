@@ -1,8 +1,9 @@
 --  Periodic command processor: one task that runs its activity table once in
 --  every Period.
 --
---  Guarantees   release K is due at Epochs.Start + Offset + K * Period: no
---               drift; a late release is run late, never dropped or merged
+--  Guarantees   release K is due at the first tick of the clock at or after
+--               Epochs.Start + Offset + K * Period: no drift; a late release
+--               is run late, never dropped or merged
 --  Tasking      Observe and Observe_Progress by any task up to Ceiling
 --  Timing       each release, the activities whose slot names it
 --  Analysis     one task: T = Period, D = Deadline, O = Offset,

@@ -2,7 +2,7 @@
 --
 --  Guarantees   does not count time in which the task was preempted
 --  Tasking      any task may call
---  Timing       one system call on a native target
+--  Timing       one reading of the clock; a system call on a native target
 
 with Ada.Real_Time;
 with Ada.Task_Identification;

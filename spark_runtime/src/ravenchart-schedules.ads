@@ -1,4 +1,5 @@
---  The table of a processor: which activity runs in which release.
+--  The table of a processor: when each release is due, and which activity runs
+--  in it.
 --
 --  Guarantees   no state
 --  Tasking      none
@@ -23,5 +24,22 @@ is
    is (S.Phase < S.Divisor and then Cycle mod S.Divisor = 0)
    with Global => null;
    --  Does S run, and does its pattern repeat with the Cycle?
+
+   function Last_Release
+     (Offset : Nanoseconds; Period : Positive_Nanoseconds) return Event_Count
+   is (Event_Count ((Nanoseconds'Last - Offset) / Period))
+   with Global => null;
+   --  The last release that is due within the range of Nanoseconds.
+
+   function Due
+     (Offset  : Nanoseconds;
+      Period  : Positive_Nanoseconds;
+      Release : Event_Count)
+      return Nanoseconds
+   is (Offset + Nanoseconds (Release) * Period)
+   with
+     Global => null,
+     Pre    => Release <= Last_Release (Offset, Period);
+   --  When it is due, from Epochs.Start: no release depends on the one before.
 
 end Ravenchart.Schedules;

@@ -1,15 +1,14 @@
-with Ada.Real_Time;
 with Ravenchart.Blackboards;
 with Ravenchart.Epochs;
 with Ravenchart.Failures;
 with Ravenchart.Liveness;
+with Ravenchart.Schedules;
 
 package body Ravenchart.Supervisors
   with
     SPARK_Mode,
     Refined_State => (State => (Board.State, Supervisor))
 is
-   use type Ada.Real_Time.Time;
    use type Liveness.Finding;
 
    package Board is new Blackboards
@@ -33,8 +32,8 @@ is
    end Read;
 
    task body Supervisor is
-      Step     : constant Ada.Real_Time.Time_Span := Epochs.To_Span (Period);
-      Due      : Ada.Real_Time.Time := Epochs.Start;
+      Last     : constant Event_Count := Schedules.Last_Release (0, Period);
+      Release  : Event_Count := 0;
       Reported : array (Processor_Id) of Boolean := (others => False);
       Elapsed  : Nanoseconds;
       Silent   : Boolean;
@@ -46,7 +45,8 @@ is
    begin
       Failures.Register (Name);
       loop
-         delay until Due;
+         pragma Loop_Invariant (Release <= Last);
+         delay until Epochs.Instant (Schedules.Due (0, Period, Release));
          Epochs.Since_Start (Elapsed);
          for Item in Processor_Id loop
             if not Reported (Item) then
@@ -68,7 +68,7 @@ is
          elsif Elapsed - First >= Patience then
             Give_Up;
          end if;
-         Due := Due + Step;
+         Release := Event_Count'Min (Next (Release), Last);
       end loop;
    end Supervisor;
 

@@ -1,20 +1,15 @@
---  The pure parts of regions: ports, timers, schedule slots, event lists, and
---  the conversions of durations.
+--  The pure parts of regions: ports, timers, schedule slots and event lists.
 
-with Ada.Real_Time;
 with Facts;
 with Objects;
-with Ravenchart.Epochs;
 with Ravenchart.Schedules;
 with Ravenchart.Timers;
 
 procedure Test_Regions is
-   use type Ada.Real_Time.Time_Span;
    use type Objects.Ports.Change;
    use type Objects.Signal;
    use type Ravenchart.Execution_Count;
    use type Ravenchart.Freshness;
-   use type Ravenchart.Nanoseconds;
    use type Ravenchart.Timers.Remaining_Count;
 
    procedure Check_Ports;
@@ -24,8 +19,6 @@ procedure Test_Regions is
    procedure Check_Slots;
 
    procedure Check_Events;
-
-   procedure Check_Durations;
 
    -----------------
    -- Check_Ports --
@@ -173,51 +166,10 @@ procedure Test_Regions is
         ("a cleared list is empty", Objects.Events.Count (List) = 0);
    end Check_Events;
 
-   ---------------------
-   -- Check_Durations --
-   ---------------------
-
-   procedure Check_Durations is
-      type Sample_Array is array (Positive range <>)
-        of Ravenchart.Nanoseconds;
-      Samples : constant Sample_Array :=
-        (0, 1, 999, 1_000, 999_999_999, 1_000_000_000, 2_147_483_648,
-         60_000_000_000, 3_600_000_000_001, 2**61 + 12_345_678_901);
-      Same    : Boolean := True;
-   begin
-      for Length of Samples loop
-         Same := Same
-           and then Ravenchart.Epochs.To_Nanoseconds
-             (Ravenchart.Epochs.To_Span (Length)) = Length;
-      end loop;
-      Facts.Check ("durations survive the way to spans and back", Same);
-      Facts.Check
-        ("3 s are a span of 3 s",
-         Ravenchart.Epochs.To_Span (3_000_000_000)
-         = Ada.Real_Time.Seconds (3));
-      Facts.Check
-        ("a negative span is 0 ns",
-         Ravenchart.Epochs.To_Nanoseconds (Ada.Real_Time.Nanoseconds (-1))
-         = 0);
-      Facts.Check
-        ("a span that is too long saturates",
-         Ravenchart.Epochs.To_Nanoseconds (Ada.Real_Time.Time_Span_Last)
-         = Ravenchart.Nanoseconds'Last);
-      Facts.Check
-        ("the longest duration survives",
-         Ravenchart.Epochs.To_Nanoseconds
-           (Ravenchart.Epochs.To_Span (Ravenchart.Nanoseconds'Last))
-         = Ravenchart.Nanoseconds'Last
-         and then Ravenchart.Epochs.To_Nanoseconds
-           (Ravenchart.Epochs.To_Span (Ravenchart.Nanoseconds'Last - 1))
-         = Ravenchart.Nanoseconds'Last - 1);
-   end Check_Durations;
-
 begin
    Check_Ports;
    Check_Timers;
    Check_Slots;
    Check_Events;
-   Check_Durations;
    Facts.Finish;
 end Test_Regions;

@@ -14,6 +14,7 @@ MAINS = (
     "test_store",
     "test_calls",
     "test_regions",
+    "test_clocks",
     "test_records",
     "test_frames",
     "test_slcan",

@@ -20,7 +20,7 @@ OF_THE_HOST = {
     "ravenchart-can-raw_sockets.adb",
     "ravenchart-can-tcp_sockets.adb",
     "ravenchart-failures.adb",
-    "ravenchart-hosts.adb",
+    "ravenchart-hosts-services.adb",
 }
 """Bodies that ask Linux, which a board replaces by its own."""
 

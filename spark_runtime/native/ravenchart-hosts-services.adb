@@ -1,7 +1,7 @@
 with Interfaces.C.Strings;
 with System;
 
-package body Ravenchart.Hosts
+package body Ravenchart.Hosts.Services
   with SPARK_Mode => Off
 --  ASM-002. Signals, files and the scheduling policy are reached through the
 --  C library, by address; SPARK has no words for a handler that the kernel
@@ -81,18 +81,6 @@ is
    procedure Write_All (File : in out C_Int; Text : String);
    --  Write Text; File becomes No_File when it cannot be written.
 
-   procedure Flush;
-   --  Write the buffer out.
-
-   procedure Put_Line (Text : String);
-   --  Add a line to the report, if there is one.
-
-   function Image (Value : Long_Long_Integer) return String;
-   --  Value in decimal, with no space before it.
-
-   function Capitalized (Name : String) return String;
-   --  An enumeration literal as the sources spell it.
-
    ------------------
    -- Request_Stop --
    ------------------
@@ -134,51 +122,20 @@ is
       Filled := 0;
    end Flush;
 
-   --------------
-   -- Put_Line --
-   --------------
+   ---------
+   -- Put --
+   ---------
 
-   procedure Put_Line (Text : String) is
+   procedure Put (Text : String) is
    begin
       if Report_File /= No_File then
-         if Text'Length + 1 > Buffer'Last - Filled then
+         if Text'Length > Buffer'Last - Filled then
             Flush;
          end if;
-         Buffer (Filled + 1 .. Filled + Text'Length + 1) := Text & ASCII.LF;
-         Filled := Filled + Text'Length + 1;
+         Buffer (Filled + 1 .. Filled + Text'Length) := Text;
+         Filled := Filled + Text'Length;
       end if;
-   end Put_Line;
-
-   -----------
-   -- Image --
-   -----------
-
-   function Image (Value : Long_Long_Integer) return String is
-      Text : constant String := Value'Image;
-   begin
-      return
-        (if Text (Text'First) = ' '
-         then Text (Text'First + 1 .. Text'Last)
-         else Text);
-   end Image;
-
-   -----------------
-   -- Capitalized --
-   -----------------
-
-   function Capitalized (Name : String) return String is
-      Result : String  := Name;
-      Inside : Boolean := False;
-   begin
-      for C of Result loop
-         if Inside and then C in 'A' .. 'Z' then
-            C := Character'Val
-              (Character'Pos (C) - Character'Pos ('A') + Character'Pos ('a'));
-         end if;
-         Inside := C /= '_';
-      end loop;
-      return Result;
-   end Capitalized;
+   end Put;
 
    -----------
    -- Start --
@@ -186,8 +143,6 @@ is
 
    procedure Start is
       Ignored : System.Address;
-      Whole   : Ada.Real_Time.Seconds_Count;
-      Rest    : Ada.Real_Time.Time_Span;
       Path    : constant Interfaces.C.Strings.chars_ptr :=
         C_Get_Environment (Interfaces.C.To_C ("RAVENCHART_TRACE"));
       Stream  : C_Int := Standard_Error;
@@ -206,11 +161,6 @@ is
                & " written: this run leaves no trace" & ASCII.LF);
          end if;
       end if;
-      Ada.Real_Time.Split (Epochs.Start, Whole, Rest);
-      Put_Line
-        ("E " & Image
-           (Long_Long_Integer (Whole) * 1_000_000_000
-            + Long_Long_Integer (Epochs.To_Nanoseconds (Rest))));
       if C_Get_Scheduler (0) /= Fifo_Policy then
          Write_All
            (Stream,
@@ -225,122 +175,17 @@ is
    --------------------
 
    function Stop_Requested return Boolean
-   is (Stop_Flag or else Failures.Stop_Needed);
-
-   ---------------
-   -- Put_Model --
-   ---------------
-
-   procedure Put_Model (Digest : String) is
-   begin
-      Put_Line ("M " & Digest);
-   end Put_Model;
-
-   ---------------
-   -- Put_Trace --
-   ---------------
-
-   procedure Put_Trace (Item : Traces.Trace_Record) is
-   begin
-      Put_Line
-        ("T " & Image (Long_Long_Integer (Item.At_Time))
-         & ' ' & Capitalized (Item.Kind'Image)
-         & ' ' & Image (Long_Long_Integer (Item.Element))
-         & ' ' & Image (Long_Long_Integer (Item.Value)));
-   end Put_Trace;
-
-   -------------------
-   -- Put_Processor --
-   -------------------
-
-   procedure Put_Processor
-     (Id             : Element_Id;
-      Releases       : Event_Count;
-      Misses         : Event_Count;
-      Worst_Response : Nanoseconds) is
-   begin
-      Put_Line
-        ("P " & Image (Long_Long_Integer (Id))
-         & ' ' & Image (Long_Long_Integer (Releases))
-         & ' ' & Image (Long_Long_Integer (Misses))
-         & ' ' & Image (Long_Long_Integer (Worst_Response)));
-   end Put_Processor;
-
-   ------------------
-   -- Put_Activity --
-   ------------------
-
-   procedure Put_Activity (Id : Element_Id; Worst_Execution : Nanoseconds) is
-   begin
-      Put_Line
-        ("A " & Image (Long_Long_Integer (Id))
-         & ' ' & Image (Long_Long_Integer (Worst_Execution)));
-   end Put_Activity;
-
-   ---------------------
-   -- Put_Fault_Count --
-   ---------------------
-
-   procedure Put_Fault_Count (Kind : Health.Fault_Kind; Count : Event_Count)
-   is
-   begin
-      Put_Line
-        ("H " & Capitalized (Kind'Image)
-         & ' ' & Image (Long_Long_Integer (Count)));
-   end Put_Fault_Count;
-
-   --------------
-   -- Put_Lost --
-   --------------
-
-   procedure Put_Lost (What : String; Count : Event_Count) is
-   begin
-      Put_Line ("L " & What & ' ' & Image (Long_Long_Integer (Count)));
-   end Put_Lost;
-
-   ----------------------
-   -- Put_Host_Latency --
-   ----------------------
-
-   procedure Put_Host_Latency (Longest : Nanoseconds) is
-   begin
-      Put_Line ("W " & Image (Long_Long_Integer (Longest)));
-   end Put_Host_Latency;
-
-   -------------
-   -- Put_Now --
-   -------------
-
-   procedure Put_Now is
-      Now : Nanoseconds;
-   begin
-      Epochs.Since_Start (Now);
-      Put_Line ("N " & Image (Long_Long_Integer (Now)));
-   end Put_Now;
-
-   ---------------
-   -- Put_Feeds --
-   ---------------
-
-   procedure Put_Feeds (Count : Event_Count) is
-   begin
-      Put_Line ("F " & Image (Long_Long_Integer (Count)));
-   end Put_Feeds;
+   is (Stop_Flag);
 
    ------------
    -- Finish --
    ------------
 
    procedure Finish (Success : Boolean) is
-      Failed  : constant Boolean := Failures.Stop_Needed;
-      Ignored : C_Int;
-   begin
-      Put_Line ("END");
-      Flush;
       --  What the user's own bodies printed goes out as well.
-      Ignored := C_Flush (System.Null_Address);
-      Failures.Put_Reasons;
-      C_Exit (if Success and then not Failed then 0 else 1);
+      Ignored : constant C_Int := C_Flush (System.Null_Address);
+   begin
+      C_Exit (if Success then 0 else 1);
    end Finish;
 
-end Ravenchart.Hosts;
+end Ravenchart.Hosts.Services;

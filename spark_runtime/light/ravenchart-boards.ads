@@ -1,0 +1,28 @@
+--  What a board does for a controller, beside its run-time library: the one
+--  unit of a port that each board has a body of.
+--
+--  Guarantees   nothing here needs the heap, the secondary stack or an
+--               exception
+--  Tasking      any task may call; Finish may be called within the last-chance
+--               handler
+--  Timing       Put waits for the serial line; the rest is constant
+--  Assumptions  ASM-014, the body does what is said here
+
+package Ravenchart.Boards
+  with Elaborate_Body
+is
+   procedure Put (Text : String);
+   --  Write Text on the serial line of the report.
+
+   function Run_Time return Nanoseconds;
+   --  How long the controller shall run from Epochs.Start; the last value
+   --  where its run does not end.
+
+   procedure Feed_Watchdog;
+   --  The watchdog of the board may wait for its time again.
+
+   procedure Finish (Success : Boolean)
+   with No_Return;
+   --  The controller has ended.
+
+end Ravenchart.Boards;

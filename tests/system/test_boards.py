@@ -1,0 +1,64 @@
+"""Whole controllers on an emulated board, with a run-time library of the user.
+
+They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.md.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ravenchart import command_line
+from ravenchart.building import targets
+from ravenchart.failures import Unusable
+from ravenchart.paths import ROOT
+from ravenchart.tools import toolchain
+
+EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian_robot")
+BOARD = "zynqmp"
+OBSERVED = re.compile(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +\d+ % +ok$", re.M)
+"""A processor that met all its deadlines, within its bound."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def board() -> targets.Board:
+    """The board, or the reason why nothing here can run."""
+    try:
+        made = targets.board(targets.target(BOARD), None)
+    except Unusable as missing:
+        pytest.skip(str(missing))
+    emulator = made.target.facts.emulator
+    assert emulator is not None
+    if not toolchain.have(emulator.command[0]):
+        pytest.skip(f"{emulator.command[0]} is not on PATH; {emulator.hint}")
+    return made
+
+
+def run(example: str, report: Path, capsys: pytest.CaptureFixture[str], seconds: str) -> str:
+    """Run an example on the board; what is printed."""
+    words = ["run", str(ROOT / "examples" / example / "model.yaml"), "--target", BOARD]
+    status = command_line.main([*words, "--seconds", seconds, "--report", str(report)])
+    printed = capsys.readouterr()
+    assert status == 0, printed.out + printed.err
+    return printed.out
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_every_bound_holds_on_the_board(
+    example: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    printed = run(example, tmp_path, capsys, "2")
+    assert "verdict: PASS" in printed
+    assert OBSERVED.findall(printed)
+    assert "withheld" not in printed
+
+
+def test_three_runs_are_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    traces = []
+    for number in range(3):
+        run("three_components", tmp_path / str(number), capsys, "2")
+        traces.append((tmp_path / str(number) / "serial.txt").read_bytes())
+    assert len(traces[0].splitlines()) > 1_000
+    assert traces[0] == traces[1] == traces[2]

@@ -1,0 +1,130 @@
+"""Targets: what a folder says, what is missing to build for it, and what its clock demands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ravenchart.building import checking, programs, targets
+from ravenchart.failures import Refused, Unusable
+from ravenchart.gen.model.system import System
+from ravenchart.paths import ROOT
+
+MODEL = ROOT / "examples" / "three_components" / "model.yaml"
+PERIOD = ("processor_1:\n", "processor_1:\n    offset: 1005 ns\n")
+EXACT = 100_000_000
+ODD = 99_999_000
+
+
+def board(rate: int, **facts: object) -> targets.Board:
+    """The board with a clock of that rate, whose file says otherwise what is given."""
+    found = targets.target("zynqmp")
+    changed = found.facts.model_copy(update=facts)
+    return targets.Board(targets.Target(found.name, changed), "aarch64-elf", Path("/nowhere"), rate)
+
+
+def model(tmp_path: Path, *changes: tuple[str, str]) -> System:
+    """The three components, changed."""
+    text = MODEL.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    path = tmp_path / "model.yaml"
+    path.write_text(text, encoding="utf-8")
+    return checking.check(path).system
+
+
+def test_every_folder_with_a_file_is_a_target() -> None:
+    assert targets.names() == ("native", "zynqmp")
+    for name in targets.names():
+        facts = targets.target(name).facts
+        assert set(facts.drivers) <= set(programs.DRIVERS)
+    assert set(targets.target("native").facts.drivers) == set(programs.DRIVERS)
+    with pytest.raises(Unusable, match="there is no target moon; the targets are native, zynqmp"):
+        targets.target("moon")
+
+
+def test_a_wrong_file_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "moon").mkdir()
+    file = tmp_path / "moon" / "target.toml"
+    file.write_text('run_time = "light"\ndrivers = []\nclock = 1\n', encoding="utf-8")
+    monkeypatch.setattr(targets, "RUNTIME", tmp_path)
+    with pytest.raises(Unusable, match=r"target\.toml: 2 validation errors"):
+        targets.target("moon")
+
+
+def test_a_board_needs_a_run_time_library_and_a_compiler(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv(targets.RTS_VARIABLE, raising=False)
+    chosen = targets.target("zynqmp")
+    with pytest.raises(Unusable, match="`--rts DIR` or RAVENCHART_RTS"):
+        targets.board(chosen, None)
+    monkeypatch.setenv(targets.RTS_VARIABLE, str(tmp_path))
+    with pytest.raises(Unusable, match="is no Ada run-time library: it has no folder adalib"):
+        targets.board(chosen, None)
+    (tmp_path / "adalib").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(Unusable, match="zynqmp needs GNAT for aarch64-elf or aarch64-linux-gnu"):
+        targets.board(chosen, None)
+
+
+def test_a_time_between_two_ticks_needs_a_tick_of_the_node(tmp_path: Path) -> None:
+    system = model(tmp_path, PERIOD)
+    with pytest.raises(Refused) as refused:
+        targets.check_system(board(EXACT), system)
+    told, hint = str(refused.value).splitlines()
+    assert told.endswith(
+        "error: the offset of processor_1, 1005 ns, is no whole number of ticks of the clock of "
+        "zynqmp, 100000000 Hz: releases are up to a tick late"
+    )
+    assert hint.endswith(
+        "hint: give board `tick: {period: 10 ns, wcet: 0 ns}` or more; the analysis adds it"
+    )
+    tick = ("trace: 1024\n", "trace: 1024\n    tick: {period: 10 ns, wcet: 0 ns}\n")
+    targets.check_system(board(EXACT), model(tmp_path, PERIOD, tick))
+    with pytest.raises(Refused, match="period: 11 ns"):
+        targets.check_system(board(ODD), model(tmp_path, PERIOD, tick))
+
+
+def test_whole_numbers_of_ticks_need_none(tmp_path: Path) -> None:
+    system = model(tmp_path)
+    for rate in (EXACT, ODD, 168_000_000, 1_000_000_000):
+        targets.check_system(board(rate), system)
+    with pytest.raises(Refused, match="the period of processor_1, 10 ms, is no whole number"):
+        targets.check_system(board(333_333_343), system)
+
+
+def test_a_periodic_timer_must_be_in_the_model(tmp_path: Path) -> None:
+    slow = board(168_000_000, tick=1_000_000)
+    with pytest.raises(Refused, match="the timer of zynqmp ticks every 1 ms"):
+        targets.check_system(slow, model(tmp_path))
+    tick = ("trace: 1024\n", "trace: 1024\n    tick: {period: 1 ms, wcet: 5 us}\n")
+    targets.check_system(slow, model(tmp_path, tick))
+
+
+def test_figures_below_those_of_the_target_are_told(tmp_path: Path) -> None:
+    warnings = targets.check_system(board(EXACT), model(tmp_path))
+    (warning,) = warnings
+    assert warning.endswith(
+        "warning: `release` of board, 0 ns, is below the 4 us that zynqmp needs: the bounds do "
+        "not hold there"
+    )
+    release = ("trace: 1024\n", "trace: 1024\n    release: 4 us\n")
+    assert targets.check_system(board(EXACT), model(tmp_path, release)) == ()
+
+
+def test_a_driver_must_be_one_of_the_target(tmp_path: Path) -> None:
+    checked = checking.check(MODEL)
+    chosen = targets.target("zynqmp")
+    assert programs.default_driver(checked, chosen) == "loopback"
+    with pytest.raises(Refused, match="the target zynqmp has no driver bus"):
+        programs.check_driver(checked, "bus", chosen)
+
+
+def test_what_is_built_for_a_target_has_a_place_of_its_own() -> None:
+    checked = checking.check(MODEL)
+    here = programs.build_home(checked, "loopback")
+    there = programs.build_home(checked, "loopback", "zynqmp")
+    assert there == here.with_name(f"{here.name}-zynqmp")
