@@ -26,6 +26,8 @@ US, MS = 1000, 1_000_000
 TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
 """Periods of the reception: the first one that leaves it half of its time."""
 HALF = 0.5
+COSTS = (1000, 100, 10)
+"""Platform figures in ns: the first one with which all drivers at once leave a turn some time."""
 DEPTHS = (8, 1024)
 """Frames that a queue of the bus has room for, at least and at most."""
 
@@ -140,8 +142,8 @@ def sections(
     """
     arrivals = sum(1 / _nanoseconds(one.period) for one in received)
     turn = next((t for t in TURNS if arrivals * t <= HALF), TURNS[-1])
-    short = 4 * US * (len(received) + len(sent)) > turn
-    cost = "100 ns" if short else "1 us"
+    most = turn // (4 * (len(received) + len(sent) + 1))  # each driver's work, and two switches
+    cost = shown(next((one for one in COSTS if one <= most), COSTS[-1]))
     named = "" if database_name is None else f", database_name: {database_name}"
     lines = [
         "nodes:",
