@@ -26,7 +26,7 @@ US, MS = 1000, 1_000_000
 TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
 """Periods of the reception: the first one that leaves it half of its time."""
 HALF = 0.5
-COSTS = (1000, 100, 10)
+COSTS = (10 * US, US, 100, 10)
 """Platform figures in ns: the first one with which all drivers at once leave a turn some time."""
 DEPTHS = (8, 1024)
 """Frames that a queue of the bus has room for, at least and at most."""
@@ -111,7 +111,7 @@ def _named(period: str) -> str:
 
 def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
     """What the component does with its ports, as keys of it."""
-    lines = [f"    port_region: {{period: {PORTS_PERIOD}, wcet: 10 us}}"] if receives else []
+    lines = [f"    port_region: {{period: {PORTS_PERIOD}, wcet: 200 us}}"] if receives else []
     rows = _rows(sent)
     if not rows and not receives:
         rows = {SENDING_PERIOD: []}
@@ -119,8 +119,9 @@ def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
         lines.append("    activities:")
     for period, ports in rows.items():
         sends = f", sends: [{', '.join(ports)}]" if ports else ""
+        wcet = shown(min(200 * US, _nanoseconds(period) // 20))
         lines.append(
-            f"      {_named(period)}: {{period: {period}, wcet: 10 us, body: user{sends}}}"
+            f"      {_named(period)}: {{period: {period}, wcet: {wcet}, body: user{sends}}}"
         )
     return lines
 
