@@ -41,3 +41,13 @@ def test_a_contract_that_does_not_hold_ends_the_run(tmp_path: Path) -> None:
     (tmp_path / "broken.adb").write_text(BROKEN, encoding="ascii")
     status, written = bare.emulated(bare.image("broken", (tmp_path,), tmp_path))
     assert (status, written) == (1, "")
+
+
+def test_two_can_controllers_exchange_every_kind_of_frame(tmp_path: Path) -> None:
+    folders = (FOLDERS[1], FOLDERS[2], ROOT / "hw_can" / "drivers" / "xilinx")
+    bus = ("-object", "can-bus,id=bus", "-machine", "canbus0=bus,canbus1=bus")
+    status, written = bare.emulated(bare.image("can_pair", folders, tmp_path), *bus)
+    facts = written.splitlines()
+    assert status == 0, written
+    assert len(facts) == 8
+    assert [fact for fact in facts if not fact.startswith("ok ")] == []
