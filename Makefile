@@ -44,7 +44,7 @@ hw-test: setup
 
 board-test: setup
 	@scripts/setup.sh board || true
-	@$(PYTHON) -P -m pytest -q -rs tests/system/test_boards.py
+	@$(PYTHON) -P -m pytest -q -rs tests/system/test_bare_images.py tests/system/test_boards.py
 
 check: setup
 	@$(PYTHON) -P -m ruff check .

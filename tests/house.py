@@ -41,8 +41,12 @@ EXAMPLES = (
 DRIVERS = tuple(programs.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
-GENERIC_BODIES = {"ravenchart-can-controllers.adb", "ravenchart-can-ctu_cores.adb"}
-"""Of these the instances are proved: of the first that below, of the other one that it brings."""
+GENERIC_BODIES = {
+    "ravenchart-can-controllers.adb",
+    "ravenchart-can-ctu_cores.adb",
+    "ravenchart-can-xcan_cores.adb",
+}
+"""Of these the instances are proved: of the first that below, of the others that it brings."""
 INSTANCES = ("instance_bus.ads", "instance_program.adb")
 """An instance, and the program with its tasks and those of the processors."""
 BUS = "bus"

@@ -31,6 +31,7 @@ DRIVER_FOLDERS = {
     "bus": ("drivers/bus", "drivers/tcp"),
     "socketcan": ("drivers/socketcan",),
     "ctucanfd": ("drivers/ctucanfd",),
+    "xilinx": ("drivers/xilinx",),
 }
 """The folders of hw_can/ that ravenchart.gpr adds for each driver."""
 
@@ -219,6 +220,8 @@ def default_driver(checked: Checked, target: targets.Target | None = None) -> st
     return "slcan" if checked.system.buses else "loopback"
 
 
+NO_FD = ("xilinx",)
+"""Drivers of controllers that have no CAN FD."""
 BY_PRIORITY = ("loopback", "bus")
 """Drivers behind which a controller can offer the most urgent of its frames."""
 
@@ -235,6 +238,12 @@ def check_driver(checked: Checked, driver: str, target: targets.Target | None = 
         raise Refused(
             f"ravenchart: error: the target {target.name} has no driver {driver}\n"
             f"  hint: take one of {known}"
+        )
+    flexible = next((one.name for one in checked.system.buses if one.takes_fd), None)
+    if flexible is not None and driver in NO_FD:
+        raise Refused(
+            f"ravenchart: error: the controllers of the driver {driver} have no CAN FD, and there "
+            f"are CAN FD frames on {flexible}"
         )
     bus = _by_priority(checked)
     if bus is not None and driver not in BY_PRIORITY:

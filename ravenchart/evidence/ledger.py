@@ -46,6 +46,7 @@ WHERE: Mapping[str, Touched] = {
     "ASM-010": _never,  # the bus server: a bench
     "ASM-011": _driver("socketcan"),
     "ASM-013": _driver("ctucanfd"),
+    "ASM-022": _driver("xilinx"),
     "ASM-015": lambda system, _: any(node.supervision for node in system.nodes),
     "ASM-017": _never,  # the simulated runtime
     "ASM-018": lambda system, _: bool(types_with_registers(system)),

@@ -6,9 +6,10 @@ import os
 import shutil
 import subprocess
 from collections.abc import Sequence
+from pathlib import Path
 
 from ravenchart.analysis.system.observed import read_map
-from ravenchart.building.targets import Board
+from ravenchart.building.targets import Board, Emulator
 from ravenchart.failures import Unusable
 from ravenchart.tools import children
 
@@ -36,13 +37,7 @@ def run_board(board: Board, request: runs.RunRequest, progress: runs.Progress) -
     out_dir.mkdir(parents=True, exist_ok=True)
     report = (out_dir / "serial.txt").absolute()
     report.unlink(missing_ok=True)
-    told = {
-        "image": controller.executable.absolute(),
-        "report": report,
-        "clock": board.clock_rate,
-        "run_time": round(seconds * 1e9),
-    }
-    words = [part.format(**told) for part in emulator.command]
+    words = command(board, emulator, controller.executable, report, seconds)
     progress(f"emulate {seconds:g} s")
     ended, problems = _emulated(words, PATIENCE * (1.0 + seconds))
     lines = report.read_text("ascii", "replace").splitlines() if report.is_file() else []
@@ -56,6 +51,19 @@ def run_board(board: Board, request: runs.RunRequest, progress: runs.Progress) -
         seen.host_latency = None
     title = f"{seconds:g} s on {board.target.name}"
     return runs.concluded(title, None, None, seen, ended, problems, request.analysis)
+
+
+def command(
+    board: Board, emulator: Emulator, image: Path, report: Path, seconds: float
+) -> list[str]:
+    """The words that run an image for that long, with its serial line written to a file."""
+    told = {
+        "image": image.absolute(),
+        "report": report.absolute(),
+        "clock": board.clock_rate,
+        "run_time": round(seconds * 1e9),
+    }
+    return [part.format(**told) for part in emulator.command]
 
 
 def _map(controller: runs.Controller) -> tuple[str, str]:

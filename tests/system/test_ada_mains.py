@@ -35,7 +35,11 @@ MAINS = (
 )
 
 
-OF_DRIVERS = (("socketcan", "test_socket_frames"), ("ctucanfd", "test_ctu_frames"))
+OF_DRIVERS = (
+    ("socketcan", "test_socket_frames"),
+    ("ctucanfd", "test_ctu_frames"),
+    ("xilinx", "test_xcan_frames"),
+)
 """Programs that need the sources of a driver."""
 
 

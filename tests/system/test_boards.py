@@ -6,6 +6,7 @@ They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from ravenchart import command_line
 from ravenchart.building import targets
 from ravenchart.failures import Unusable
 from ravenchart.paths import ROOT
+from ravenchart.running import boards
 from ravenchart.tools import toolchain
 
 EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian_robot")
@@ -53,6 +55,22 @@ def test_every_bound_holds_on_the_board(
     assert "verdict: PASS" in printed
     assert OBSERVED.findall(printed)
     assert "withheld" not in printed
+
+
+def test_the_driver_of_a_can_controller_against_a_peer(
+    board: targets.Board, tmp_path: Path
+) -> None:
+    variables = {**board.scenario(), "CAN_DRIVER": "xilinx", "RAVENCHART_BUILD": str(tmp_path)}
+    options = [*board.options(), "-p", "-q", "-P", "can_driver.gpr"]
+    toolchain.run("gprbuild", options, ROOT / "tests" / "board", variables)
+    emulator = board.target.facts.emulator
+    assert emulator is not None
+    report = tmp_path / "serial.txt"
+    words = boards.command(board, emulator, tmp_path / "can_driver", report, 1.0)
+    done = subprocess.run(words, capture_output=True, timeout=120, check=False)
+    facts = report.read_text(encoding="ascii").splitlines()
+    assert (done.returncode, len(facts)) == (0, 5), facts
+    assert [fact for fact in facts if not fact.startswith("ok ")] == []
 
 
 def test_three_runs_are_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

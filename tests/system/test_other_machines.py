@@ -30,6 +30,7 @@ MAINS = {
     ),
     "hw_can/drivers/socketcan": ("test_socket_frames",),
     "hw_can/drivers/ctucanfd": ("test_ctu_frames",),
+    "hw_can/drivers/xilinx": ("test_xcan_frames",),
 }
 """The programs, by the driver they need. Left out are the simulator's, which emulated take many
 minutes; that of Hosts, whose body has the numbers of this machine's Linux; and that of the

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -40,7 +41,7 @@ def test_every_folder_with_a_file_is_a_target() -> None:
     for name in targets.names():
         facts = targets.target(name).facts
         assert set(facts.drivers) <= set(programs.DRIVERS)
-    assert set(targets.target("native").facts.drivers) == set(programs.DRIVERS)
+    assert set(targets.target("native").facts.drivers) == set(programs.DRIVERS) - {"xilinx"}
     with pytest.raises(Unusable, match="there is no target moon; the targets are native, zynqmp"):
         targets.target("moon")
 
@@ -121,6 +122,18 @@ def test_a_driver_must_be_one_of_the_target(tmp_path: Path) -> None:
     assert programs.default_driver(checked, chosen) == "loopback"
     with pytest.raises(Refused, match="the target zynqmp has no driver bus"):
         programs.check_driver(checked, "bus", chosen)
+
+
+def test_a_driver_without_can_fd_takes_none(tmp_path: Path) -> None:
+    path = tmp_path / "model.yaml"
+    pump = ROOT / "examples" / "pump" / "model.yaml"
+    text = pump.read_text(encoding="utf-8")
+    changed = re.sub(r"(bit_rate: [^,}]+)", r"\1, data_rate: 2 Mbit/s", text, count=1)
+    assert changed != text
+    path.write_text(changed, encoding="utf-8")
+    programs.check_driver(checking.check(pump), "xilinx")
+    with pytest.raises(Refused, match="the driver xilinx have no CAN FD"):
+        programs.check_driver(checking.check(path), "xilinx")
 
 
 def test_what_is_built_for_a_target_has_a_place_of_its_own() -> None:

@@ -1,0 +1,62 @@
+--  A CAN controller of Zynq as the driver sees it, without a bus: what is sent
+--  is kept, and the test says what comes and how it stands.
+
+with System;
+with Ravenchart.Can;
+with Ravenchart.Can.Xcan_Frames;
+with Ravenchart.Can.Xcan_Registers;
+
+package Xcan_Model is
+
+   subtype Place is Natural range 0 .. 64;
+
+   type Frame_List is array (Place range 1 .. 64)
+     of Ravenchart.Can.Xcan_Frames.Image;
+
+   protected Controller
+     with Priority => System.Priority'Last
+   is
+      procedure Read
+        (From  : Ravenchart.Can.Xcan_Registers.Register;
+         Value : out Ravenchart.Can.Xcan_Registers.Word);
+
+      procedure Write
+        (To    : Ravenchart.Can.Xcan_Registers.Register;
+         Value : Ravenchart.Can.Xcan_Registers.Word);
+
+      procedure Take (I : out Ravenchart.Can.Xcan_Frames.Image);
+
+      procedure Put (I : Ravenchart.Can.Xcan_Frames.Image);
+
+      --  For the test
+
+      procedure Arrive (F : Ravenchart.Can.Frame);
+      --  A frame comes, if there is room.
+
+      procedure Stand (As : Ravenchart.Can.Controller_State);
+      --  Error-passive or bus-off, or error-active again. While it is
+      --  bus-off nothing is sent.
+
+      procedure Block (Sending : Boolean);
+      --  While it is blocked nothing is sent: others have the bus.
+
+      function Sent return Natural;
+
+      function Is_In_Reset return Boolean;
+
+      function Resets return Natural;
+
+   private
+      State    : Ravenchart.Can.Controller_State :=
+        Ravenchart.Can.Error_Active;
+      In_Reset : Boolean := True;
+      Overflow : Boolean := False;
+      Blocked  : Boolean := False;
+      Waiting  : Frame_List;
+      Count    : Place := 0;
+      Pending  : Natural := 0;
+      Gone     : Natural := 0;
+      Times    : Natural := 0;
+   end Controller;
+
+end Xcan_Model;
