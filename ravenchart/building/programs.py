@@ -22,7 +22,7 @@ from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
 from ravenchart.tools import toolchain
 
-from . import targets
+from . import images, targets
 from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {
@@ -98,7 +98,8 @@ class Program:
         warn: Callable[[str], None] = to_standard_error,
         board: targets.Board | None = None,
     ) -> Path:
-        """Compile it; the path of the executable. ToolFailed with the compiler's words.
+        """Compile it; the path of the executable. ToolFailed with the compiler's words, or
+        where the memory of the target has no room for it.
 
         ``warn`` gets the compiler's warnings. Without a ``board`` it is for this machine.
 
@@ -121,7 +122,10 @@ class Program:
         warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
         if warnings.strip():
             warn(warnings.rstrip())
-        return self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+        made = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+        if target.facts.memory:
+            images.check(made, target)
+        return made
 
     def _check_addresses(self) -> None:
         """Refused where a device with registers has no address."""

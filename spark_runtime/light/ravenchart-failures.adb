@@ -268,8 +268,9 @@ is
    -----------------
 
    procedure Last_Chance (Message : System.Address; Line : Integer) is
-      Here : System.Address := Message;
-      Name : Bounded_Name;
+      Number : constant String := Line'Image;
+      Here   : System.Address := Message;
+      Name   : Bounded_Name;
    begin
       --  The line that this interrupts is ended first.
       Boards.Put ((1 => ASCII.LF));
@@ -294,7 +295,8 @@ is
          Here := Here + 1;
       end loop;
       if Line > 0 then
-         Boards.Put (":" & Line'Image);
+         Boards.Put (":");
+         Boards.Put (Number (Number'First + 1 .. Number'Last));
       end if;
       Boards.Put ((1 => ASCII.LF));
       if Elaborated and then Record_Of_All.Has_Tasks

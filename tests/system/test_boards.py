@@ -6,6 +6,7 @@ They need what RAVENCHART_RTS names, a cross compiler and QEMU: see docs/boards.
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -22,6 +23,14 @@ EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian
 BOARD = "zynqmp"
 OBSERVED = re.compile(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +\d+ % +ok$", re.M)
 """A processor that met all its deadlines, within its bound."""
+
+
+RAISED = """\
+      Calls := Calls + 1;
+      if Calls > 200 then
+         raise Program_Error;
+      end if;
+"""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -71,6 +80,32 @@ def test_the_driver_of_a_can_controller_against_a_peer(
     facts = report.read_text(encoding="ascii").splitlines()
     assert (done.returncode, len(facts)) == (0, 5), facts
     assert [fact for fact in facts if not fact.startswith("ok ")] == []
+
+
+def test_an_exception_ends_the_controller_with_its_task_and_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home = tmp_path / "robot"
+    shutil.copytree(ROOT / "examples" / "cartesian_robot", home)
+    body = home / "user" / "cartesian_robot-joint-activities.adb"
+    text = body.read_text(encoding="utf-8")
+    counter = "   Calls : Natural := 0;\n\n   Steps_Per_Second : constant"
+    text = text.replace("   Steps_Per_Second : constant", counter, 1)
+    before, behind = text.split("   procedure Position_Control", 1)
+    thrown = (
+        "begin\n      Calls := Calls + 1;\n      if Calls > 200 then\n         raise Program_Error;"
+    )
+    behind = behind.replace("begin\n", f"{thrown}\n      end if;\n", 1)
+    text = f"{before}   procedure Position_Control{behind}"
+    body.write_text(text, encoding="utf-8")
+    line = 1 + text.splitlines().index("         raise Program_Error;")
+    status = command_line.main(["run", str(home / "model.yaml"), "--target", BOARD])
+    printed = " ".join(capsys.readouterr().out.split())
+    assert status == 1
+    assert (
+        "the controller stopped itself: control has ended by an exception: "
+        f"cartesian_robot-joint-activities.adb:{line}"
+    ) in printed
 
 
 def test_three_runs_are_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

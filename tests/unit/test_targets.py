@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import struct
 from pathlib import Path
 
 import pytest
 
-from ravenchart.building import checking, programs, targets
-from ravenchart.failures import Refused, Unusable
+from ravenchart.building import checking, images, programs, targets
+from ravenchart.failures import Refused, ToolFailed, Unusable
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
 
@@ -134,6 +135,47 @@ def test_a_driver_without_can_fd_takes_none(tmp_path: Path) -> None:
     programs.check_driver(checking.check(pump), "xilinx")
     with pytest.raises(Refused, match="the driver xilinx have no CAN FD"):
         programs.check_driver(checking.check(path), "xilinx")
+
+
+def test_the_driver_is_where_the_file_says() -> None:
+    driver = ROOT / "hw_can" / "drivers" / "xilinx"
+    text = (driver / "ravenchart-can-xcan_core.ads").read_text(encoding="ascii")
+    base = re.search(r"Base => 16#([0-9A-F_]+)#", text)
+    assert base is not None
+    first = targets.target("zynqmp").facts.can[0]
+    assert (first.controller, first.at) == ("xilinx", int(base[1].replace("_", ""), 16))
+
+
+def image(wide: bool, order: str, *parts: tuple[int, int, int]) -> bytes:
+    """The headers of an ELF file, with parts of a kind, an address and a size."""
+    at, size, place = (64, 56, 54) if wide else (52, 32, 42)
+    made = bytearray(at + size * len(parts))
+    made[:6] = b"\x7fELF" + bytes((2 if wide else 1, 1 if order == "<" else 2))
+    struct.pack_into(f"{order}{'Q' if wide else 'I'}", made, 32 if wide else 28, at)
+    struct.pack_into(f"{order}HH", made, place, size, len(parts))
+    for number, (kind, address, taken) in enumerate(parts):
+        start = at + number * size
+        struct.pack_into(f"{order}I", made, start, kind)
+        if wide:
+            struct.pack_into(f"{order}QQQ", made, start + 24, address, 0, taken)
+        else:
+            struct.pack_into(f"{order}III", made, start + 12, address, 0, taken)
+    return bytes(made)
+
+
+@pytest.mark.parametrize("wide", [True, False])
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_an_image_must_lie_in_the_memory_of_the_target(
+    wide: bool, order: str, tmp_path: Path
+) -> None:
+    chosen = targets.target("zynqmp")
+    ram = chosen.facts.memory["ram"]
+    path = tmp_path / "image"
+    path.write_bytes(image(wide, order, (6, 0, 2**30), (1, ram.at, ram.size), (1, 2**31, 0)))
+    images.check(path, chosen)
+    path.write_bytes(image(wide, order, (1, ram.at, ram.size + 1)))
+    with pytest.raises(ToolFailed, match="1879048193 bytes at 0x0 are outside the memory of zynq"):
+        images.check(path, chosen)
 
 
 def test_what_is_built_for_a_target_has_a_place_of_its_own() -> None:
