@@ -50,13 +50,12 @@ def run(
     paths = [str(ROOT), *filter(None, [os.environ.get("GPR_PROJECT_PATH")])]
     given = {"RAVENCHART_OBJECTS": str(work() / "obj"), **scenario}
     variables = [f"-X{name}={value}" for name, value in given.items()]
+    environment = {**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)}
+    if tool != "gprbuild":
+        environment.pop("GPR_CONFIG", None)  # a configuration for compilers; gnatprove has its own
     with _alone(tool, given):
         done = children.run_watched(
-            [tool, *arguments, *variables],
-            taken,
-            cwd=where,
-            env={**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)},
-            errors="replace",
+            [tool, *arguments, *variables], taken, cwd=where, env=environment, errors="replace"
         )
     if done.returncode != 0:
         raise ToolFailed(done.stdout)
