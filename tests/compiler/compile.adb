@@ -155,7 +155,10 @@ procedure Compile is
          return Line;
       end if;
       Time := Index (Line, White, Rest, Test => Ada.Strings.Outside);
-      return "D " & (if Starts (Name, "/") then Path else Name)
+      return "D "
+        & (if not Starts (Name, "/") then Name
+           elsif Index (Path, " ") = 0 then Path
+           else '"' & Path & '"')
         & Line (Rest .. Time - 1) & Files.Time_Of (Path)
         & Line (Time + 14 .. Line'Last);
    end Dated;

@@ -87,6 +87,21 @@ def test_what_prints_anything_is_compiled_each_time(call: Call, home: Path) -> N
     assert stored(home) == 0
 
 
+def test_a_file_of_pragmas_is_named_where_it_is_now(call: Call, home: Path, tmp_path: Path) -> None:
+    for folder in ("here", "far away"):
+        pragmas = tmp_path / folder / "some.adc"
+        pragmas.parent.mkdir()
+        pragmas.write_text("pragma Ada_2012;\n")
+        assert call(folder, f"-gnatec={pragmas}").returncode == 0
+    assert stored(home) == 1
+    place = tmp_path / "far away"
+    copied = (place / "user.ali").read_text()
+    gcc = (home / "compiler").read_text().splitlines()[0]
+    words = [gcc, "-c", "-gnat2012", f"-gnatec={pragmas}", str(place / "user.adb")]
+    subprocess.run(words, cwd=place, check=True)
+    assert copied == (place / "user.ali").read_text()
+
+
 def test_what_is_no_compilation_goes_to_the_compiler(home: Path) -> None:
     done = subprocess.run([home / "compile", "-dumpversion"], capture_output=True, text=True)
     assert done.returncode == 0 and done.stdout.strip()[0].isdigit()
