@@ -33,10 +33,10 @@ demo: setup
 	@$(RAVENCHART) run examples/cartesian_robot/model.yaml --scenario examples/cartesian_robot/scenario.yaml --report build/demo
 
 test: setup
-	@$(PYTHON) -P -m pytest -q --junit-xml=$(RESULTS)
+	@$(PYTHON) -P -m pytest -q -n auto --junit-xml=$(RESULTS)
 
 test-long: setup
-	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q
+	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q -n auto
 
 hw-test: setup
 	@scripts/setup.sh guest || true

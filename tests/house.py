@@ -19,6 +19,7 @@ from ravenchart.paths import ROOT
 from ravenchart.proof import ages, outside_spark, proving
 from ravenchart.tools import toolchain
 from ravenchart.tools.toolchain import ToolMissing
+from tests.support import compiler
 
 RECORDS = ROOT / "proofs" / "records"
 """A folder for each age of gnatprove."""
@@ -180,6 +181,7 @@ def prove(names: Sequence[str]) -> bool:
 
 def check(_names: Sequence[str]) -> bool:
     """Generated files up to date, and every build free of warnings."""
+    compiler.use()  # `make test` builds the same programs
     fresh = True
     for example in EXAMPLES:
         checked = checking.check(ROOT / "examples" / example / "model.yaml", patience=PATIENCE)

@@ -13,9 +13,10 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term
-from .reach import Edge, Reach, Thread
+from .reach import Reach
 from .reasons import Reason, beaten, in_front, taken_inside
 from .stepping import Beaten
+from .threads import Edge, Thread
 from .words import label, reached, trace, valuation, where
 
 Rule = Callable[[Reach, Thread], Iterator[Diagnostic]]

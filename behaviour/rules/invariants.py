@@ -21,10 +21,11 @@ from . import logic
 from .clock import OutOfTime
 from .logic import Term, Variable
 from .parts import determines
-from .reach import Edge, Reach, Thread
+from .reach import Reach
 from .schedule import PORTS, schedules, together
 from .search import Search, Violation
 from .stepping import Configuration
+from .threads import Edge, Thread
 from .words import label, valuation, where
 
 VIOLATED = "RV-1108"

@@ -16,7 +16,8 @@ from ravenchart.gen.diagnostics import Diagnostic, error, warning
 
 from . import logic
 from .logic import Term, Variable
-from .reach import Edge, Node, Reach, Thread
+from .reach import Reach
+from .threads import Edge, Node, Thread
 from .words import reached, trace, valuation
 
 LONGEST_CYCLE = 8

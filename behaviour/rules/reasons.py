@@ -10,8 +10,9 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term
-from .reach import Edge, Reach, Thread
+from .reach import Reach
 from .stepping import Beaten, Defeat
+from .threads import Edge, Thread
 from .tree import Tree, occurs
 
 MOST_GUARDED = 64

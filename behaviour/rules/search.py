@@ -24,9 +24,10 @@ from . import logic
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .outside import external_events
-from .reach import Reach, Thread
+from .reach import Reach
 from .schedule import Rows
 from .stepping import Configuration
+from .threads import Thread
 from .timing import Way
 from .tree import CONDITIONS, START, Occurrence
 from .words import label, where

@@ -12,8 +12,9 @@ from ravenchart.gen.model.statechart import After, Every
 from . import logic
 from .logic import Term, Variable
 from .outcomes import Outcome
-from .reach import Edge, Reach, Thread
+from .reach import Reach
 from .stepping import Configuration
+from .threads import Edge, Thread
 from .tree import Tree
 
 LONGEST = 12

@@ -62,7 +62,7 @@ def _evidence() -> str:
 
 def _index(title: str, pages: list[str]) -> str:
     listed = "\n".join(pages)
-    return f"# {title}\n\n```{{toctree}}\n:maxdepth: 2\n\n{listed}\n```\n"
+    return f"# {title}\n\n```{{toctree}}\n:maxdepth: 2\n:titlesonly:\n\n{listed}\n```\n"
 
 
 def _ada_folder(folder: str, text: str) -> str:
@@ -80,7 +80,8 @@ def _ada_folder(folder: str, text: str) -> str:
         names.append(spec.stem)
     listed = "\n".join(names)
     table = "\n".join(["| package | holds |", "| --- | --- |", *rows])
-    index = f"# {folder}\n\n{text}\n\n{table}\n\n```{{toctree}}\n:hidden:\n\n{listed}\n```\n"
+    tree = f"```{{toctree}}\n:hidden:\n:titlesonly:\n\n{listed}\n```\n"
+    index = f"# {folder}\n\n{text}\n\n{table}\n\n{tree}"
     (home / "index.md").write_text(index, encoding="utf-8")
     return f"{home.name}/index"
 
@@ -117,7 +118,7 @@ def _python_package(name: str, text: str) -> str:
         (home / f"{folder}.md").write_text(f"# {title}\n\n{blocks}", encoding="utf-8")
         pages.append(folder)
     listed = "\n".join(pages)
-    index = f"# {top}\n\n{text}\n\n```{{toctree}}\n:maxdepth: 1\n\n{listed}\n```\n"
+    index = f"# {top}\n\n{text}\n\n```{{toctree}}\n:maxdepth: 1\n:titlesonly:\n\n{listed}\n```\n"
     (home / "index.md").write_text(index, encoding="utf-8")
     return f"{home.name}/index"
 

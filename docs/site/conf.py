@@ -36,6 +36,7 @@ include_patterns = [
 nitpicky = False
 myst_heading_anchors = 4
 autodoc_typehints = "signature"
+toc_object_entries = False  # thousands of names would be in the navigation of every page
 suppress_warnings = ["misc.highlighting_failure", "ref.python"]  # short names of types
 
 html_theme = "furo"

@@ -9,9 +9,9 @@ from ravenchart.gen.files.schema import (
     ActivityForm,
     ComponentForm,
     PortRegionForm,
-    ProbeForm,
     RegionForm,
 )
+from ravenchart.gen.files.schema_deployment import ProbeForm
 from ravenchart.gen.files.schema_frames import WatchForm
 from ravenchart.gen.language.names import Findings, Scope, meant
 from ravenchart.gen.language.quantities import shown

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.derive.completion import table_deadline, table_period
-from ravenchart.gen.files.schema import (
+from ravenchart.gen.files.schema_deployment import (
     ChainForm,
     ConnectionForm,
     InstanceForm,

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from ravenchart.failures import ToolFailed, Unusable
@@ -48,16 +50,31 @@ def run(
     paths = [str(ROOT), *filter(None, [os.environ.get("GPR_PROJECT_PATH")])]
     given = {"RAVENCHART_OBJECTS": str(work() / "obj"), **scenario}
     variables = [f"-X{name}={value}" for name, value in given.items()]
-    done = children.run_watched(
-        [tool, *arguments, *variables],
-        taken,
-        cwd=where,
-        env={**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)},
-        errors="replace",
-    )
+    environment = {**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)}
+    if tool != "gprbuild":
+        environment.pop("GPR_CONFIG", None)  # a configuration for compilers; gnatprove has its own
+    with _alone(tool, given):
+        done = children.run_watched(
+            [tool, *arguments, *variables], taken, cwd=where, env=environment, errors="replace"
+        )
     if done.returncode != 0:
         raise ToolFailed(done.stdout)
     return done.stdout
+
+
+@contextmanager
+def _alone(tool: str, scenario: Mapping[str, str]) -> Iterator[None]:
+    """Wait until no other call of the tool writes the objects of the runtime in this scenario.
+
+    All programs of one mode and driver share them, so two builds at once would write the same
+    files.
+    """
+    objects = Path(scenario["RAVENCHART_OBJECTS"])
+    chosen = (scenario.get("MODE", "checks"), scenario.get("CAN_DRIVER", "loopback"), tool)
+    objects.mkdir(parents=True, exist_ok=True)
+    with open(objects / f"{'-'.join(chosen)}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def filtered(tool: str, arguments: Sequence[str], text: str) -> str:

@@ -1,7 +1,7 @@
 --  Authentication: the published MACs, what stands where in a frame, and
 --  attacks between sender and receiver.
 --
---  The first argument is how many attacks of each kind are tried, 50 unless
+--  The first argument is how many attacks of each kind are tried, 10 unless
 --  given. With "print" as the argument: sealed frames of every setting, a
 --  line each, for a comparison with another implementation.
 
@@ -534,7 +534,7 @@ procedure Test_Authentication is
       end loop;
    end Print;
 
-   Times : Positive := 50;
+   Times : Positive := 10;
 begin
    if Ada.Command_Line.Argument_Count = 1 then
       if Ada.Command_Line.Argument (1) = "print" then

@@ -1,7 +1,7 @@
 --  End-to-end protection: the published check values, error patterns one by
 --  one, and faults of the way between sender and receiver.
 --
---  The first argument is how many faults of each kind are injected, 50 unless
+--  The first argument is how many faults of each kind are injected, 10 unless
 --  given; from 1_000 on the error patterns have three bits where the profile
 --  finds as many, else two. With "print" as the argument: protected frames of
 --  every setting, a line each, for a comparison with another implementation.
@@ -499,7 +499,7 @@ procedure Test_Protection is
       end loop;
    end Print;
 
-   Times : Positive := 50;
+   Times : Positive := 10;
 begin
    if Ada.Command_Line.Argument_Count = 1 then
       if Ada.Command_Line.Argument (1) = "print" then

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravenchart.failures import ToolFailed
+from tests.support import compiler
 
 SWITCHES = ("-gnat2012", "-gnata", "-O1")
 
@@ -39,7 +40,9 @@ class Machine:
         """Programs from ``mains``, with every contract executed, in ``folder``."""
         command = [self.compiler, "-q", *SWITCHES, *switches, *map(str, mains)]
         command += [f"-aI{place}" for place in sources]
-        if self.emulator is not None:
+        if self.emulator is None:
+            command += compiler.options()
+        else:
             command += ["-bargs", "-static", "-largs", "-static"]
         done = subprocess.run(
             command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,

@@ -245,10 +245,13 @@ class Workbench:
             raise ToolMissing(command[0])
         variables = {"MODE": "checks", "CAN_DRIVER": self.driver}
         variables["RAVENCHART_BUILD"] = str(self.folder / "build")
+        environment = {**os.environ, "GPR_PROJECT_PATH": str(self.folder)}
+        if command[0] != "gprbuild":
+            environment.pop("GPR_CONFIG", None)  # as `toolchain.run`
         done = subprocess.run(
             [*command, *(f"-X{n}={v}" for n, v in variables.items())],
             cwd=self.source,
-            env={**os.environ, "GPR_PROJECT_PATH": str(self.folder)},
+            env=environment,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

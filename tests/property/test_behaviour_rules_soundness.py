@@ -8,9 +8,10 @@ from dataclasses import replace
 import pytest
 
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.behaviour.rules import reach as reach_rules
+from ravenchart.behaviour.rules import threads as thread_rules
 from ravenchart.behaviour.rules.clock import Clock
-from ravenchart.behaviour.rules.reach import Reach, Thread
+from ravenchart.behaviour.rules.reach import Reach
+from ravenchart.behaviour.rules.threads import Thread
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Shutdown, System
 from tests.support.interpreted import stimuli_of, system_of
@@ -26,8 +27,8 @@ def _raised_outside(system: System) -> System:
 
 
 LIMITS = {
-    "finely": (reach_rules.MOST_NODES, reach_rules.MOST_CONFIGURATIONS),
-    "coarsely": (3, reach_rules.MOST_CONFIGURATIONS),
+    "finely": (thread_rules.MOST_NODES, thread_rules.MOST_CONFIGURATIONS),
+    "coarsely": (3, thread_rules.MOST_CONFIGURATIONS),
     "in parts": (3, 3),
 }
 
@@ -46,8 +47,8 @@ def _lanes(thread: Thread, active: Collection[str]) -> Iterator[tuple[str, ...]]
 def test_every_configuration_and_transition_of_a_run_is_found(
     seed: int, limits: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reach_rules, "MOST_NODES", limits[0])
-    monkeypatch.setattr(reach_rules, "MOST_CONFIGURATIONS", limits[1])
+    monkeypatch.setattr(thread_rules, "MOST_NODES", limits[0])
+    monkeypatch.setattr(thread_rules, "MOST_CONFIGURATIONS", limits[1])
     system = _raised_outside(system_of(model_of([seed])))
     reach = Reach(system.components[0], system, Clock(600))
     threads = {t.name: t for t in reach.threads}

@@ -22,6 +22,7 @@ from ravenchart.gen.emit.buses.coding import literal_name
 from ravenchart.gen.model.signals import Signal
 from ravenchart.gen.model.system import Message, System
 from ravenchart.paths import ROOT
+from tests.support import compiler
 
 CHECKED = ("-gnata", "-O0")
 """Every contract and check is on."""
@@ -47,7 +48,7 @@ def fuzzed(
     source = folder / "fuzzer.adb"
     source.write_text(main_text(system, frames), encoding="ascii")
     places = (generated, ROOT / "spark_runtime" / "src", ROOT / "hw_can" / "hal")
-    command = ["gnatmake", "-q", "-gnat2012", *switches, str(source)]
+    command = ["gnatmake", "-q", "-gnat2012", *switches, *compiler.options(), str(source)]
     command += [f"-aI{place}" for place in places]
     subprocess.run(command, cwd=folder, check=True)
     found = subprocess.run([folder / "fuzzer"], capture_output=True, text=True, check=True)

@@ -41,6 +41,8 @@ OF_DRIVERS = (
     ("xilinx", "test_xcan_frames"),
 )
 """Programs that need the sources of a driver."""
+LIMIT = 300.0
+"""Seconds after which a program hangs, however busy the machine is."""
 
 
 @pytest.fixture(scope="module", params=["checks", "release"])
@@ -60,7 +62,7 @@ def test_every_fact_holds(mode: str, main: str) -> None:
 
 def test_the_supervisor_ends_a_program_whose_main_program_does_not(mode: str) -> None:
     program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "test_supervision"
-    done = subprocess.run([program, "wait"], capture_output=True, text=True, timeout=40)
+    done = subprocess.run([program, "wait"], capture_output=True, text=True, timeout=LIMIT)
     assert done.returncode == 1
     lines = done.stderr.splitlines()
     silent = "is silent: a release has not completed by its deadline and the margin of its"
@@ -82,7 +84,7 @@ def test_every_fact_of_a_driver_holds(mode: str, driver: str, main: str) -> None
 
 def _holds(program: Path) -> None:
     """It prints facts, all of them ok."""
-    done = subprocess.run([program], capture_output=True, text=True, timeout=40, check=False)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=LIMIT, check=False)
     facts = [line for line in done.stdout.splitlines() if line.startswith(("ok ", "not ok "))]
     assert facts, done.stdout + done.stderr
     assert [f for f in facts if f.startswith("not ok")] == []

@@ -47,9 +47,9 @@ def test_an_independent_implementation_seals_every_frame_so() -> None:
         assert not secured.accepts(frame, int(value) ^ 1 << 63), text
 
 
-@pytest.mark.skipif("RAVENCHART_LONG_TESTS" not in os.environ, reason="long: make test-long")
-def test_of_100_000_attacks_of_each_kind_none_succeeds() -> None:
-    done = subprocess.run([_built("release"), "100000"], capture_output=True, text=True)
+def test_of_many_attacks_of_each_kind_none_succeeds() -> None:
+    times = "100000" if "RAVENCHART_LONG_TESTS" in os.environ else "1000"
+    done = subprocess.run([_built("release"), times], capture_output=True, text=True)
     assert (done.returncode, "not ok" in done.stdout) == (0, False), done.stdout
 
 

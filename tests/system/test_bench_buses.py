@@ -26,6 +26,7 @@ FACTOR = 4
 """By which the server may be slower than a bus without one; on an idle machine they are equal."""
 
 
+@pytest.mark.alone
 def test_the_server_keeps_up_with_a_bus_inside_the_process() -> None:
     """The best of three runs of each, one beside the other."""
     best = dict.fromkeys((bench_buses.VIRTUAL, bench_buses.SERVER), 0.0)

@@ -13,6 +13,7 @@ from ravenchart.paths import ROOT
 from tests.bench import codecs as bench_codecs
 
 
+@pytest.mark.alone
 def test_the_codecs_take_no_longer_than_c_that_checks_nothing() -> None:
     robot = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml").system
     figures = bench_codecs.nanoseconds()

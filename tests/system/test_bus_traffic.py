@@ -23,7 +23,7 @@ from tests.system.test_bus_tools import same, tool_environment
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 PLAYED = 100_000 if LONG else 20_000
 """Frames of the log."""
-FULL_LOAD = 60.0
+FULL_LOAD = 60.0 if LONG else 10.0
 """Seconds of bus time for which every node has more to send than the bus carries."""
 NODES = 8
 PATIENCE = 3_600 if LONG else 600

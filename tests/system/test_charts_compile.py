@@ -75,7 +75,7 @@ CHARTS = {
         transitions: {}""",
 }
 
-FEW = (1007, 1011, 1016, 1025, 1044, 1053, 1075)
+FEW = (1007, 1016, 1044, 1075)
 """Random charts of about ten transitions each."""
 RUNS = [range(first, first + 12) for first in range(1_000, 3_004, 12)] if LONG else [FEW]
 
@@ -114,7 +114,10 @@ def test_random_charts_compile(seeds: Sequence[int], mode: str, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("mode", ["checks", "release"] if LONG else ["release"])
-def test_240_leaves_compile_in_a_minute(mode: str, tmp_path: Path) -> None:
+def test_240_leaves_compile_in_a_minute(
+    mode: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("GPR_CONFIG", raising=False)  # without the store of tests/compiler
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert complaints({"Chart_240": large_chart(24)}, tmp_path, mode) == ""
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import subprocess
 from collections.abc import Iterator, Mapping
@@ -42,6 +43,9 @@ CASES = sorted(
 )
 """Every model with a bus that some test builds. The values of `segmented` are in several frames,
 of which a database knows nothing: tests/system/test_segmented_nodes.py sends them."""
+
+DRAWN = 1_000 if "RAVENCHART_LONG_TESTS" in os.environ else 250
+"""Random frames for each message, and as many next to a packed one."""
 
 ADDED = HEADER | {FRESHNESS, MAC, REST}
 """Signals of a database that are no part of a value."""
@@ -230,8 +234,8 @@ def drawn(peer: Peer, message: Message) -> list[bytes]:
     """Random frames, frames one bit away from a packed value, and raw values just out of range."""
     chance = random.Random(message.name)
     packed = peer.runner.packed(message, samples(message))
-    frames = [chance.randbytes(message.length) for _ in range(1_000)]
-    for _ in range(1_000):
+    frames = [chance.randbytes(message.length) for _ in range(DRAWN)]
+    for _ in range(DRAWN):
         near = int.from_bytes(chance.choice(packed)) ^ 1 << chance.randrange(8 * message.length)
         frames.append(near.to_bytes(message.length))
     for signal in message.signals:

@@ -26,9 +26,9 @@ LONG = "RAVENCHART_LONG_TESTS" in os.environ
 
 EXAMPLES = sorted(p.parent.name for p in (ROOT / "examples").glob("*/events.yaml"))
 
-BATCH = 12
+BATCH = 12 if LONG else 4
 FIRST = 1_000
-CHARTS = 2_004 if LONG else BATCH
+CHARTS = 167 * 12 if LONG else BATCH
 
 
 def _program(system: System, home: Path) -> Path:

@@ -25,7 +25,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         cwd=ROOT,
         capture_output=True,
         text=True,
-        timeout=600,
+        timeout=1_800,
     )
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     return place / "html"

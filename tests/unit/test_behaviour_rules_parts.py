@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from ravenchart.behaviour.rules import findings
-from ravenchart.behaviour.rules import reach as reach_rules
+from ravenchart.behaviour.rules import threads as thread_rules
 from ravenchart.behaviour.rules.clock import Clock
-from ravenchart.behaviour.rules.reach import Reach, Thread
+from ravenchart.behaviour.rules.reach import Reach
+from ravenchart.behaviour.rules.threads import Thread
 from ravenchart.gen.model.system import System
 from tests.bench.large_charts import orthogonal_chart
 from tests.support.behaviour_models import model, region, said
@@ -23,7 +24,7 @@ def _thread(system: System) -> Thread:
 
 
 def test_each_further_leaf_is_a_node_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reach_rules, "MOST_CONFIGURATIONS", 10)
+    monkeypatch.setattr(thread_rules, "MOST_CONFIGURATIONS", 10)
     threads = [_thread(system_of(orthogonal_chart(4, n))) for n in (60, 120, 240)]
     assert [len(t.nodes) for t in threads] == [63, 123, 243]
     few, some, many = (len(t.steps) for t in threads)
@@ -33,8 +34,8 @@ def test_each_further_leaf_is_a_node_more(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.fixture
 def _parts(monkeypatch: pytest.MonkeyPatch) -> None:
     """The smallest charts are looked at in parts."""
-    monkeypatch.setattr(reach_rules, "MOST_NODES", 3)
-    monkeypatch.setattr(reach_rules, "MOST_CONFIGURATIONS", 3)
+    monkeypatch.setattr(thread_rules, "MOST_NODES", 3)
+    monkeypatch.setattr(thread_rules, "MOST_CONFIGURATIONS", 3)
 
 
 BOTH = "{A: {}, Both: {regions: {L: %s, R: {initial: R1, states: {R1: {}, R2: {}, R3: {}}}}}}"

@@ -177,6 +177,7 @@ def test_a_controller_that_does_not_end_is_killed(
     assert result.ended.killed
 
 
+@pytest.mark.alone
 def test_a_controller_that_says_no_port_fails_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 from collections.abc import Iterator, Sequence
 from itertools import product
@@ -77,7 +78,7 @@ def large_sets(draw: st.DrawFn) -> tuple[list[Task], list[Section], Platform]:
     return tasks, sections, Platform(context_switch=draw(st.integers(0, 1)))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40 if "RAVENCHART_LONG_TESTS" in os.environ else 12, deadline=None)
 @given(large_sets())
 def test_large_sets_agree(drawn: tuple[list[Task], list[Section], Platform]) -> None:
     compare(*drawn)

@@ -33,7 +33,7 @@ def test_120_leaves_are_checked_to_the_end() -> None:
 
 
 def test_each_further_block_is_as_many_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ravenchart.behaviour.rules.reach.MOST_NODES", 9)
+    monkeypatch.setattr("ravenchart.behaviour.rules.threads.MOST_NODES", 9)
     nodes = [len(_reach(system_of(large_chart(b))).threads[0].nodes) for b in (2, 4, 6)]
     assert nodes[2] - nodes[1] == nodes[1] - nodes[0] == 2 * 13
 

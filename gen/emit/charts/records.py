@@ -31,8 +31,9 @@ from ravenchart.gen.emit.components.packages import reading_type
 from ravenchart.gen.emit.language.events import null_event
 
 from .deferring import freed_field, freed_type
+from .guards import guard_operators, guards_of
 from .safety import Safety
-from .shape import START, RegionShape, guard_operators, guards_of
+from .shape import START, RegionShape
 from .working import done_types, work_fields
 
 TIMED = ("Ravenchart.Timers.Timer", "Ravenchart.Timers.Timer_Array")

@@ -29,7 +29,6 @@ from ravenchart.gen.emit.language.terms import (
     compared_states,
     expressions_in,
     names_in,
-    operators_in,
     raise_in_list,
 )
 from ravenchart.gen.language import terms as m
@@ -48,6 +47,8 @@ from ravenchart.gen.model.statechart import (
     When,
 )
 from ravenchart.gen.model.system import System
+
+from .guards import flows_of, guards_of
 
 START = "Initial_Entry"
 PASSING = "Passing"
@@ -87,20 +88,6 @@ class Memory:
     def known(self) -> str:
         """The component that says whether there is one."""
         return f"Known_In_{self.label}"
-
-
-def guards_of(region: Region) -> list[m.Expression]:
-    """All guards and conditions."""
-    guards = [t.guard for t in region.transitions if t.guard is not None]
-    return guards + [t.trigger.condition for t in region.transitions if isinstance(t.trigger, When)]
-
-
-def flows_of(region: Region) -> list[m.Flow]:
-    """All behaviours: effects, initial effects, entries, exits."""
-    flows = [t.effect for t in region.transitions]
-    flows += [flow for s in region.states for flow in (s.entry, s.exit)]
-    flows += [r.initial.effect for s in region.states for r in s.regions]
-    return [*flows, region.initial.effect]
 
 
 class RegionShape(Places):
@@ -496,8 +483,3 @@ class RegionShape(Places):
 def plain_args(params: tuple[Param, ...], **replaced: str) -> tuple[Arg, ...]:
     """Positional arguments that repeat the parameters, some replaced."""
     return tuple(Arg(None, Ref(replaced.get(p.name, p.name))) for p in params)
-
-
-def guard_operators(region: Region) -> set[str]:
-    """The runtime's types whose operators its guards use."""
-    return {name for guard in guards_of(region) for name in operators_in(guard)}

@@ -37,10 +37,11 @@ from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
 
 from .deferring import FREED, is_due
 from .firing import MANY, Moves
+from .guards import guard_operators, guards_of
 from .lanes import fire, lane_step, passing_step
 from .safety import Safety
 from .selection import selectors
-from .shape import START, RegionShape, guard_operators, guards_of, plain_args
+from .shape import START, RegionShape, plain_args
 from .working import notice_bodies
 
 

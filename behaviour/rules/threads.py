@@ -1,0 +1,125 @@
+"""One region as it was seen so far: its nodes, its steps, and how finely it is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from ravenchart.gen.language.terms import ScalarType
+
+from .logic import Term, Variable
+from .outcomes import Outcome
+from .parts import Parts
+from .stepping import Configuration
+from .tree import Occurrence, Slot, Tree
+
+Steps = dict[tuple[Configuration, Occurrence], tuple[Outcome, ...]]
+"""The outcomes of steps, data aside."""
+Cells = tuple[int, ...]
+"""For each variable that a region writes and tells apart, the cell that it is in."""
+
+MOST_NODES = 1_000
+"""A region of more is looked at more coarsely."""
+MOST_QUESTIONS = 1_500
+"""So is one that needs more answers of z3 to tell its data apart."""
+MOST_CONFIGURATIONS = 3_000
+"""A region of more, data and histories aside, is looked at in parts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A situation of one region: its control, and the cells of its own data."""
+
+    configuration: Configuration
+    cells: Cells
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A step from one node to another."""
+
+    before: Node
+    outcome: Outcome
+    after: Node
+
+
+@dataclass
+class Thread:
+    """A region, or an activity with a flow (a region of one state), and what it was seen to do."""
+
+    tree: Tree
+    own: tuple[Variable, ...]
+    types: Mapping[Variable, ScalarType]
+    nodes: dict[Node, Edge | None] = field(default_factory=dict)
+    """Each with the edge that leads to it on a shortest way."""
+    edges: list[Edge] = field(default_factory=list)
+    questions: int = 0
+    past: dict[Slot, set[str]] | None = None
+    """What each region inside was seen to remember, where no node says it."""
+    steps: Steps = field(default_factory=dict)
+    exact: Steps = field(default_factory=dict)
+    """The same with histories, where ``steps`` are without."""
+    known: dict[tuple[object, ...], tuple[Cells, ...]] = field(default_factory=dict)
+    answers: dict[tuple[object, ...], tuple[Term, bool]] = field(default_factory=dict)
+    """Whether a condition can be met, with the condition, which keeps its number."""
+    parts: Parts | None = None
+    """Where configurations are looked at in parts."""
+
+    @property
+    def name(self) -> str:
+        """The name of the region or activity."""
+        return self.tree.region.name
+
+    def begin(self, start: Node) -> None:
+        """Forget what was seen, but for what steps come to."""
+        self.nodes, self.edges = {start: None}, []
+        if self.parts is not None:
+            self.parts.clear()
+
+    @property
+    def tells_more(self) -> bool:
+        """Whether data or histories are told apart."""
+        return bool(self.own) or (self.past is None and bool(self.tree.remembered))
+
+    @property
+    def most(self) -> int | None:
+        """How many nodes it may have until it is looked at more coarsely."""
+        if self.tells_more:
+            return MOST_NODES
+        return None if self.parts is not None or not self.tree.orthogonal else MOST_CONFIGURATIONS
+
+    def look_coarser(self) -> None:
+        """Forget what histories remember, or else the data, or else what regions are together."""
+        if self.past is None and self.tree.remembered:
+            self.past, self.exact, self.steps = {}, self.steps, {}
+        elif self.own:
+            self.own = ()
+        else:
+            self.exact = self.steps if self.past is None else self.exact
+            self.parts, self.steps = Parts(self.tree, self.types), {}
+        self.questions = 0
+        self.known.clear()
+        self.answers.clear()
+
+    def places(self, at: Configuration) -> Iterable[Configuration]:
+        """A configuration, or the parts of it that are looked at."""
+        return (at,) if self.parts is None else self.parts.of(at)
+
+    def remember(self, outcome: Outcome) -> None:
+        """Note what a step remembers; the steps that recall it have further outcomes then."""
+        if self.past is None:
+            return
+        grown = set()
+        for slot, leaf in outcome.remembered:
+            if leaf not in self.past.setdefault(slot, set()):
+                self.past[slot].add(leaf)
+                grown.add(slot)
+        if grown:
+            made = self.steps.items()
+            self.steps = {
+                key: found for key, found in made if not any(one.recalled & grown for one in found)
+            }
+
+    def recalls(self) -> int:
+        """How much is known of what histories remember."""
+        return sum(len(leaves) for leaves in (self.past or {}).values())

@@ -1,0 +1,161 @@
+"""Nodes, what runs on them, and how it is connected, in the file format."""
+
+from __future__ import annotations
+
+from pydantic import Field as PydanticField
+
+from .schema_base import (
+    Constant,
+    DatabaseName,
+    Element,
+    OwnedReference,
+    PositiveSpan,
+    Reference,
+    Span,
+    StackSize,
+    key,
+    optional,
+)
+
+
+class ProbeForm(Element):
+    """The host probe of a node: it wakes once per period and notes how late it is."""
+
+    period: PositiveSpan = key("Time from one wake-up to the next.")
+    wcet: PositiveSpan = key("Worst-case execution time of one wake-up; at most the period.")
+
+
+class SupervisionForm(Element):
+    """The liveness supervision of a node: one task that looks at every processor."""
+
+    period: PositiveSpan = key("Time from one look at the processors to the next.")
+    wcet: PositiveSpan = key(
+        "Worst-case execution time of one look, the events of `on_silence` included; at most the "
+        "period."
+    )
+    margin: PositiveSpan = key(
+        "Time beyond its deadline within which a release must have completed, or its processor is "
+        "silent; on a workstation longer than the host withholds the core."
+    )
+
+
+class TickForm(Element):
+    """A timer that interrupts periodically: timed releases wait for it."""
+
+    period: PositiveSpan = key("Time from one interrupt to the next.")
+    wcet: Span = key("Longest time of one interrupt; at most the period.")
+
+
+class NodeForm(Element):
+    """A processor core, or several alike, and its platform figures, all of them worst cases."""
+
+    context_switch: Span = key("Time of one context switch.")
+    critical_section: Span = key("Longest time inside any protected operation.")
+    trace: int = PydanticField(
+        default=0, ge=0, le=65_536, description="Records the trace holds, 0 to 65536; 0: none."
+    )
+    probe: ProbeForm | None = optional(
+        "A task above all others that measures how long a host withholds the processor."
+    )
+    supervision: SupervisionForm | None = optional(
+        "A task above all processors and drivers that finds processors which no longer complete "
+        "their releases; none unless given."
+    )
+    release: Span = PydanticField(
+        default=0,
+        description="Longest work of one release outside its rows: making the job ready, above all "
+        "tasks, and its bookkeeping (record, check of the deadline). Counted above all tasks.",
+    )
+    tick: TickForm | None = optional(
+        "The timer's periodic interrupt, where it has one; exact time-outs unless given."
+    )
+    cores: int = PydanticField(
+        default=1,
+        ge=1,
+        le=64,
+        description="How many cores; with several the model is analysed, not generated yet.",
+    )
+    database_name: DatabaseName | None = optional(
+        "Its name in the databases of its buses (DBC): an identifier of C, of up to 128 "
+        "characters, that no other node has; the node's name unless given."
+    )
+
+
+class InstanceForm(Element):
+    """An instance of a component on a node."""
+
+    component: Reference = key("The component.")
+    node: Reference = key("The node it runs on.")
+    parameters: dict[str, Constant] | None = optional("Values of the component's parameters.")
+
+
+class ConnectionForm(Element):
+    """An output port wired to an input port; between nodes it is a message of the bus."""
+
+    from_: OwnedReference = key("`instance.port`, an output port.", alias="from")
+    to: OwnedReference = key("`instance.port`, an input port.")
+
+
+class ProcessorForm(Element):
+    """A processor: one task with a fixed table of activities."""
+
+    node: Reference | None = optional(
+        "The node it runs on; unless given, that of what it runs. A reception without it is on "
+        "every node that receives from its bus."
+    )
+    released_by: Reference | None = optional("A bus: then it is sporadic and handles reception.")
+    core: int = PydanticField(
+        default=1, ge=1, description="The core of the node that runs it, counted from 1."
+    )
+    period: PositiveSpan | None = optional(
+        "Shortest period in the table unless given; the least separation of a sporadic processor, "
+        "which needs it."
+    )
+    offset: Span = PydanticField(default=0, description="Time of the first release after start.")
+    deadline: PositiveSpan | None = optional("Relative deadline; the shortest of its table if none")
+    priority: int | None = optional(
+        "1 to 30, larger is more urgent; deadline-monotonic unless given.", ge=1, le=30
+    )
+    stack: StackSize = key("Stack of the task, 1 KiB to 64 MiB.")
+    activities: list[OwnedReference] = key(
+        "The table, in order: `instance.activity`, `instance.Region`, `instance.ports`, "
+        "`bus.receive`, `bus.watch`.",
+        min_length=1,
+        max_length=1024,
+    )
+    on_deadline_miss: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when a release completes after the deadline."
+    )
+    on_overrun: list[OwnedReference] | None = optional(
+        "`instance.Event`s raised when an activity used more processor time than its `wcet`; each "
+        "one is then compared with it as it ends.",
+        min_length=1,
+    )
+    on_silence: list[OwnedReference] | None = optional(
+        "`instance.Event`s that the supervision of the node raises, once, when a release has not "
+        "completed by its deadline and the margin.",
+        min_length=1,
+    )
+
+
+class ShutdownForm(Element):
+    """The reaction to a request to stop."""
+
+    raises: list[OwnedReference] = key("`instance.Event`s raised.")
+    grace: Span = key("Time between these events and the end.")
+
+
+class ChainForm(Element):
+    """A way from inputs to outputs, and how long values may be under way."""
+
+    path: list[Reference] = key(
+        "Messages and rows (`instance.activity`, `instance.Region`) on the way; "
+        "between two of them the shortest way is meant.",
+        min_length=2,
+    )
+    reaction: PositiveSpan | None = optional(
+        "Longest time from an input to the first output that knows it."
+    )
+    age: PositiveSpan | None = optional(
+        "Longest time from the sampling of an input to an output made of it."
+    )

@@ -1,0 +1,64 @@
+"""How all tests run: side by side in workers, with a compiler that has a store."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from xdist.workermanage import WorkerController
+
+from ravenchart.paths import work
+from tests.support import compiler, scheduling
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Once, before the workers start."""
+    if not hasattr(config, "workerinput"):
+        _keep_bytecode()
+        compiler.use()
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """At the end of all."""
+    if not hasattr(config, "workerinput"):
+        _alone().unlink(missing_ok=True)
+
+
+def _alone() -> Path:
+    """A file for the names of the tests that run alone, of this controller."""
+    return work() / "build" / f"alone-{os.getpid()}"
+
+
+def _keep_bytecode() -> None:
+    """Compiled Python stays below build/, whatever the environment says.
+
+    Hundreds of programs start in the tests; without it, each start takes four seconds.
+    """
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(work() / "build" / "python")
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """One more than processors, for many tests wait."""
+    return len(os.sched_getaffinity(0)) + 1
+
+
+def pytest_configure_node(node: WorkerController) -> None:
+    """Where a worker writes which tests run alone."""
+    node.workerinput["alone"] = str(_alone())
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Before a worker says what it has collected, it says which tests run alone."""
+    given = getattr(session.config, "workerinput", None)
+    if given is not None:
+        scheduling.say(session.items, Path(given["alone"]))
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config) -> scheduling.AloneLast:
+    """Tests that run alone come last."""
+    return scheduling.AloneLast(config, _alone())

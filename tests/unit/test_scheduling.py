@@ -1,0 +1,63 @@
+"""Tests that run alone run after all others and beside none, and each runs once."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ravenchart.paths import ROOT
+
+TESTS = """
+import os, time, pytest
+
+def note(name):
+    with open(os.environ["NOTED"], "a") as file:
+        file.write(f"{time.monotonic()} {name}\\n")
+
+@pytest.mark.alone
+@pytest.mark.parametrize("number", range(2))
+def test_alone(number):
+    note(f"alone-{number} begins")
+    time.sleep(0.1)
+    note(f"alone-{number} ends")
+
+@pytest.mark.parametrize("number", range(30))
+def test_shared(number):
+    note(f"shared-{number} begins")
+    time.sleep(0.5 if number == 29 else 0.01)
+    note(f"shared-{number} ends")
+"""
+
+
+@pytest.mark.parametrize(
+    "chosen",
+    [(), ("alone",), ("alone[1]",), ("shared[29]",), ("alone[0]", "shared[29]", "shared[3]")],
+    ids=["all", "all alone", "one alone", "one", "few"],
+)
+def test_what_runs_alone_comes_last_and_runs_beside_nothing(
+    tmp_path: Path, chosen: tuple[str, ...]
+) -> None:
+    module = tmp_path / "test_some.py"
+    module.write_text(TESTS)
+    named = [f"{module}::test_{one}" for one in chosen] or [str(module)]
+    words = [sys.executable, "-P", "-m", "pytest", "-q", "-n", "3", "-p", "tests.conftest"]
+    done = subprocess.run(
+        [*words, "--rootdir", tmp_path, "-c", os.devnull, "-p", "no:cacheprovider", *named],
+        cwd=ROOT,
+        env={**os.environ, "NOTED": str(tmp_path / "noted")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    lines = [line.split() for line in (tmp_path / "noted").read_text().splitlines()]
+    noted = [(name, what) for _, name, what in sorted(lines, key=lambda line: float(line[0]))]
+    begun = [name for name, what in noted if what == "begins"]
+    assert len(begun) == len(set(begun)) == {(): 32, ("alone",): 2}.get(chosen, len(chosen))
+    alone = [one for one in noted if one[0].startswith("alone")]
+    assert noted[len(noted) - len(alone) :] == alone
+    assert [what for _, what in alone] == ["begins", "ends"] * (len(alone) // 2)
