@@ -6,7 +6,7 @@ import fcntl
 import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 from ravenchart.failures import ToolFailed, Unusable
@@ -53,7 +53,7 @@ def run(
     environment = {**os.environ, "GPR_PROJECT_PATH": os.pathsep.join(paths)}
     if tool != "gprbuild":
         environment.pop("GPR_CONFIG", None)  # a configuration for compilers; gnatprove has its own
-    with _alone(tool, given):
+    with _alone(tool, given) if "-P" in arguments else nullcontext():
         done = children.run_watched(
             [tool, *arguments, *variables], taken, cwd=where, env=environment, errors="replace"
         )
