@@ -120,7 +120,7 @@ shutdown: {raises: [], grace: 0 ms}
 def written(folder: Path) -> Path:
     """The model and the body of the page."""
     (folder / "line.dbc").write_text(DATABASE)
-    found = imported(folder / "line.dbc", "board", Periods("100 ms"))
+    found = imported(folder / "line.dbc", "board", Periods("100 ms"), parts=True)
     assert found.problems == []
     assert "weather.pressure_Low   is part of the raw bits of a floating-point" in found.text
     text = found.text.replace("types:", "types:\n  Speed: {range: [0, 1000], unit: 0.1 m/s}")
