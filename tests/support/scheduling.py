@@ -1,7 +1,7 @@
 """In which order the workers of pytest-xdist get the tests, and which test runs alone.
 
-A test marked ``alone`` judges times of the host's clock: it runs after the others, while no
-other test runs. The rest is given to the workers in short runs of one module, so that what a
+A test marked ``alone`` judges times of the host's clock, and one that needs gnatprove has provers
+with limits of time: they run after the others, while no other test runs. The rest is given to the workers in short runs of one module, so that what a
 module sets up once is rarely set up twice.
 """
 
@@ -20,8 +20,14 @@ RUN = 12
 
 def say(tests: Sequence[pytest.Item], path: Path) -> None:
     """In a worker: write the names of the tests that run alone, for the scheduler."""
-    alone = [test.nodeid for test in tests if test.get_closest_marker("alone") is not None]
+    alone = [test.nodeid for test in tests if _runs_alone(test)]
     path.write_text("".join(f"{name}\n" for name in alone), encoding="utf-8")
+
+
+def _runs_alone(test: pytest.Item) -> bool:
+    """Is it marked so, or does it need gnatprove, whose provers have limits of time?"""
+    needs = (str(one.kwargs.get("reason", "")) for one in test.iter_markers("skipif"))
+    return test.get_closest_marker("alone") is not None or any("gnatprove" in n for n in needs)
 
 
 class AloneLast(LoadScheduling):
