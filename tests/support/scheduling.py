@@ -1,8 +1,8 @@
 """In which order the workers of pytest-xdist get the tests, and which test runs alone.
 
 A test marked ``alone`` judges times of the host's clock, and one that needs gnatprove has provers
-with limits of time: they run after the others, while no other test runs. The rest is given to the workers in short runs of one module, so that what a
-module sets up once is rarely set up twice.
+with limits of time: they run after the others, while no other test runs. The rest is given to the
+workers in short runs of one module, so that what a module sets up once is rarely set up twice.
 """
 
 from __future__ import annotations
