@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.system import Bus, Message, Node, Slot, System, Work
@@ -152,28 +152,26 @@ def transports_have_two_ends(resolved: Resolved) -> Iterator[Diagnostic]:
 
 def names_in_databases(system: System) -> Iterator[Diagnostic]:
     """No two messages of a bus have one name in its database, those between nodes included."""
-    known: dict[tuple[str, str], Message] = {}
-    for message in sorted(system.frames, key=lambda one: one.database_name is not None):
-        other = known.setdefault((message.bus, message.in_database), message)
-        if message.database_name is not None and other is not message:
-            text = f"{message.name} and {other.name} are both named `{message.in_database}` in the "
-            text += f"database of {message.bus}"
+    for bus in system.buses:
+        own = [message for message in system.frames if message.bus == bus.name]
+        yield from _named_alike(own, f"the database of {bus.name}")
+
+
+def _named_alike(elements: Sequence[Message | Node], place: str) -> Iterator[Diagnostic]:
+    """An error for each with a `database_name` that another one of them has in databases."""
+    known: dict[str, Message | Node] = {}
+    for one in sorted(elements, key=lambda one: one.database_name is not None):
+        other = known.setdefault(one.in_database, one)
+        if one.database_name is not None and other is not one:
+            text = f"{one.name} and {other.name} are both named `{one.in_database}` in {place}"
             notes = [(other.origin, f"{other.name} is declared here")]
             hint = "give one of them another `database_name`"
-            yield error(DATABASE, message.origin, text, notes=notes, hint=hint)
+            yield error(DATABASE, one.origin, text, notes=notes, hint=hint)
 
 
 def databases_tell_nodes_apart(resolved: Resolved) -> Iterator[Diagnostic]:
     """No two nodes have one name in the databases of their buses."""
-    known: dict[str, Node] = {}
-    nodes = resolved.system.nodes
-    for node in sorted(nodes, key=lambda one: one.database_name is not None):
-        other = known.setdefault(node.in_database, node)
-        if node.database_name is not None and other is not node:
-            text = f"{node.name} and {other.name} are both named `{node.in_database}` in databases"
-            notes = [(other.origin, f"{other.name} is declared here")]
-            hint = "give one of them another `database_name`"
-            yield error(DATABASE, node.origin, text, notes=notes, hint=hint)
+    yield from _named_alike(resolved.system.nodes, "databases")
 
 
 def databases_tell_messages_apart(resolved: Resolved) -> Iterator[Diagnostic]:

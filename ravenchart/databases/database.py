@@ -169,8 +169,6 @@ class _Writer:
     """What the node sends."""
     received: list[Frames] = field(default_factory=list)
     """What it receives with a port."""
-    flexible: bool = False
-    """A frame is CAN FD."""
     originals: set[str] = field(default_factory=set)
     """Names of messages in the database that are in the model."""
     identifiers: dict[tuple[int, bool], str] = field(default_factory=dict)
@@ -233,7 +231,7 @@ class _Writer:
                 self.sent,
                 received=self.received,
                 rate=rate,
-                flexible=self.flexible,
+                flexible=any(one.flexible for one in self.frames),
                 database_name=self._node_name(),
             )
         lines.append("messages:" if self.messages else "messages: {}")
@@ -276,9 +274,9 @@ class _Writer:
                 "it has no cycle time, which a message from outside needs; `--period` gives one"
             )
         self._claim(message)
-        self.flexible |= message.is_fd or message.length > CLASSIC
-        frames = Frames(message.frame_id, message.is_extended_frame, message.length, period)
-        self.frames.append(frames)
+        extended, flexible = message.is_extended_frame, _is_flexible(message)
+        size = _size(message)
+        self.frames.append(Frames(message.frame_id, extended, size, flexible, period))
         lines = self._head(message)
         if not sends and not takes:
             self.messages.append(([*lines, f"    period: {period}"], self.frames[-1]))
@@ -343,8 +341,8 @@ class _Writer:
         lines += ["    extended: true"] if message.is_extended_frame else []
         if message.length > CLASSIC and not message.is_fd:
             self.changes.append((message.name, f"is a CAN FD frame: it has {message.length} bytes"))
-        lines += ["    format: fd"] if message.is_fd or message.length > CLASSIC else []
-        size = next(one for one in (0, *FD_SIZES) if one >= message.length)
+        lines += ["    format: fd"] if _is_flexible(message) else []
+        size = _size(message)
         if size != message.length:
             told = f"has {size} bytes: there is no frame of {message.length}"
             self.changes.append((message.name, told))
@@ -387,6 +385,17 @@ class _Writer:
             wanted = f"{self.names[message]}_{signal.name}"
             self.known[definition] = self.type_names.new(wanted, self.literals)
         return self.known[definition]
+
+
+def _is_flexible(message: Message) -> bool:
+    """Is it CAN FD, as it says or by its length?"""
+    return message.is_fd or message.length > CLASSIC
+
+
+def _size(message: Message) -> int:
+    """The bytes of its frames: the next number that there is."""
+    size: int = next(one for one in (0, *FD_SIZES) if one >= message.length)
+    return size
 
 
 def _kept(name: str, original: str, known: set[str]) -> list[str]:

@@ -6,9 +6,10 @@ text says which of them to set.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ravenchart.analysis.core.frames import classic_bits, fd_bits, rank
 from ravenchart.gen.language.quantities import duration, shown
 
 BIT_RATES = (500_000, 1_000_000)
@@ -20,8 +21,6 @@ SENDING_PERIOD = "100 ms"
 """Of a message that the node sends, and that no cycle time is known of."""
 DATA_RATE = "5 Mbit/s"
 """Of CAN FD frames after their identifier."""
-EXTENSION = 18
-"""Bits by which an extended identifier is longer."""
 US, MS = 1000, 1_000_000
 TURNS = (1000 * US, 500 * US, 200 * US, 100 * US)
 """Periods of the reception: the first one that leaves it half of its time."""
@@ -39,18 +38,21 @@ class Frames:
     identifier: int
     extended: bool
     bytes: int
+    flexible: bool
+    """They are CAN FD."""
     period: str | None
 
     @property
     def rank(self) -> int:
         """Of two frames the one with the lower rank goes first."""
-        return self.identifier if self.extended else self.identifier << EXTENSION
+        return rank(self.identifier, extended=self.extended)
 
     @property
     def bits(self) -> int:
-        """Those of a frame with all stuff bits, as a classic one, which takes no less time."""
-        head = 54 if self.extended else 34
-        return head + 13 + 8 * self.bytes + (head + 8 * self.bytes - 1) // 4
+        """Those of the longest one, at the bit rate of the bus."""
+        if self.flexible:
+            return fd_bits(self.bytes, extended=self.extended, switched=False).nominal
+        return classic_bits(self.bytes, extended=self.extended).nominal
 
     @property
     def bits_each_second(self) -> float:
@@ -97,8 +99,13 @@ def _depth(count: int) -> int:
     return min(max(count, DEPTHS[0]), DEPTHS[1])
 
 
-def _rows(sent: Iterable[Sent]) -> dict[str, list[str]]:
-    """The ports that are sent from with each period, the shortest one first."""
+def _rows(sent: Sequence[Sent], *, receives: bool) -> dict[str, list[str]]:
+    """The ports that are sent from with each period, the shortest one first.
+
+    A component without a port has a row as well, for it must have something to run.
+    """
+    if not sent and not receives:
+        return {SENDING_PERIOD: []}
     found: dict[str, list[str]] = {}
     for one in sorted(sent, key=lambda one: _nanoseconds(one.period)):
         found.setdefault(one.period or SENDING_PERIOD, []).append(one.port)
@@ -112,9 +119,7 @@ def _named(period: str) -> str:
 def behaviour(sent: Sequence[Sent], *, receives: bool) -> list[str]:
     """What the component does with its ports, as keys of it."""
     lines = [f"    port_region: {{period: {PORTS_PERIOD}, wcet: 200 us}}"] if receives else []
-    rows = _rows(sent)
-    if not rows and not receives:
-        rows = {SENDING_PERIOD: []}
+    rows = _rows(sent, receives=receives)
     if rows:
         lines.append("    activities:")
     for period, ports in rows.items():
@@ -166,8 +171,7 @@ def sections(
             "activities: [bus.receive]}",
             f"  handling: {{stack: 32 KiB, activities: [{instance}.ports]}}",
         ]
-    rows = _rows(sent)
-    for period in rows or ([] if received else [SENDING_PERIOD]):
+    for period in _rows(sent, receives=bool(received)):
         name = _named(period)
         lines.append(f"  {name}: {{stack: 32 KiB, activities: [{instance}.{name}]}}")
     return lines
