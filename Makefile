@@ -18,7 +18,7 @@ help:
 	@echo 'make hw-test   drivers on SocketCAN and CTU CAN FD in a guest of QEMU, tests on other machines: minutes'
 	@echo 'make board-test  controllers and runtime on an emulated board; what cannot run is skipped'
 	@echo 'make check     style, types, warnings as errors'
-	@echo 'make prove     gnatprove on the runtime, the HAL and the examples; ONLY="pump" for one'
+	@echo 'make prove     gnatprove on all records; ONLY="pump", or a group: runtime, examples, models'
 	@echo 'make generate  the examples'' generated/ from their models'
 	@echo 'make bench     figures: runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate)'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -29,6 +31,16 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 def _alone() -> Path:
     """A file for the names of the tests that run alone, of this controller."""
     return work() / "build" / f"alone-{os.getpid()}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """One live test at a time: two controllers would share a core, two benches another one."""
+    if item.get_closest_marker("live") is None:
+        return (yield)
+    with (work() / "build" / "live").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        return (yield)
 
 
 def _keep_bytecode() -> None:

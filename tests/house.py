@@ -2,16 +2,18 @@
 
 check: generated/ is what the models give, and every Ada unit compiles without
 a warning, with contracts executed and without. prove: gnatprove on the runtime
-and the HAL with each driver, on the bus server, on the compiled part of the analysis and on
-the examples, and the records of it.
+and the HAL with each driver, on the bus server, on the compiled part of the analysis, on
+the examples and on the models of the tests, and the records of it.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from ravenchart.building import checking, generation, programs
 from ravenchart.failures import Refused, ToolFailed
@@ -39,6 +41,14 @@ EXAMPLES = (
     "three_components",
     "two_nodes",
 )
+MODELS = {
+    f"{kind}-{path.parent.name}": path.parent
+    for kind, folder in (("feature", "feature"), ("nodes", "nodes"))
+    for path in sorted((ROOT / "tests" / folder).glob("*/model.yaml"))
+}
+"""The models of the tests: all of them are proved. Their programs are not kept: see `made`."""
+GROUPS = ("runtime", "examples", "models")
+"""What can be named as a whole: all that no model has made; the examples; the models of tests."""
 DRIVERS = tuple(programs.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
@@ -65,26 +75,45 @@ class Target:
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
-    """Runtime with each driver, bus server, analysis, examples; only those named, if some are."""
+    """Runtime with each driver, bus server, analysis, examples, models of tests.
+
+    Only those named, if some are; a name is that of a target, an example, a model or a group.
+    """
+
+    def wanted(group: str, name: str) -> bool:
+        return not names or group in names or name in names
+
     for driver in DRIVERS:
-        if not names or f"runtime-{driver}" in names:
+        if wanted("runtime", f"runtime-{driver}"):
             yield _runtime(driver)
-    if not names or FLOATS in names:
-        yield _floats()
-    if not names or BUS in names:
-        yield _bus()
-    if not names or KERNEL in names:
-        yield _kernel()
+    for name, target in ((FLOATS, _floats), (BUS, _bus), (KERNEL, _kernel)):
+        if wanted("runtime", name):
+            yield target()
     for example in EXAMPLES:
-        if not names or example in names:
-            yield from _example(example)
+        if wanted("examples", example):
+            yield from _programs(example, ROOT / "examples" / example)
+    for model in MODELS:
+        if wanted("models", model):
+            yield from _programs(model, made(model))
 
 
-def record_names(example: str) -> tuple[str, ...]:
-    """The records of an example: one, or one for each node that has a program."""
-    generated = ROOT / "examples" / example / "generated"
+def made(name: str) -> Path:
+    """A model of the tests with its program, as a copy below build/ that is made anew.
+
+    The folder is the same for each checkout, so a record can name what is in it.
+    """
+    folder = ROOT / "build" / "proved" / name
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(MODELS[name], folder)
+    generation.write_program(checking.check(folder / "model.yaml", patience=PATIENCE))
+    return folder
+
+
+def record_names(name: str, folder: Path) -> tuple[str, ...]:
+    """The records of the model in the folder: one, or one for each node that has a program."""
+    generated = folder / "generated"
     nodes = sorted(project.parent.name for project in generated.glob("*/*.gpr"))
-    return tuple(f"{example}-{node}" for node in nodes) or (example,)
+    return tuple(f"{name}-{node}" for node in nodes) or (name,)
 
 
 def _floats() -> Target:
@@ -145,13 +174,13 @@ def _runtime(driver: str) -> Target:
     return Target(f"runtime-{driver}", task)
 
 
-def _example(name: str) -> Iterator[Target]:
-    checked = checking.check(ROOT / "examples" / name / "model.yaml", patience=PATIENCE)
+def _programs(name: str, folder: Path) -> Iterator[Target]:
+    checked = checking.check(folder / "model.yaml", patience=PATIENCE)
     generation.write_program(checked)
     driver = programs.default_driver(checked)
-    for made in programs.programs_of(checked):
-        target = f"{name}-{made.folder}" if made.folder else name
-        yield Target(target, made.proof(driver, warnings="error"))
+    for program in programs.programs_of(checked):
+        target = f"{name}-{program.folder}" if program.folder else name
+        yield Target(target, program.proof(driver, warnings="error"))
 
 
 def prove(names: Sequence[str]) -> bool:

@@ -18,6 +18,8 @@ from ravenchart.tools import toolchain
 from tests.support.on_bus import Play, runner
 from tests.support.secoc import PUMP, VALVE, Secured
 
+pytestmark = pytest.mark.live
+
 FIRST = Secured(VALVE, 0x123, 1, 3)
 SECOND = Secured(VALVE, 0x124, 8, 16)
 THIRD = Secured(PUMP, 0x123, 4, 8)

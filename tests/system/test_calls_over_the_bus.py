@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from itertools import pairwise
 from pathlib import Path
@@ -12,9 +11,9 @@ import pytest
 from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
-from ravenchart.proof import proving
 from ravenchart.running.runs import controller, run_nodes
-from ravenchart.tools import toolchain
+
+pytestmark = pytest.mark.live
 
 
 @pytest.fixture
@@ -77,18 +76,3 @@ def test_a_region_publishes_and_events_are_brought_without_a_warning(tmp_path: P
     assert "Link.Send_Grasp_1_Get_Heat (Life_Region.Data.Heat_Now);" in grasp
     #  the only callers are far: their numbers are the first
     assert "if Asked.Caller <= 255 then" in grasp
-
-
-@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
-@pytest.mark.parametrize("name", ["commands", "gripper"])
-def test_both_programs_are_proved_without_a_warning(name: str, tmp_path: Path) -> None:
-    if name == "gripper" and "RAVENCHART_LONG_TESTS" not in os.environ:
-        pytest.skip("four minutes of proof: `make test-long` proves it")
-    copy = shutil.copytree(ROOT / "tests" / "nodes" / name, tmp_path / name)
-    checked = checking.check(copy / "model.yaml")
-    generation.write_program(checked)
-    for made in programs.programs_of(checked):
-        proof = proving.prove(made.proof("bus", warnings="error"))
-        assert proof.clean, proof.summary()
-        assert proof.results.outside == ()
-        assert proof.results.checks > 100

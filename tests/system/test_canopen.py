@@ -12,6 +12,8 @@ import pytest
 from ravenchart.paths import ROOT
 from tests.support.examples import PATIENCE, becomes, bus_of, running
 
+pytestmark = pytest.mark.live
+
 NODE = 5
 EDS = ROOT / "examples" / "canopen_device" / "device.eds"
 DEFAULT_HEARTBEAT = 200

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 import time
@@ -15,14 +14,14 @@ import pytest
 
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
-from ravenchart.command_line import main
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import controller, run_controller, run_nodes
-from ravenchart.tools import toolchain
+
+pytestmark = pytest.mark.live
 
 TUNING: dict[str, int | str] = {
     "gain": 4711,
@@ -199,10 +198,3 @@ steps:
         copy / "report",
     )
     assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
-
-
-@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
-def test_both_programs_are_proved(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["prove", str(folder / "model.yaml")]) == 0
-    found = re.findall(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)
-    assert len(found) == 2

@@ -15,9 +15,7 @@ import yaml
 
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
-from ravenchart.command_line import main
 from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
 
 CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
 
@@ -25,9 +23,6 @@ CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml
 def _expected(case: Path) -> dict[str, Any]:
     found: dict[str, Any] = yaml.safe_load((case / "expect.yaml").read_text())
     return found
-
-
-PROVED = [c for c in CASES if _expected(c)["proved"]]
 
 
 @pytest.fixture
@@ -67,10 +62,3 @@ def test_it_runs_to_its_trace(folder: Path) -> None:
         times = {r.text: r.time for r in seen.of("transition", pair["region"])}
         apart = (times[pair["to"]] - times[pair["from"]]) / 1e6
         assert pair["least"] <= apart <= pair["most"], pair
-
-
-@pytest.mark.skipif(not toolchain.have("gnatprove"), reason="gnatprove is not on PATH")
-@pytest.mark.parametrize("folder", PROVED, ids=lambda p: p.name, indirect=True)
-def test_it_is_proved(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["prove", str(folder / "model.yaml")]) == 0
-    assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)

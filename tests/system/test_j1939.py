@@ -14,6 +14,8 @@ import pytest
 
 from tests.support.examples import becomes, bus_of, running
 
+pytestmark = pytest.mark.live
+
 ADDRESS, ENGINE, TOOL, GLOBAL = 128, 0, 249, 255
 CLAIMED, FAN, UNSUPPORTED = 0xEE00, 0xFEBD, 0xFEE3
 CLAIM, CANNOT_CLAIM, NOT_ACKNOWLEDGED, STATE = 0x1CEEFF80, 0x18EEFFFE, 0x18E8FF80, 0x18FEBD80

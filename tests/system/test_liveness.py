@@ -20,6 +20,8 @@ from ravenchart.running import runs as run
 from ravenchart.running.result import RunResult
 from tests.support.faults import shows
 
+pytestmark = pytest.mark.live
+
 SECONDS = 2.0
 
 BODY = """\

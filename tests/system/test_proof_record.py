@@ -13,18 +13,22 @@ from ravenchart.paths import ROOT
 from ravenchart.proof import ages, proving
 from tests import house
 
+PROGRAMS = {name: ROOT / "examples" / name for name in house.EXAMPLES}
 NAMES = (
     *(f"runtime-{driver}" for driver in house.DRIVERS),
     house.FLOATS,
     house.BUS,
     house.KERNEL,
-    *(name for example in house.EXAMPLES for name in house.record_names(example)),
+    *(record for name, at in PROGRAMS.items() for record in house.record_names(name, at)),
 )
 
 LEDGER = ROOT / "proofs" / "assumptions.md"
 
 
+OF_MODELS = tuple(f"{name}{end}" for name in house.MODELS for end in ("", "-*"))
+"""Of programs that are not kept."""
 RECORDS = sorted(house.RECORDS.glob("*/*.toml"))
+KEPT = [path for path in RECORDS if not any(path.match(f"{name}.toml") for name in OF_MODELS)]
 
 
 def _record(name: str) -> Path:
@@ -38,7 +42,7 @@ def test_every_target_has_a_record(name: str) -> None:
     assert _record(name) in RECORDS
 
 
-@pytest.mark.parametrize("path", RECORDS, ids=lambda p: f"{p.parent.name}-{p.stem}")
+@pytest.mark.parametrize("path", KEPT, ids=lambda p: f"{p.parent.name}-{p.stem}")
 def test_every_proved_source_is_as_it_was_proved(path: Path) -> None:
     assert path.stem in NAMES
     assert path.parent.name in {age.name for age in ages.AGES}
@@ -55,20 +59,30 @@ def test_nothing_is_unproved_justified_or_assumed(path: Path) -> None:
     assert provers in found["tool"]
 
 
-def test_every_source_of_a_program_is_in_its_record() -> None:
-    """All that is generated, and each body of the user whose spec is: others have bodies too."""
-    bodies = 0
-    for name in house.EXAMPLES:
-        texts = [tomllib.loads(_record(n).read_text()) for n in house.record_names(name)]
-        recorded = {source for record in texts for source in record["sources"]}
-        folder = ROOT / "examples" / name
-        made = [*(folder / "generated").rglob("*.ad[sb]")]
-        specs = {path.stem for path in made if path.suffix == ".ads"}
-        written = [p for p in (folder / "user").rglob("*.adb") if p.stem in specs]
-        bodies += len(written)
-        there = {str(path.relative_to(ROOT)) for path in (*made, *written)}
-        assert there and there <= recorded, sorted(there - recorded)
-    assert bodies >= 4
+@pytest.mark.parametrize("name", house.MODELS)
+def test_every_model_of_the_tests_gives_what_was_proved(name: str) -> None:
+    folder = house.made(name)
+    names = house.record_names(name, folder)
+    for age in {path.parent.name for path in RECORDS if path.stem in names}:
+        for record in names:
+            assert proving.stale_sources(house.RECORDS / age / f"{record}.toml") == ()
+    _bodies_recorded(name, folder)
+
+
+def test_every_source_of_an_example_is_in_its_record() -> None:
+    assert sum(_bodies_recorded(name, folder) for name, folder in PROGRAMS.items()) >= 4
+
+
+def _bodies_recorded(name: str, folder: Path) -> int:
+    """All that is generated is recorded, and each body of the user whose spec is: their number."""
+    texts = [tomllib.loads(_record(n).read_text()) for n in house.record_names(name, folder)]
+    recorded = {source for record in texts for source in record["sources"]}
+    made = [*(folder / "generated").rglob("*.ad[sb]")]
+    specs = {path.stem for path in made if path.suffix == ".ads"}
+    written = [p for p in (folder / "user").rglob("*.adb") if p.stem in specs]
+    there = {str(path.relative_to(ROOT)) for path in (*made, *written)}
+    assert there and there <= recorded, sorted(there - recorded)
+    return len(written)
 
 
 def _outside() -> dict[str, str]:

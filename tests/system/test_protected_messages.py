@@ -26,6 +26,8 @@ from ravenchart.running.runs import controller, run_controller
 from ravenchart.tools import toolchain
 from tests.support.on_bus import runner
 
+pytestmark = pytest.mark.live
+
 P1_MODES = {
     "BOTH": e2e.p01.E2E_P01_DATAID_BOTH,
     "ALTERNATING": e2e.p01.E2E_P01_DATAID_ALT,

@@ -16,6 +16,8 @@ from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import run_controller
 from tests.support.faults import shows
 
+pytestmark = pytest.mark.live
+
 HERE = Path("examples/cartesian_robot")
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import re
 import shutil
 import time
 from collections import deque
@@ -17,14 +15,14 @@ import pytest
 
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
-from ravenchart.command_line import main
 from ravenchart.gen.model.system import Message
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.runs import Controller, controller, run_nodes
-from ravenchart.tools import toolchain
+
+pytestmark = pytest.mark.live
 
 STALE_INPUT, PROTECTION_ERROR = "3", "7"
 """Their numbers among the kinds of faults."""
@@ -265,13 +263,3 @@ def test_a_sender_that_falls_silent_is_counted_once_and_may_begin_again(
     apart = [record.time for record in seen.of("fault", "table")]
     assert apart[1] - apart[0] > table.transport.timeout
     assert list(seen.of("arrived", "table")) == []
-
-
-@pytest.mark.skipif(
-    not toolchain.have("gnatprove") or "RAVENCHART_LONG_TESTS" not in os.environ,
-    reason="set RAVENCHART_LONG_TESTS, and have gnatprove on PATH",
-)
-def test_both_programs_are_proved(built: Built, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["prove", str(built.folder / "model.yaml")]) == 0
-    found = re.findall(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)
-    assert len(found) == 2

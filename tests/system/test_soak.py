@@ -24,6 +24,8 @@ from ravenchart.gen.model.system import End
 from ravenchart.paths import ROOT
 from tests.support.faults import shows
 
+pytestmark = pytest.mark.live
+
 SEED = 2026
 EPISODE = 2_500
 """Milliseconds from one fault's beginning to the next one's, and so all times here."""

@@ -20,6 +20,8 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 from tests.support import can_bus
 
+pytestmark = pytest.mark.live
+
 HERE = ROOT / "examples" / "surgical_robot"
 SUPERVISOR = "supervisor_1.Task_Of_Arm"
 FACADE = "Robot: {facade: [Boards, Wrist]}"

@@ -20,6 +20,8 @@ from ravenchart.running.runs import RunRequest, controller, run_model
 from tests.support.faults import shows
 from tests.support.two_nodes import by_chart
 
+pytestmark = pytest.mark.live
+
 EXAMPLE = ROOT / "examples" / "two_nodes"
 SERVO = "servo: {component: Linear_Servo, node: "
 
