@@ -68,10 +68,16 @@ FLOATS = "runtime-floats"
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One thing to prove: the name of its record, and the run."""
+    """One thing to prove: the name of its record, the run, and the folder of its model."""
 
     name: str
     task: proving.Task
+    folder: Path | None = None
+
+    def reasons(self) -> dict[str, str]:
+        """Why something of it may be outside SPARK."""
+        own = outside_spark.reasons_for_model(self.folder) if self.folder else {}
+        return {**outside_spark.reasons_for_target(OUTSIDE, self.name), **own}
 
 
 def targets(names: Sequence[str] = ()) -> Iterator[Target]:
@@ -180,7 +186,7 @@ def _programs(name: str, folder: Path) -> Iterator[Target]:
     driver = programs.default_driver(checked)
     for program in programs.programs_of(checked):
         target = f"{name}-{program.folder}" if program.folder else name
-        yield Target(target, program.proof(driver, warnings="error"))
+        yield Target(target, program.proof(driver, warnings="error"), folder)
 
 
 def prove(names: Sequence[str]) -> bool:
@@ -199,7 +205,7 @@ def prove(names: Sequence[str]) -> bool:
             print(f"{left}\n{target.name}: {left.proof.summary()}", flush=True)
             clean = False
             continue
-        reasons = outside_spark.reasons_for_target(OUTSIDE, target.name)
+        reasons = target.reasons()
         print(f"{target.name}: {proof.summary()}", flush=True)
         for line in outside_spark.lines(proof.results.outside, reasons):
             print(f"  {line}", flush=True)
