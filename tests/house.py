@@ -100,7 +100,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
             yield from _programs(example, ROOT / "examples" / example)
     for model in MODELS:
         if wanted("models", model):
-            yield from _programs(model, made(model))
+            yield from _programs(model, made(model), warnings="continue")
 
 
 def made(name: str) -> Path:
@@ -180,13 +180,13 @@ def _runtime(driver: str) -> Target:
     return Target(f"runtime-{driver}", task)
 
 
-def _programs(name: str, folder: Path) -> Iterator[Target]:
+def _programs(name: str, folder: Path, *, warnings: str = "error") -> Iterator[Target]:
     checked = checking.check(folder / "model.yaml", patience=PATIENCE)
     generation.write_program(checked)
     driver = programs.default_driver(checked)
     for program in programs.programs_of(checked):
         target = f"{name}-{program.folder}" if program.folder else name
-        yield Target(target, program.proof(driver, warnings="error"), folder)
+        yield Target(target, program.proof(driver, warnings=warnings), folder)
 
 
 def prove(names: Sequence[str]) -> bool:
