@@ -4,16 +4,17 @@ RAVENCHART := .venv/bin/ravenchart
 PYTHON     := .venv/bin/python
 # A warning stops a build of our own; it does not stop a user's.
 export RAVENCHART_WARNINGS := errors
-# The results of the last `make test`, for the evidence of the examples.
+# The results of the last run of the tests, for the evidence of the examples.
 RESULTS    := build/tests.xml
 EXAMPLES   := $(patsubst %/model.yaml,%,$(sort $(wildcard examples/*/model.yaml)))
 
-.PHONY: help setup demo test test-long hw-test board-test check prove generate bench bench-proof mutate docs site
+.PHONY: help setup demo test test-all test-long hw-test board-test check prove generate bench bench-proof mutate docs site
 .PHONY: lock clean
 
 help:
 	@echo 'make demo      check, generate, build and run the Cartesian robot; a report'
-	@echo 'make test      every test'
+	@echo 'make test      the tests of a change: minutes; the slow ones are named and left out'
+	@echo 'make test-all  every test, as .ci/run does'
 	@echo 'make test-long  the same with 2,000 random charts, millions of frames and lines: hours'
 	@echo 'make hw-test   drivers on SocketCAN and CTU CAN FD in a guest of QEMU, tests on other machines: minutes'
 	@echo 'make board-test  controllers and runtime on an emulated board; what cannot run is skipped'
@@ -35,8 +36,11 @@ demo: setup
 test: setup
 	@$(PYTHON) -P -m pytest -q -n auto --junit-xml=$(RESULTS)
 
+test-all: setup
+	@RAVENCHART_ALL_TESTS=1 $(PYTHON) -P -m pytest -q -n auto --durations=25 --junit-xml=$(RESULTS)
+
 test-long: setup
-	@RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q -n auto
+	@RAVENCHART_ALL_TESTS=1 RAVENCHART_LONG_TESTS=1 $(PYTHON) -P -m pytest -q -n auto
 
 hw-test: setup
 	@scripts/setup.sh guest || true

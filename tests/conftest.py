@@ -14,10 +14,15 @@ from xdist.workermanage import WorkerController
 from ravenchart.paths import work
 from tests.support import compiler, scheduling
 
+ALL = "RAVENCHART_ALL_TESTS"
+"""Set in the environment, nothing is left out for its time; so it is where files are named."""
+
 
 def pytest_configure(config: pytest.Config) -> None:
     """Once, before the workers start."""
     if not hasattr(config, "workerinput"):
+        if config.args_source is pytest.Config.ArgsSource.ARGS:
+            os.environ[ALL] = "1"  # the workers inherit it
         _keep_bytecode()
         compiler.use()
 
@@ -31,6 +36,14 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 def _alone() -> Path:
     """A file for the names of the tests that run alone, of this controller."""
     return work() / "build" / f"alone-{os.getpid()}"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """`make test` leaves slow tests out, and says so."""
+    if ALL not in os.environ:
+        for item in items:
+            if item.get_closest_marker("slow") is not None:
+                item.add_marker(pytest.mark.skip(reason="slow: `make test-all` runs it"))
 
 
 @pytest.hookimpl(wrapper=True)

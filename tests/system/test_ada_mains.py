@@ -9,6 +9,7 @@ import pytest
 
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
+from tests.support.modes import MODES
 
 MAINS = (
     "test_store",
@@ -45,7 +46,7 @@ LIMIT = 300.0
 """Seconds after which a program hangs, however busy the machine is."""
 
 
-@pytest.fixture(scope="module", params=["checks", "release"])
+@pytest.fixture(scope="module", params=MODES)
 def mode(request: pytest.FixtureRequest) -> str:
     """Both builds of the tests."""
     chosen: str = request.param
@@ -73,7 +74,7 @@ def test_the_supervisor_ends_a_program_whose_main_program_does_not(mode: str) ->
     )
 
 
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize(("driver", "main"), OF_DRIVERS)
 def test_every_fact_of_a_driver_holds(mode: str, driver: str, main: str) -> None:
     options = ["-p", "-q", "-j0", "-P", "tests.gpr", main]

@@ -24,6 +24,7 @@ def folder(tmp_path: Path) -> Path:
     return copy
 
 
+@pytest.mark.slow
 def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder: Path) -> None:
     checked = checking.check(folder / "model.yaml")
     assert not checked.warnings

@@ -72,6 +72,7 @@ def test_a_wcet_past_its_slack_cannot_be_claimed_away(robot_text: str, tmp_path:
     assert "supervision can miss its deadline" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by_priority", [False, True])
 def test_random_systems_are_certified_to_the_nanosecond(by_priority: bool, tmp_path: Path) -> None:
     """Rows of different periods, several jobs, errors, CAN FD, transmit buffers of both kinds."""
@@ -92,6 +93,7 @@ def test_random_systems_are_certified_to_the_nanosecond(by_priority: bool, tmp_p
     assert made >= 20 and several >= 3 and flexible >= 3, (made, several, flexible)
 
 
+@pytest.mark.slow
 def test_two_hundred_tasks_add_under_ten_seconds_to_a_build(tmp_path: Path) -> None:
     tasks = []
     for index in range(200):

@@ -13,6 +13,8 @@ from tests.bench.large_charts import large_chart
 from tests.support import random_charts, reference_charts
 from tests.support.compiled import complaints
 
+pytestmark = pytest.mark.slow
+
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 """`make test-long`: all charts that `test_simulation` runs, in batches of one run each."""
 

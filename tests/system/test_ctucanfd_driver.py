@@ -13,6 +13,7 @@ import pytest
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 from tests.hardware.driver_cases import LIMIT, Driver, started
+from tests.support.modes import MODES
 
 SPAN = 0x4000
 """Bytes from one core of a card to the next."""
@@ -41,7 +42,7 @@ class Card:
         struct.pack_into("<I", self._words, SPAN + offset, word)
 
 
-@pytest.fixture(scope="module", params=["checks", "release"])
+@pytest.fixture(scope="module", params=MODES)
 def program(request: pytest.FixtureRequest) -> Path:
     """It echoes, in both builds."""
     options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]

@@ -192,6 +192,7 @@ def test_an_exception_in_the_main_program_makes_the_devices_safe(tmp_path: Path)
     assert registers == SAFE
 
 
+@pytest.mark.slow
 @shows(
     "a processor is silent, and the main program no longer runs",
     found_by="liveness supervision",

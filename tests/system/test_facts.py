@@ -21,6 +21,8 @@ from tests.mutation.mutants import Mutant
 from tests.mutation.observing import Observer, PlayedTogether
 from tests.mutation.workbench import Workbench
 
+pytestmark = pytest.mark.slow
+
 MODEL = ROOT / "examples" / "two_nodes" / "model.yaml"
 LATER = {"divisor", "phase", "cycle", "bit rate", "id sent", "id expected", "length sent"}
 LATER |= {"length expected", "twice", "not at all", "other row"}

@@ -17,7 +17,11 @@ from ravenchart.analysis.system.observed import Observation, read_map, read_trac
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
 
-CASES = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
+FOLDERS = sorted(p.parent for p in (ROOT / "tests" / "feature").glob("*/model.yaml"))
+QUICK = {"charts", "devices", "faults", "passes", "registers", "requests", "signals"}
+CASES = [
+    pytest.param(p, marks=() if p.name in QUICK else pytest.mark.slow, id=p.name) for p in FOLDERS
+]
 
 
 def _expected(case: Path) -> dict[str, Any]:
@@ -48,7 +52,7 @@ def _run(folder: Path, expected: dict[str, Any]) -> tuple[checking.Checked, Obse
     return checked, read_trace(trace.read_text().splitlines(), names)
 
 
-@pytest.mark.parametrize("folder", CASES, ids=lambda p: p.name, indirect=True)
+@pytest.mark.parametrize("folder", CASES, indirect=True)
 def test_it_runs_to_its_trace(folder: Path) -> None:
     expected = _expected(folder)
     _, seen = _run(folder, expected)

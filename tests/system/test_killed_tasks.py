@@ -18,6 +18,8 @@ from ravenchart.paths import ROOT
 from tests.support.faults import shows
 from tests.support.stopped import raise_in
 
+pytestmark = pytest.mark.slow
+
 LONG = "RAVENCHART_LONG_TESTS" in os.environ
 
 

@@ -19,6 +19,7 @@ from ravenchart.paths import ROOT
 from ravenchart.running import runs as run
 from ravenchart.running.result import RunResult
 from tests.support.faults import shows
+from tests.support.modes import MODES
 
 pytestmark = pytest.mark.live
 
@@ -234,7 +235,7 @@ def test_a_task_that_dies_ends_the_controller_with_its_name_and_its_reason(
     reaction="`Silence` once, events of `on_silence`, no feeding of the watchdog, exit status 1",
     within="deadline + margin + one period of the supervision; 0.5 s more for a busy host",
 )
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 def test_an_endless_loop_is_found_once_and_answered_by_the_chart(
     breaking: Breaking, mode: str
 ) -> None:
@@ -317,7 +318,7 @@ def test_the_command_fails_and_its_last_lines_have_the_reason(
     within="1 s, half of the run",
 )
 @pytest.mark.parametrize("fault", ["overflow", "wide"])
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 def test_a_stack_overflow_ends_the_task_and_the_controller_shuts_down(
     breaking: Breaking, fault: str, mode: str
 ) -> None:
@@ -337,7 +338,7 @@ def test_a_stack_overflow_ends_the_task_and_the_controller_shuts_down(
     reaction="no task starts; exit status 1, with the reason",
     within="5 s",
 )
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 def test_an_exception_in_elaboration_ends_the_process(
     built: Callable[[str, bool], Built], mode: str
 ) -> None:

@@ -8,7 +8,11 @@ from __future__ import annotations
 
 import os
 
+import pytest
+
 from tests.support.model_fuzzer import outcomes
+
+pytestmark = pytest.mark.slow
 
 SEEDS = range(2_000) if "RAVENCHART_LONG_TESTS" in os.environ else range(50)
 

@@ -11,6 +11,8 @@ import pytest
 
 from ravenchart.paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 RUNTIME = ROOT / "spark_runtime"
 HAL = tuple(ROOT / "hw_can" / name for name in ("hal", "protocol", "simulator"))
 DRIVERS = ROOT / "hw_can" / "drivers"

@@ -154,6 +154,7 @@ def _by_chart(records: Sequence[Record], seeds: Sequence[int]) -> dict[int, list
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", range(FIRST, FIRST + CHARTS, BATCH))
 def test_program_and_interpreter_agree_on_random_charts(start: int, tmp_path: Path) -> None:
     seeds = range(start, start + BATCH)

@@ -11,6 +11,8 @@ import pytest
 
 from ravenchart.paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 LOADED = re.compile(r"<(?:script|link|img)\b[^>]*?(?:src|href)=\"(?:https?:)?//[^\"]*\"")
 """What a browser would fetch from elsewhere."""
 

@@ -16,6 +16,7 @@ from can.util import dlc2len
 
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
+from tests.support.modes import MODES
 
 STRINGS = 10_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 200_000
 SHOWN = 50_000
@@ -53,7 +54,7 @@ def meaning(line: bytes) -> str:
     return f"FRAME_LINE/{form}/{kind}/ {int(short or long, 16)}/ {asked}/ {payload}"
 
 
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 def test_what_is_accepted_is_written_as_it_was_read(mode: str) -> None:
     options = ["-p", "-q", "-P", "tests.gpr", "slcan_fuzz.adb"]
     where = ROOT / "tests" / "ada"

@@ -97,6 +97,7 @@ def project(tmp_path: Path) -> Path:
     return tmp_path / "tank" / "model.yaml"
 
 
+@pytest.mark.slow
 def test_progress_is_shown_at_a_terminal_and_never_in_the_output(project: Path) -> None:
     out, errors = called("build", project, terminals="err")
     assert "compile" in errors and ESCAPE not in out and "compile" not in out

@@ -109,6 +109,7 @@ def noted(checked: checking.Checked, to: Path, node: str, kind: str, element: st
     ]
 
 
+@pytest.mark.slow
 @shows(
     "the bus is cut between two nodes",
     found_by="the state of the CAN controller, read by `watch`; stale input",
@@ -125,6 +126,7 @@ def test_who_is_alone_is_error_passive_and_never_bus_off(
     assert faults(tmp_path, "drive") == (0, 0)
 
 
+@pytest.mark.slow
 @shows(
     "the bus is held dominant",
     found_by="the state of the CAN controller, read by `watch`",
@@ -140,6 +142,7 @@ def test_a_bus_that_is_held_dominant_makes_both_error_passive(
     assert faults(tmp_path, "panel")[1] == 0
 
 
+@pytest.mark.slow
 @shows(
     "the bus is held recessive",
     found_by="the state of the CAN controller, read by `watch`",
@@ -162,6 +165,7 @@ def test_a_bus_that_is_held_recessive_makes_both_bus_off_again_and_again(
         assert all(any(0 <= e - f < 5_000_000 for e in events) for f in found)
 
 
+@pytest.mark.slow
 @shows(
     "the bus is held recessive, and the chart has to request recovery",
     found_by="the state of the CAN controller, read by `watch`",

@@ -18,6 +18,8 @@ import pytest
 from ravenchart.gen.explanations import explanations
 from tests.support.processes import ROOT
 
+pytestmark = pytest.mark.slow
+
 PATIENCE = 60.0
 """Seconds for a check on a busy machine."""
 

@@ -85,6 +85,7 @@ def test_every_module_that_we_start_is_started_with_a_safe_path() -> None:
     assert unsafe == []
 
 
+@pytest.mark.slow
 def test_output_that_nobody_reads_is_no_error_with_words() -> None:
     plain = ROOT / "tests" / "plain" / "two_nodes.csv"
     for command in ((MODEL, "--json"), (MODEL,), (plain,)):

@@ -8,9 +8,10 @@ import pytest
 
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
+from tests.support.modes import MODES
 
 
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 def test_the_driver_counts_what_it_loses_and_recovers_on_request(mode: str) -> None:
     where = ROOT / "tests" / "ada" / "xcan"
     toolchain.run("gprbuild", ["-p", "-q", "-P", "xcan.gpr"], where, {"MODE": mode})

@@ -18,6 +18,7 @@ from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.pipeline import load
 from tests.support.compiled import complaints
 from tests.support.interpreted import system_of
+from tests.support.modes import MODES
 
 Written = Callable[[tuple[str, ...]], str]
 
@@ -187,6 +188,6 @@ def test_no_name_is_reserved(written: Written, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("written", WRITTEN)
-@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("mode", MODES)
 def test_code_with_own_names_compiles(written: Written, mode: str, tmp_path: Path) -> None:
     assert complaints({"Named": written(own_names())}, tmp_path, mode) == ""

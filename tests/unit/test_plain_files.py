@@ -422,6 +422,7 @@ def huge_and_coprime(chance: random.Random) -> list[int]:
     return [10**15 + 2 * number + 1 for number in chance.sample(range(10**6), 500)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("periods", [log_uniform, huge_and_coprime])
 def test_a_load_of_any_number_of_digits_is_printed_and_no_smaller_than_it_is(
     periods: Callable[[random.Random], list[int]],

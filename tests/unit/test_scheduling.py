@@ -33,6 +33,7 @@ def test_shared(number):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "chosen",
     [(), ("alone",), ("alone[1]",), ("shared[29]",), ("alone[0]", "shared[29]", "shared[3]")],

@@ -112,6 +112,7 @@ def test_what_cannot_be_simulated_is_refused() -> None:
 # --- Against the bounds ----------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_no_random_system_is_observed_above_its_bounds() -> None:
     """Tables, sections, jitter, several cores, a bus with queues and faults, chains."""
     compared = 0
@@ -136,6 +137,7 @@ def test_no_random_system_is_observed_above_its_bounds() -> None:
     assert compared > 5 * SYSTEMS
 
 
+@pytest.mark.slow
 def test_no_random_system_with_offsets_is_observed_above_its_bounds() -> None:
     """Tables, sections, jitter, several cores and chains, phases as the offsets say."""
     shorter = compared = 0
