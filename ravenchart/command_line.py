@@ -49,6 +49,7 @@ COMMANDS = {
     ),
     "export-dbc": ("export_dbc", "print the CAN database of a bus of the model"),
     "simulate": ("simulate", "run the model in virtual time, step by step"),
+    "tests": ("tests", "find event files that take every transition and decide every guard"),
     "explain": ("explain", "explain the code of an error or warning"),
     "clean": ("clean", "delete build results"),
     "completion": ("completion", "print the completion script of a shell"),

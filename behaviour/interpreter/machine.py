@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import heapq
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.component import Activity, PortKind
@@ -50,8 +50,8 @@ class Mailbox:
 class InstanceRun:
     """A component instance under way."""
 
-    def __init__(self, instance: Instance) -> None:
-        """Before anything has run."""
+    def __init__(self, instance: Instance, region_run: type[RegionRun] = RegionRun) -> None:
+        """Before anything has run; ``region_run`` runs its regions."""
         self.instance = instance
         self.component = instance.component
         self.parameters = dict(instance.parameters)
@@ -60,7 +60,7 @@ class InstanceRun:
         self.mailboxes = {port.name: Mailbox(port) for port in self.component.inputs()}
         policies = {e.name: e.overflow for e in self.component.events if e.overflow is not None}
         self.regions = {
-            region.name: RegionRun(region, policies, self._works_in(region))
+            region.name: region_run(region, policies, self._works_in(region))
             for region in self.component.regions
         }
 
@@ -132,21 +132,30 @@ def _names(region: Region, event: str) -> bool:
 class Machine:
     """A system under way."""
 
-    def __init__(self, system: System) -> None:
-        """Before the epoch."""
+    def __init__(self, system: System, region_run: type[RegionRun] = RegionRun) -> None:
+        """Before the epoch; ``region_run`` runs the regions."""
         self.system = system
-        self.instances = {one.name: InstanceRun(one) for one in system.instances}
+        self.instances = {one.name: InstanceRun(one, region_run) for one in system.instances}
 
     def run(self, stimuli: Stimuli) -> Iterator[Record]:
         """Everything up to the last instant: the steps that executed a behaviour."""
         coming = deque(stimuli.entries)
-        for now, slots in self._instants(stimuli.until):
+        for now, slots in self.instants(stimuli.until):
+            due: list[Raised | Arrived] = []
             while coming and coming[0].at <= now:
-                self._take(coming.popleft())
-            for slot in slots:
-                yield from self._execute(now, slot)
+                due.append(coming.popleft())
+            yield from self.execute(now, slots, due)
 
-    def _instants(self, until: Ns) -> Iterator[tuple[Ns, list[Slot]]]:
+    def execute(
+        self, now: Ns, slots: Iterable[Slot], entries: Iterable[Raised | Arrived] = ()
+    ) -> Iterator[Record]:
+        """What happens at one of the instants: what comes from outside, then the rows."""
+        for entry in entries:
+            self._take(entry)
+        for slot in slots:
+            yield from self._execute(now, slot)
+
+    def instants(self, until: Ns) -> Iterator[tuple[Ns, list[Slot]]]:
         """Each release instant with the rows that run then, in order."""
         processors = [p for p in self.system.processors if p.released_by is None]
         releases = [(p.offset, -p.priority, index, 0) for index, p in enumerate(processors)]

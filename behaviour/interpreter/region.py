@@ -275,7 +275,7 @@ class RegionRun:
 
     def _enabled(self, first: Transition) -> Firing | None:
         """The compound transition that begins with ``first``, when all its guards hold."""
-        if not holds(first.guard, self._view):
+        if not self._lets_through(first):
             return None
         if first.kind is TransitionKind.INTERNAL:
             place = self.tree.place(first.source)
@@ -309,7 +309,7 @@ class RegionRun:
         elif kind is not PseudoKind.JUNCTION:
             return taken
         for segment in self.tree.leaving[vertex]:
-            if segment not in taken and holds(segment.guard, self._view):
+            if segment not in taken and self._lets_through(segment):
                 path = self._path((*taken, segment))
                 if path is not None:
                     return path
@@ -319,7 +319,11 @@ class RegionRun:
         """Whether a segment may enter its join."""
         source = segment.source
         active = self.is_active(source) and self._is_complete(source)
-        return active and holds(segment.guard, self._view)
+        return active and self._lets_through(segment)
+
+    def _lets_through(self, transition: Transition) -> bool:
+        """Whether its guard holds now."""
+        return holds(transition.guard, self._view)
 
     # --- firing
 

@@ -75,6 +75,31 @@ class Stimuli:
     until: Ns
 
 
+def written(stimuli: Stimuli, comments: Iterable[str] = ()) -> str:
+    """A file of these stimuli, which `read` gives back; each comment is a line at its start."""
+    lines = [f"# {comment}" for comment in comments]
+    for entry in stimuli.entries:
+        at = shown(entry.at) if entry.at else "0"
+        match entry:
+            case Raised(instance=instance, event=event, value=None):
+                lines.append(f"- {{at: {at}, raise: {instance}.{event}}}")
+            case Raised(instance=instance, event=event, value=value):
+                assert value is not None
+                lines.append(f"- {{at: {at}, raise: {instance}.{event}, with: {_text(value)}}}")
+            case Arrived(end=end, value=value):
+                place = f"{end.instance}.{end.port}"
+                lines.append(f"- {{at: {at}, put: {place}, value: {_text(value)}}}")
+    lines.append(f"- {{until: {shown(stimuli.until) if stimuli.until else 0}}}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _text(value: Value) -> str:
+    """A value as YAML."""
+    if isinstance(value, tuple):
+        return f"{{{', '.join(f'{name}: {_text(one)}' for name, one in value)}}}"
+    return {"True": "true", "False": "false"}.get(str(value), str(value))
+
+
 FORMS = "`{at, raise, with}`, `{at, put, value}` or, at the end, `{until}`"
 
 

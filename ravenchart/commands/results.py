@@ -423,6 +423,42 @@ class EvidenceResult(Result):
     """How many claims have each verdict."""
 
 
+@dataclass(slots=True)
+class TestCase(Described):
+    """An event file."""
+
+    file: str
+    """Where it is."""
+    shows: list[str]
+    """The goals that it is the first of all to show."""
+
+
+@dataclass(slots=True)
+class TestGoals(Described):
+    """The goals of one kind."""
+
+    kind: str
+    """What they are about."""
+    shown: int
+    """How many of them the cases show."""
+    goals: int
+    """How many there are."""
+
+
+@dataclass(slots=True)
+class TestsResult(Result):
+    """Test cases, found and written."""
+
+    cases: list[TestCase]
+    """The files."""
+    goals: list[TestGoals]
+    """What they show of the charts."""
+    open: list[str]
+    """The goals that no case shows."""
+    different: list[str]
+    """The files under which program and interpreter executed different behaviours."""
+
+
 RESULTS: dict[str, type[Result]] = {
     "check": CheckResult,
     "generate": GenerateResult,
@@ -441,5 +477,6 @@ RESULTS: dict[str, type[Result]] = {
     "check-certificate": CertificateResult,
     "requirements": RequirementsResult,
     "evidence": EvidenceResult,
+    "tests": TestsResult,
 }
 """Of each command with such an object; `analyse` and `simulate` have forms of their own."""

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from ravenchart.behaviour.interpreter.machine import Machine
@@ -77,10 +78,15 @@ def simulated_by_interpreter(system: System, stimuli: Stimuli) -> list[Record]:
 
 def simulated_by_program(checked: Checked, stimuli: Stimuli) -> list[Record]:
     """What the generated program executes."""
+    return played_by_program(checked)(stimuli)
+
+
+def played_by_program(checked: Checked) -> Callable[[Stimuli], list[Record]]:
+    """The generated program, built: what it executes under stimuli."""
     without_clashes(checked)
     write_first_versions(checked)
     program = build_simulation(checked.system, checked.folder, _home(checked))
-    return run_simulation(checked.system, program, stimuli)
+    return partial(run_simulation, checked.system, program)
 
 
 def _home(checked: Checked) -> Path:
@@ -148,6 +154,14 @@ def left_out(system: System) -> Diagnostic | None:
     return warning("RV-1009", rows[0][1], message, hint=hint)
 
 
+def interpreted_alone(system: System, hint: str | None = None) -> None:
+    """Refused where the interpreter cannot execute the model: it knows no drivers."""
+    if system.bindings:
+        message = "the interpreter knows no drivers: it executes no models with bindings"
+        found = error("RV-1008", system.bindings[0].origin, message, hint=hint)
+        raise Refused(render(found, {}), [found])
+
+
 def unexpected(system: System, stimuli: Stimuli) -> list[Diagnostic]:
     """A warning for each event that comes from outside, which `check` does not reckon with."""
     components = {i.name: i.component for i in system.instances}
@@ -165,12 +179,9 @@ def unexpected(system: System, stimuli: Stimuli) -> list[Diagnostic]:
 
 def simulated(checked: Checked, events: Path, *, interpreter: bool, as_json: bool) -> str:
     """The trace of a model under the stimuli of a file, one step a line."""
-    bindings = checked.system.bindings
-    if interpreter and bindings:
-        message = "the interpreter knows no drivers: it executes no models with bindings"
+    if interpreter:
         hint = "leave out `--interpreter`: the program in virtual time has them"
-        found = error("RV-1008", bindings[0].origin, message, hint=hint)
-        raise Refused(render(found, {}), [found])
+        interpreted_alone(checked.system, hint)
     stimuli = stimuli_of(checked.system, events)
     for one in unexpected(checked.system, stimuli):
         print(render(one, {}), file=sys.stderr)

@@ -1,0 +1,201 @@
+"""What test cases of a component's charts shall show, and which executions show it.
+
+Goals are those of structural coverage (DO-178C, 6.4.4.2) on the chart as modelled: each
+transition is taken, each guard and each condition that triggers is decided both ways, and each
+condition of such a decision decides it by itself (modified condition/decision coverage). For the
+last one two evaluations are compared that differ in that condition and in the outcome. In all
+other conditions they are equal, or one of the two did not come to that condition, as ``and`` and
+``or`` stop early: masking MC/DC of Chilenski, An Investigation of Three Forms of the Modified
+Condition Decision Coverage (MCDC) Criterion, DOT/FAA/AR-01/18, 2001.
+Each event that a state defers is deferred there, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from itertools import combinations
+
+from ravenchart.behaviour.interpreter.expressions import View, holds
+from ravenchart.gen.language.terms import BOOLEAN, Expression, Operation
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.statechart import Transition, When
+from ravenchart.gen.origins import Origin
+
+Element = tuple[str, str, str]
+"""Component, region, and transition or state."""
+WHEN = ".when"
+"""Behind the name of a transition: the condition that triggers it, and not its guard."""
+Evaluation = tuple[tuple[bool | None, ...], bool]
+"""The conditions of a decision, None where it did not come to one, and the outcome."""
+
+
+class Kind(Enum):
+    """What a goal is about; the value names it in a report."""
+
+    TAKEN = "transitions taken"
+    TRUE = "guards and triggers true"
+    FALSE = "guards and triggers false"
+    CONDITION = "conditions that decide by themselves"
+    DEFERRED = "events deferred"
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """One thing to be shown. ``detail``: number of the condition, or the event."""
+
+    kind: Kind
+    element: Element
+    origin: Origin
+    state: str
+    """That must be active."""
+    detail: int | str = ""
+
+    def text(self) -> str:
+        """In words."""
+        component, region, name = self.element
+        place = f"{component}.{region}.{name.removesuffix(WHEN)}"
+        decision = "trigger" if name.endswith(WHEN) else "guard"
+        match self.kind:
+            case Kind.TAKEN:
+                return f"{place} is taken"
+            case Kind.TRUE:
+                return f"the {decision} of {place} is true"
+            case Kind.FALSE:
+                return f"the {decision} of {place} is false"
+            case Kind.CONDITION:
+                assert isinstance(self.detail, int)
+                return f"condition {self.detail + 1} of the {decision} of {place} decides it"
+        return f"{self.detail} is deferred in {place}"
+
+
+def goals(component: Component) -> Iterator[Goal]:
+    """The goals of its charts, in model order."""
+    for region in component.regions:
+        for transition in region.transitions:
+            yield from _of_transition(component.name, region.name, transition)
+        for state in region.states:
+            for event in state.defers:
+                element = component.name, region.name, state.name
+                yield Goal(Kind.DEFERRED, element, state.origin, state.name, event)
+
+
+def _of_transition(component: str, region: str, transition: Transition) -> Iterator[Goal]:
+    element = component, region, transition.name
+    here = transition.origin, transition.source
+    yield Goal(Kind.TAKEN, element, *here)
+    decisions = [(transition.name, transition.guard)]
+    if isinstance(transition.trigger, When):
+        decisions.append((transition.name + WHEN, transition.trigger.condition))
+    for name, expression in decisions:
+        if expression is None:
+            continue
+        decided = component, region, name
+        yield Goal(Kind.TRUE, decided, *here)
+        yield Goal(Kind.FALSE, decided, *here)
+        count = _conditions(expression)
+        if count > 1:
+            yield from (Goal(Kind.CONDITION, decided, *here, n) for n in range(count))
+
+
+def _parts(expression: Expression) -> tuple[Expression, ...]:
+    """What a truth value is joined of; nothing for a condition."""
+    match expression:
+        case Operation(operator="and" | "or" | "not", operands=operands):
+            return operands
+        case Operation(operator="if", operands=operands, type=kind) if kind == BOOLEAN:
+            return operands
+    return ()
+
+
+def _conditions(expression: Expression) -> int:
+    """How many conditions it has."""
+    parts = _parts(expression)
+    return sum(map(_conditions, parts)) if parts else 1
+
+
+def evaluated(expression: Expression, view: View) -> Evaluation:
+    """A guard and its conditions, evaluated as the generated code does: no further than needed."""
+    parts = _parts(expression)
+    if not parts:
+        found = holds(expression, view)
+        return (found,), found
+    assert isinstance(expression, Operation)
+    first, outcome = evaluated(parts[0], view)
+    if expression.operator == "not":
+        return first, not outcome
+    if expression.operator == "if":
+        branches = [
+            evaluated(part, view) if outcome is chosen else (_unknown(part), False)
+            for part, chosen in zip(parts[1:], (True, False), strict=True)
+        ]
+        conditions = (*first, *branches[0][0], *branches[1][0])
+        return conditions, branches[0 if outcome else 1][1]
+    if outcome is (expression.operator == "or"):
+        return (*first, *_unknown(parts[1])), outcome
+    second, outcome = evaluated(parts[1], view)
+    return (*first, *second), outcome
+
+
+def _unknown(expression: Expression) -> tuple[None, ...]:
+    return (None,) * _conditions(expression)
+
+
+@dataclass(slots=True)
+class Coverage:
+    """What executions have shown. ``size`` grows with each thing that is new."""
+
+    taken: set[Element] = field(default_factory=set)
+    evaluations: dict[Element, set[Evaluation]] = field(default_factory=dict)
+    deferred: set[tuple[Element, str]] = field(default_factory=set)
+    size: int = 0
+
+    def take(self, element: Element) -> None:
+        """A transition was taken."""
+        self.size += element not in self.taken
+        self.taken.add(element)
+
+    def decide(self, element: Element, evaluation: Evaluation) -> None:
+        """A guard was evaluated."""
+        known = self.evaluations.setdefault(element, set())
+        self.size += evaluation not in known
+        known.add(evaluation)
+
+    def defer(self, element: Element, event: str) -> None:
+        """A state deferred an event."""
+        self.size += (element, event) not in self.deferred
+        self.deferred.add((element, event))
+
+    def join(self, other: Coverage) -> None:
+        """What others have shown, too."""
+        for element in other.taken:
+            self.take(element)
+        for element, known in other.evaluations.items():
+            for evaluation in known:
+                self.decide(element, evaluation)
+        for element, event in other.deferred:
+            self.defer(element, event)
+
+    def shows(self, goal: Goal) -> bool:
+        """Whether a goal is met."""
+        if goal.kind is Kind.TAKEN:
+            return goal.element in self.taken
+        if goal.kind is Kind.DEFERRED:
+            return (goal.element, goal.detail) in self.deferred
+        known = self.evaluations.get(goal.element, set())
+        if goal.kind is Kind.CONDITION:
+            assert isinstance(goal.detail, int)
+            return any(_decides(goal.detail, *pair) for pair in combinations(known, 2))
+        return any(outcome is (goal.kind is Kind.TRUE) for _, outcome in known)
+
+
+def _decides(number: int, one: Evaluation, other: Evaluation) -> bool:
+    """Whether two evaluations show that a condition decides by itself."""
+    if one[1] is other[1] or {one[0][number], other[0][number]} != {True, False}:
+        return False
+    return all(
+        a is b or a is None or b is None
+        for place, (a, b) in enumerate(zip(one[0], other[0], strict=True))
+        if place != number
+    )

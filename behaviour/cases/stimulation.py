@@ -1,0 +1,101 @@
+"""What a search may do to a system from outside: its events, and values for its input ports."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ravenchart.behaviour.interpreter.stimuli import Arrived, Raised
+from ravenchart.behaviour.rules.cells import actions, expressions
+from ravenchart.behaviour.rules.outside import external_events
+from ravenchart.gen.language.terms import (
+    EnumerationType,
+    Expression,
+    IntegerType,
+    Literal,
+    Ns,
+    Operation,
+    Scalar,
+    ScalarType,
+    Set,
+    Type,
+    Value,
+)
+from ravenchart.gen.model.component import Component
+from ravenchart.gen.model.system import End, Instance, System
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """An event of an instance, or an input port; ``type`` is that of the value."""
+
+    instance: str
+    name: str
+    is_port: bool
+    type: Type | None
+    numbers: tuple[int, ...]
+    """Those that matter: what the component compares with, and their neighbours."""
+    events: tuple[str, ...] = ()
+    """What a port raises when something arrives at it or stays away."""
+    max_age: Ns | None = None
+    """Of a port: a value that is older is stale."""
+
+    def drawn(self, at: Ns, chance: random.Random) -> Raised | Arrived:
+        """It comes with a value drawn at random, more often one that matters."""
+        value = None if self.type is None else self._value(self.type, chance)
+        if self.is_port:
+            assert value is not None
+            return Arrived(at, End(self.instance, self.name), value)
+        return Raised(at, self.instance, self.name, value)
+
+    def _value(self, kind: Type, chance: random.Random) -> Value:
+        if isinstance(kind, IntegerType | EnumerationType):
+            return self._scalar(kind, chance)
+        return tuple((one.name, self._scalar(one.type, chance)) for one in kind.fields)
+
+    def _scalar(self, kind: ScalarType, chance: random.Random) -> Scalar:
+        if isinstance(kind, EnumerationType):
+            return chance.choice(kind.literals)
+        inside = [number for number in self.numbers if kind.first <= number <= kind.last]
+        if inside and chance.random() < 0.7:
+            return chance.choice(inside)
+        return chance.choice((kind.first, kind.last, chance.randint(kind.first, kind.last)))
+
+
+def choices(system: System) -> list[Choice]:
+    """Everything that may come from outside, in model order."""
+    fed = {connection.target for connection in system.connections}
+    return [one for instance in system.instances for one in _of_instance(instance, system, fed)]
+
+
+def _of_instance(instance: Instance, system: System, fed: set[End]) -> Iterator[Choice]:
+    component = instance.component
+    numbers = _numbers(component, instance)
+    names = {event for event, row in external_events(component, system) if row != "ports"}
+    for event in component.events:
+        if event.name in names:
+            yield Choice(instance.name, event.name, False, event.type, numbers)
+    for port in component.inputs():
+        if End(instance.name, port.name) not in fed:
+            told = tuple(e for e in (port.on_arrival, port.on_stale, port.on_overflow) if e)
+            yield Choice(instance.name, port.name, True, port.type, numbers, told, port.max_age)
+
+
+def _numbers(component: Component, instance: Instance) -> tuple[int, ...]:
+    """The numbers that a component compares with, and those beside them."""
+    found = {value for _, value in instance.parameters if isinstance(value, int)}
+    decided = [*expressions(component)]
+    decided += [one.value for one in actions(component) if isinstance(one, Set)]
+    for expression in decided:
+        found.update(_literals(expression))
+    return tuple(sorted({number + beside for number in found for beside in (-1, 0, 1)}))
+
+
+def _literals(expression: Expression) -> Iterator[int]:
+    match expression:
+        case Literal(value=int(value)):
+            yield value
+        case Operation(operands=operands):
+            for operand in operands:
+                yield from _literals(operand)

@@ -1,0 +1,186 @@
+"""Test cases that are found for charts: what counts as shown, and that a search shows it."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from ravenchart.behaviour.cases.goals import Coverage, Kind, goals
+from ravenchart.behaviour.cases.search import Found, Search
+from ravenchart.behaviour.cases.watched import watched
+from ravenchart.behaviour.interpreter.machine import Machine
+from ravenchart.behaviour.interpreter.stimuli import read, written
+from ravenchart.behaviour.interpreter.traces import Record
+from ravenchart.command_line import main
+from ravenchart.commands import simulate
+from ravenchart.commands import tests as command
+from ravenchart.gen.model.system import System
+from ravenchart.paths import ROOT
+from tests.support.interpreted import component_system, stimuli_of
+
+PART = """
+ports:
+  level: {in: Small, max_age: 30 ms}
+port_region: {period: 10 ms, wcet: 1 us}
+events: {Go: {external: true}, Dial: {type: Small, external: true}, Later: {external: true}}
+regions:
+  Main:
+    period: 10 ms
+    wcet: 1 us
+    queue: 4
+    deferred: 2
+    initial: A
+    states: {A: {defer: [Later]}, B: {}, C: {}}
+    transitions:
+      dial: {from: A, to: B, on: Dial, guard: event > 3 and (fresh(level) or level = 7)}
+      back: {from: B, to: A, when: level > 5}
+      late: {from: B, to: C, after: 200 ms}
+      home: {from: C, to: A, on: Later}
+"""
+BUS = """
+buses:
+  can: {bit_rate: 500 kbit/s, driver_wcet: 1 us, receive_depth: 4, transmit_depth: 4}
+messages:
+  level_in: {bus: can, id: 0x100, to: unit.level, period: 10 ms}
+processors:
+  reception: {node: board, released_by: can, period: 10 ms, stack: 8 KiB,
+              activities: [can.receive]}
+  runner: {node: board, stack: 8 KiB, activities: [unit.ports, unit.Main]}
+"""
+
+
+@pytest.fixture(scope="module")
+def system() -> System:
+    """One chart with decisions of several conditions."""
+    return component_system(PART, more=BUS)
+
+
+@pytest.fixture(scope="module")
+def found(system: System) -> Found:
+    """What a search finds for it."""
+    return Search(system, 60_000).found()
+
+
+def _shown(system: System, events: str) -> set[str]:
+    coverage = Coverage()
+    for _ in watched(system, coverage).run(stimuli_of(events, system)):
+        pass
+    return {g.text() for g in goals(system.instances[0].component) if coverage.shows(g)}
+
+
+def test_every_goal_is_named_once(system: System) -> None:
+    every = list(goals(system.instances[0].component))
+    kinds = [goal.kind for goal in every]
+    assert len(set(every)) == len(every)
+    assert [kinds.count(kind) for kind in Kind] == [4, 2, 2, 3, 1]
+
+
+def test_one_execution_shows_what_it_executes_and_nothing_else(system: System) -> None:
+    shown = _shown(system, "- {at: 20 ms, raise: unit.Dial, with: 3}\n- {until: 50 ms}\n")
+    assert shown == {"the guard of Part.Main.dial is false"}
+
+
+def test_a_condition_decides_only_where_nothing_else_differs(system: System) -> None:
+    """The third condition is never true here."""
+    events = """
+- {at: 20 ms, raise: unit.Dial, with: 9}
+- {at: 30 ms, put: unit.level, value: 7}
+- {at: 40 ms, raise: unit.Dial, with: 3}
+- {at: 50 ms, raise: unit.Dial, with: 4}
+- {until: 100 ms}
+"""
+    decided = {text for text in _shown(system, events) if "decides" in text}
+    assert decided == {
+        "condition 1 of the guard of Part.Main.dial decides it",
+        "condition 2 of the guard of Part.Main.dial decides it",
+    }
+
+
+def test_a_search_shows_every_goal(found: Found) -> None:
+    assert [goal.text() for goal in found.open] == []
+    assert not found.stuck
+    assert len(found.cases) < len(found.goals)
+
+
+def test_each_case_shows_what_it_says(system: System, found: Found) -> None:
+    coverage = Coverage()
+    for case in found.cases:
+        before = {goal for goal in found.goals if coverage.shows(goal)}
+        for _ in watched(system, coverage).run(case.stimuli):
+            pass
+        now = {goal for goal in found.goals if coverage.shows(goal)}
+        assert set(case.shows) == now - before
+
+
+def test_to_be_watched_changes_nothing(system: System, found: Found) -> None:
+    for case in found.cases:
+        seen = list(watched(system, Coverage()).run(case.stimuli))
+        assert seen == list(Machine(system).run(case.stimuli))
+
+
+def test_the_same_effort_finds_the_same_cases(system: System, found: Found) -> None:
+    assert Search(system, 60_000).found() == found
+
+
+def test_what_cannot_be_is_left_open() -> None:
+    """The second of two complementary guards is only looked at where it is true."""
+    part = PART.replace(
+        "      home: {from: C, to: A, on: Later}\n",
+        "      home: {from: C, to: A, on: Go, guard: level > 5}\n"
+        "      stay: {from: C, to: B, on: Go, guard: level <= 5}\n",
+    )
+    left = [goal for goal in Search(component_system(part, more=BUS), 30_000).found().open]
+    assert "the guard of Part.Main.stay is false" in [goal.text() for goal in left]
+
+
+def test_a_written_file_is_read_back(system: System, found: Found) -> None:
+    for case in found.cases:
+        text = written(case.stimuli, ["one comment"])
+        assert text.startswith("# one comment\n")
+        assert read(text, "case.yaml", system) == (case.stimuli, ())
+
+
+@pytest.fixture
+def crossing(tmp_path: Path) -> Path:
+    """A copy of an example without bodies of a user."""
+    copy = Path(shutil.copytree(ROOT / "examples" / "crossing", tmp_path / "crossing"))
+    return copy / "model.yaml"
+
+
+@pytest.mark.slow
+def test_the_program_plays_the_cases_as_the_interpreter_does(
+    crossing: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["tests", str(crossing)]) == 0
+    said = capsys.readouterr().out
+    assert "transitions taken                        13 of 13\n" in said
+    assert "not shown" not in said
+    count = len(list((crossing.parent / "cases").glob("*.yaml")))
+    assert f"in {count} of {count} cases" in said
+    #  a program that leaves one step out
+    honest = simulate.simulated_by_interpreter
+
+    def more(*given: object) -> list[Record]:
+        return honest(*given)[:-1]  # type: ignore[arg-type]
+
+    monkeypatch.setattr(command, "simulated_by_interpreter", more)
+    assert main(["tests", str(crossing)]) == 1
+    assert "execute different behaviours" in capsys.readouterr().out
+
+
+def test_old_cases_are_replaced_and_other_files_stay(crossing: Path) -> None:
+    folder = crossing.parent / "cases"
+    folder.mkdir()
+    (folder / "case-77.yaml").write_text("- {until: 1 s}\n")
+    (folder / "mine.yaml").write_text("- {until: 1 s}\n")
+    assert main(["tests", str(crossing), "--effort", "500", "--no-run"]) == 0
+    names = {path.name for path in folder.iterdir()}
+    assert "case-01.yaml" in names and "mine.yaml" in names and "case-77.yaml" not in names
+
+
+def test_a_model_with_drivers_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    model = ROOT / "examples" / "surgical_robot" / "model.yaml"
+    assert main(["tests", str(model), "--no-run"]) == 1
+    assert "RV-1008" in capsys.readouterr().err
