@@ -39,6 +39,7 @@ def execute(options: argparse.Namespace) -> int:
     for made in programs.programs_of(checked):
         with progress(f"compile {made.node}"):
             program = made.build(options.mode, options.driver, options.registers, warn, board)
-        answer.programs.append(Built(made.node, str(program)))
-        print(f"built {program}")
+        memory = made.memory(program)
+        answer.programs.append(Built(made.node, str(program), memory))
+        print(f"built {program}\n  {memory.shown()}")
     return OK
