@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import re
 import sys
 from collections.abc import Callable
@@ -137,8 +136,13 @@ class Program:
         if stacks_needed:
             if stacks.without_graph(stacks.objects_of(made)):
                 compiled("-f")  # objects of another build, which asked for no call graphs
+                stacks.must_have_graphs(stacks.objects_of(made))
             self._examine(made, mode, target, board)
         return made
+
+    def digests(self) -> dict[str, str]:
+        """SHA-256 of each of its Ada sources, by the name from the folder of the model."""
+        return stacks.digests((self.generated, *self._user_folders()), self.checked.folder)
 
     def memory(self, made: Path) -> Memory:
         """The stacks and the memory of a program that was built."""
@@ -150,9 +154,6 @@ class Program:
         """Refused where a stack is too small or has no bound."""
         if stacks.is_known(made, target):
             return
-        folders = (self.generated, *self._user_folders())
-        files = sorted(path for home in folders for path in home.glob("*.ad[sb]"))
-        named = [(os.path.relpath(path, self.checked.folder), path) for path in files]
         stacks.keep(
             made,
             stacks.examine(
@@ -164,7 +165,8 @@ class Program:
                     mode,
                     f"{board.compiler}-" if board else "",
                     self.checked.sources,
-                    stacks.digests(named),
+                    self.digests(),
+                    self.checked.folder,
                 )
             ),
         )

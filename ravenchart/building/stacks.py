@@ -54,6 +54,8 @@ class Made:
     sources: Mapping[str, tuple[str, ...]]
     """The lines of the model's files, for messages."""
     digests: Mapping[str, str]
+    folder: Path
+    """Of the model."""
 
 
 def objects_of(image: Path) -> tuple[Path, ...]:
@@ -73,6 +75,16 @@ def without_graph(objects: Iterable[Path]) -> bool:
     return any(not _is_fresh(one) for one in objects)
 
 
+def must_have_graphs(objects: Iterable[Path]) -> None:
+    """ToolFailed where the compiler has written no call graph of an object."""
+    missing = next((one for one in objects if not _is_fresh(one)), None)
+    if missing is not None:
+        raise ToolFailed(
+            f"{missing}: error: the compiler has written no call graph: {CALL_GRAPHS} needs GCC "
+            "10 or later"
+        )
+
+
 def _is_fresh(item: Path) -> bool:
     made, unit = item.with_suffix(".ci"), item.with_suffix(".ali")
     if not made.is_file():
@@ -87,8 +99,12 @@ def record_of(image: Path) -> Path:
 
 def keep(image: Path, found: Memory) -> None:
     """Keep what is found beside the program."""
-    text = json.dumps(asdict(found), indent=1) + "\n"
-    record_of(image).write_text(text, encoding="utf-8")
+    write(found, record_of(image))
+
+
+def write(found: Memory, path: Path) -> None:
+    """Write a record of stacks and memory."""
+    path.write_text(json.dumps(asdict(found), indent=1) + "\n", encoding="utf-8")
 
 
 def kept(image: Path) -> Memory:
@@ -127,9 +143,15 @@ def examine(made: Made) -> Memory:
         files = {one.file for d in wrong for one in (d.origin, *(place for place, _ in d.notes))}
         lines = {name: _lines(name) for name in files - made.sources.keys()}
         raise Refused(render_all(wrong, {**made.sources, **lines}), wrong)
+    for step in (step for one in stacks for step in one.path):
+        step.called = _named(step.called, made.folder)
     sections = memory.sections(_said(made, "size", "-A"))
-    parts = memory.parts(listed, _owners(made.system), sections)
+    parts = list(memory.parts(listed, _owners(made.system), sections))
     flash, ram = memory.totals(sections)
+    if made.target.facts.stacks.library is not None:  # on a board they are in the tasks
+        given = sum(one.size or 0 for one in stacks)
+        parts.append(memory.Part("stacks of tasks", 0, given))
+        ram += given
     return Memory(
         made.system.nodes[0].name,
         made.target.name,
@@ -143,9 +165,10 @@ def examine(made: Made) -> Memory:
     )
 
 
-def digests(files: Iterable[tuple[str, Path]]) -> dict[str, str]:
-    """SHA-256 of each file, by the name it is shown with."""
-    return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files}
+def digests(folders: Iterable[Path], folder: Path) -> dict[str, str]:
+    """SHA-256 of each Ada source in folders, by its name from the folder of the model."""
+    files = sorted(path for home in folders for path in home.glob("*.ad[sb]"))
+    return {named(p, folder): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
 
 
 def _said(made: Made, tool: str, *options: str) -> str:
@@ -199,6 +222,8 @@ def _tasks(made: Made, depths: Depths, by_name: Mapping[str, symbols.Symbol]) ->
     for root in sorted(roots, key=lambda r: (order.get(_unit(r), len(order)), r)):
         task, _, declared = known.get(_unit(root), (graph.ada_name(root), None, None))
         name = graph.symbol(root)
+        if any(task == bus.name for bus in made.system.buses):  # several tasks of one driver
+            task = f"{task}.{name.rpartition('__')[2].removesuffix(TASK)}"
         size = values.number(f"{name.rpartition('__')[0]}__stack_bytes")
         if size is None:
             size = values.number(f"{name.removesuffix('B')}Z")
@@ -228,7 +253,7 @@ def _known(system: System) -> dict[str, tuple[str, Origin, int | None]]:
         if node.probe is not None:
             found[f"{root}__host_probe"] = f"{node.name}.probe", node.origin, None
     for bus in system.buses:
-        found[f"{root}__{bus.name.lower()}"] = f"{bus.name}.driver", bus.origin, None
+        found[f"{root}__{bus.name.lower()}"] = bus.name, bus.origin, None
     return found
 
 
@@ -262,7 +287,7 @@ def _stack(
 
 
 def _path(depths: Depths, root: str) -> list[PathStep]:
-    return [PathStep(_function(one.title), one.size, _near(one.place)) for one in depths.path(root)]
+    return [PathStep(_function(one.title), one.size, one.place) for one in depths.path(root)]
 
 
 def _function(title: str) -> str:
@@ -299,7 +324,8 @@ def _too_small(made: Made, one: Stack) -> Iterator[Diagnostic]:
     if one.size is None or one.bound <= one.size:
         return
     places = {name: origin for name, origin, _ in _known(made.system).values()}
-    origin = places.get(one.task, made.system.nodes[0].origin)
+    owner_name = one.task if one.task in places else one.task.partition(".")[0]
+    origin = places.get(owner_name, made.system.nodes[0].origin)
     notes = [(_origin(step.called) or origin, f"{step.bytes:,} bytes: {step.function}")
              for step in one.path]  # fmt: skip
     if one.ending + one.interrupts == one.bound:
@@ -313,7 +339,8 @@ def _too_small(made: Made, one: Stack) -> Iterator[Diagnostic]:
         hint = f"it needs {least} KiB"
     yield error(
         "RV-1501", origin,
-        f"the stack of {one.task} is too small: it takes up to {one.bound:,} bytes > {one.size:,} bytes",
+        f"the stack of {one.task} is too small: it takes up to {one.bound:,} bytes > "
+        f"{one.size:,} bytes",
         notes=notes, hint=hint,
     )  # fmt: skip
 
@@ -372,6 +399,23 @@ def _near(place: str) -> str:
     """A place with its file from the folder of the call, where it is below that."""
     here = f"{os.getcwd()}{os.sep}"
     return place.removeprefix(here)
+
+
+def _named(place: str, folder: Path) -> str:
+    """A place with its file from the checkout or package, else from the folder of the model."""
+    found = _PLACE.match(place)
+    if found is None:
+        return place
+    return f"{named(Path(found[1]), folder)}:{found[2]}:{found[3]}"
+
+
+def named(path: Path, folder: Path) -> str:
+    """The name of a file: from the folder of the model, else from the checkout or package."""
+    whole = Path(os.path.abspath(path))
+    for base in (Path(os.path.abspath(folder)), ROOT):
+        if whole.is_relative_to(base):
+            return whole.relative_to(base).as_posix()
+    return Path(os.path.relpath(whole, os.path.abspath(folder))).as_posix()
 
 
 def _lines(name: str) -> tuple[str, ...]:

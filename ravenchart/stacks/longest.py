@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+from typing import NamedTuple
 
 from .graph import INDIRECT, Frame, Function, Graph, plain
 
@@ -84,60 +85,75 @@ class Missing:
 Problem = Recursion | Indirect | Unbounded | Missing
 
 
+class _Best(NamedTuple):
+    """The depth from a function on, and the callee that it comes from."""
+
+    depth: int
+    callee: str
+
+
 class Depths:
-    """Longest paths in one graph; each function is looked at once."""
+    """Longest paths in one graph; each function is looked at once.
+
+    What an ending calls is looked at again, apart: there, a call of an ending is left out.
+    """
 
     def __init__(self, graph: Graph, rules: Rules) -> None:
         self.graph = graph
         self.rules = rules
         self.problems: dict[Problem, None] = {}
-        self._best: dict[str, tuple[int, str]] = {}
-        """Title to the depth from there, and the callee that it comes from."""
+        self._endings = {t for t, f in graph.items() if plain(f.name) in rules.endings}
+        self._ended: dict[str, _Best] = {}
+        """Of an ending and what it calls."""
+        self._best: dict[str, _Best] = {}
 
     def depth(self, root: str) -> int:
         """Bytes from the root on; what has no bound is among the problems."""
-        for title in (*self._endings(), root):
-            self._walk(title)
-        return self._best[root][0]
+        for title in sorted(self._endings - self._best.keys()):
+            self._walk(title, self._ended, inside=True)
+            self._best[title] = self._ended[title]
+        self._walk(root, self._best, inside=False)
+        return self._best[root].depth
 
     def path(self, root: str) -> tuple[Step, ...]:
         """The frames of the longest path, the root first."""
         self.depth(root)
         steps: list[Step] = []
-        title, place = root, ""
+        title, place, best = root, "", self._best
         while title:
-            below = self._best[title][1]
-            rest = self._best[below][0] if below else 0
-            steps.append(Step(title, self._best[title][0] - rest, place))
+            if title in self._endings:
+                best = self._ended
+            below = best[title].callee
+            rest = best[below].depth if below else 0
+            steps.append(Step(title, best[title].depth - rest, place))
             place = self.graph[title].calls.get(below, "") if title in self.graph else ""
             title = below
         return tuple(steps)
 
-    def _endings(self) -> list[str]:
-        return [t for t, f in self.graph.items() if plain(f.name) in self.rules.endings]
-
-    def _walk(self, root: str) -> None:
+    def _walk(self, root: str, best: dict[str, _Best], *, inside: bool) -> None:
         """Depth first, without recursion of its own."""
-        if root in self._best:
+        if root in best:
             return
-        ends = set(self._endings())
-        open_: dict[str, list[str]] = {root: self._callees(root)}
+        open_: dict[str, list[str]] = {root: self._below(root, inside=inside)}
         while open_:
             title, waiting = next(reversed(open_.items()))
             if waiting:
                 callee = waiting.pop()
-                if callee in self._best or (callee in ends and ends & open_.keys()):
-                    continue
                 if callee in open_:
                     self._recursion(list(open_), callee)
-                else:
-                    open_[callee] = self._callees(callee)
+                elif callee not in best:
+                    open_[callee] = self._below(callee, inside=inside)
             else:
                 del open_[title]
-                below = [c for c in self._callees(title) if c in self._best]
-                deepest = max(below, key=lambda c: (self._best[c][0], c), default="")
-                rest = self._best[deepest][0] if deepest else 0
-                self._best[title] = self._size(title) + rest, deepest
+                known = [c for c in self._below(title, inside=inside) if c in best]
+                deepest = max(known, key=lambda c: (best[c].depth, c), default="")
+                rest = best[deepest].depth if deepest else 0
+                best[title] = _Best(self._size(title) + rest, deepest)
+
+    def _below(self, title: str, *, inside: bool) -> list[str]:
+        """What is called, but for an ending from inside of one."""
+        found = self._callees(title)
+        return [one for one in found if one not in self._endings] if inside else found
 
     def _callees(self, title: str) -> list[str]:
         """What a function calls, pointers resolved and the library folded."""

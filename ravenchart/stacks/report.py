@@ -24,7 +24,7 @@ class Stack(Described):
     """The stack of a task, of the environment task or of interrupts."""
 
     task: str
-    """The processor, `NODE.supervision`, `NODE.probe`, `BUS.driver`, or the name of the task."""
+    """The processor, `NODE.supervisor`, `NODE.probe`, `BUS.TASK` of a driver, or the task."""
     bound: int
     """The most bytes that it takes: the path or the ending, and interrupts."""
     interrupts: int
@@ -74,7 +74,7 @@ class Memory(Described):
     flash: int
     """Bytes of code, constants and initial values in all."""
     ram: int
-    """Bytes of variables in all, stacks that the operating system gives left out."""
+    """Bytes of variables and stacks in all, the stack of the main program left out on a host."""
     sources: dict[str, str]
     """SHA-256 of each Ada source of the program."""
 
