@@ -199,7 +199,9 @@ def _rules(made: Made, linked: frozenset[str]) -> Rules:
     regions = [r for c in made.system.components for r in c.regions]
     timers = max((_timers(r.transitions) for r in regions), default=0)
     bounds = {
-        name: Bound(one["bytes"] + timers * one.get("timer", 0), one["why"])
+        name: Bound(
+            one.get("bytes", 0) + timers * one.get("timer", 0), one["why"], one.get("depth", 1)
+        )
         for name, one in given.items()
     }
     return Rules(facts.library, bounds, facts.pointers, linked, ENDINGS)

@@ -12,11 +12,13 @@ from .graph import INDIRECT, Frame, Function, Graph, plain
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The most bytes that a frame takes although the compiler has none, and why that is so."""
+    """What a function takes at most although the call graph does not say it, and why."""
 
     extra: int
-    """Beyond the part of the frame that has a size."""
+    """Bytes of a frame beyond the part that has a size."""
     why: str
+    depth: int = 1
+    """How many frames it has at once: it may call itself that often, less one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +28,7 @@ class Rules:
     library: int | None = None
     """Bytes for any call of what is not in the graph; None: all must be in it."""
     bounds: Mapping[str, Bound] = field(default_factory=dict)
-    """Symbol to bound, of frames of dynamic size."""
+    """Symbol to bound, of frames of dynamic size and functions that call themselves."""
     pointers: Mapping[str, Sequence[str]] = field(default_factory=dict)
     """Symbol of a caller to patterns of the symbols that it calls through pointers."""
     linked: frozenset[str] = frozenset()
@@ -47,6 +49,10 @@ class Step:
 
 LIBRARY = "the run-time library"
 """The title of all that is not in the graph."""
+
+FINALIZATION = "___finalization"
+"""In the symbols of subprograms that GNAT adds where it executes contracts. They ask the run-time
+library through a pointer (a soft link) for the exception that is propagated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +145,8 @@ class Depths:
             title, waiting = next(reversed(open_.items()))
             if waiting:
                 callee = waiting.pop()
+                if callee == title and self._times(title) > 1:
+                    continue
                 if callee in open_:
                     self._recursion(list(open_), callee)
                 elif callee not in best:
@@ -162,7 +170,9 @@ class Depths:
             return []
         found: list[str] = []
         for callee, place in function.calls.items():
-            if callee == INDIRECT:
+            if callee == INDIRECT and FINALIZATION in function.name and self._has_allowance:
+                found.append(LIBRARY)
+            elif callee == INDIRECT:
                 found += self._through_pointers(function, place)
             elif callee in self.graph:
                 found.append(callee)
@@ -171,6 +181,10 @@ class Depths:
             elif callee in self.rules.linked:
                 self.problems[Missing(callee, function.name)] = None
         return sorted(set(found), reverse=True)
+
+    @property
+    def _has_allowance(self) -> bool:
+        return self.rules.library is not None
 
     def _through_pointers(self, function: Function, place: str) -> list[str]:
         known = self.rules.pointers.get(plain(function.name))
@@ -184,13 +198,20 @@ class Depths:
         if title == LIBRARY:
             return self.rules.library or 0
         function = self.graph[title]
-        if function.frame is not Frame.DYNAMIC:
-            return function.size
         bound = self.rules.bounds.get(plain(function.name))
-        if bound is None:
-            self.problems[Unbounded(function.name, function.place, function.objects)] = None
-            return function.size
-        return function.size + bound.extra
+        extra = 0
+        if function.frame is Frame.DYNAMIC:
+            if bound is None:
+                self.problems[Unbounded(function.name, function.place, function.objects)] = None
+            else:
+                extra = bound.extra
+        return (function.size + extra) * self._times(title)
+
+    def _times(self, title: str) -> int:
+        """How many frames of a function are on a stack at once."""
+        function = self.graph.get(title)
+        bound = self.rules.bounds.get(plain(function.name)) if function else None
+        return 1 if bound is None else bound.depth
 
     def _recursion(self, path: list[str], back: str) -> None:
         cycle = path[path.index(back) :]

@@ -170,7 +170,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, bool], Bui
             checked = checking.check(model)
             generation.write_program(checked)
             program = programs.programs_of(checked)[0]
-            made[mode, supervised] = checked, program, program.build(mode)
+            image = program.build(mode, stacks_needed=False)  # one fault is recursion
+            made[mode, supervised] = checked, program, image
         return made[mode, supervised]
 
     return build
@@ -270,7 +271,8 @@ def test_a_processor_that_was_silent_and_comes_back_goes_on_in_the_grace(
     program = programs.programs_of(checked)[0]
     monkeypatch.setenv("RAVENCHART_TEST_FAULT", "busy")
     trace = program.generated / "trace.json"
-    result = run.run_alone(program.build(), trace, SECONDS, tmp_path / "report")
+    image = program.build(stacks_needed=False)
+    result = run.run_alone(image, trace, SECONDS, tmp_path / "report")
     #  it has lost its urgency, but none of its protected objects
     assert "processor_3 is silent" in result.failures[0]
     assert not any("has ended" in failure for failure in result.failures), result.failures

@@ -143,6 +143,14 @@ def test_a_call_through_a_pointer_has_no_bound() -> None:
     assert list(depths.problems) == [Indirect("a", "a.adb:5:7")]
 
 
+def test_a_soft_link_of_what_gnat_adds_is_a_call_of_the_library() -> None:
+    found = _graph({"a___finalization_controller.3": 10}, [])
+    found["a___finalization_controller.3"].calls[graph.INDIRECT] = "a.adb:5:7"
+    depths = Depths(found, HOST)
+    assert depths.depth("a___finalization_controller.3") == 110
+    assert not depths.problems
+
+
 def test_a_pointer_whose_targets_are_known_is_followed() -> None:
     found = _graph({"a": 10, "x_E1s": 500, "x_B2s": 7}, [("a", graph.INDIRECT)])
     depths = Depths(found, Rules(pointers={"a": ("*_[BE][0-9]s",)}))
@@ -164,6 +172,17 @@ def test_a_frame_of_dynamic_size_needs_a_bound() -> None:
     known = Depths(graph.read([text]), Rules(bounds={"c": Bound(1000, "measured")}))
     assert known.depth("a") == 1050
     assert not known.problems
+
+
+def test_a_function_that_calls_itself_can_have_a_bound() -> None:
+    found = _graph({"a": 10, "b": 20, "c": 7}, [("a", "b"), ("b", "b"), ("b", "c")])
+    depths = Depths(found, Rules(bounds={"b": Bound(0, "once for each byte", depth=65)}))
+    assert depths.depth("a") == 10 + 65 * 20 + 7
+    assert not depths.problems
+    found["c"].calls["b"] = "a.adb:6:6"  # in a circle with another one it has none
+    wrong = Depths(found, Rules(bounds={"b": Bound(0, "once for each byte", depth=65)}))
+    wrong.depth("a")
+    assert list(wrong.problems) == [Recursion(("b", "c", "b"), "a.adb:6:6")]
 
 
 @pytest.mark.parametrize(
