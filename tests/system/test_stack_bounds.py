@@ -206,6 +206,19 @@ def test_what_has_no_bound_is_refused_where_it_stands(
     assert said.count("error:") == 1
 
 
+@pytest.mark.parametrize("mode", ["checks", "release"])
+@pytest.mark.parametrize("driver", ["loopback", "slcan", "bus", "socketcan", "ctucanfd"])
+def test_with_each_driver_every_stack_has_a_bound(driver: str, mode: str) -> None:
+    program = _program(ROOT / "examples" / "cartesian_robot")
+    found = program.memory(program.build(mode, driver))
+    assert all(one.size is None or one.bound <= one.size for one in found.stacks)
+    drivers = [one for one in found.stacks if one.task.startswith("robot_bus.")]
+    assert drivers and all(one.size == 65_536 for one in drivers)
+    assert (found.flash, found.ram) == tuple(
+        sum(getattr(one, kind) for one in found.parts) for kind in ("flash", "ram")
+    )
+
+
 def test_objects_of_a_build_without_call_graphs_are_compiled_once_more(tmp_path: Path) -> None:
     program = _program(_devices(tmp_path))
     image = program.build()
