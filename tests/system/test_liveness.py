@@ -305,6 +305,7 @@ def test_the_command_fails_and_its_last_lines_have_the_reason(
 ) -> None:
     model = built("checks", True)[0].path
     monkeypatch.setenv("RAVENCHART_TEST_FAULT", "assert")
+    monkeypatch.setattr(programs.Program, "_examine", lambda *_: None)  # one fault is recursion
     assert main(["run", str(model), "--seconds", "2", "--report", str(tmp_path / "report")]) == 1
     last = capsys.readouterr().out.rstrip().splitlines()[-2:]
     assert any("verdict: FAIL" in line and "ASSERTION_ERROR" in line for line in last)
