@@ -35,6 +35,7 @@ GROUPS: Mapping[str, str] = {
     "12": "Commands and devices",
     "13": "Scenarios",
     "14": "Requirements",
+    "15": "Stacks and memory",
 }
 
 CODES: Mapping[str, str] = {
@@ -226,6 +227,10 @@ CODES: Mapping[str, str] = {
     "RV-1404": "An element, scenario or test names a requirement that the list lacks.",
     "RV-1405": "No scenario or test names a requirement, or none of its tests passed.",
     "RV-1406": "A claim about the elements of a requirement is not met, or there is none.",
+    "RV-1501": "A stack is smaller than the longest path of its task.",
+    "RV-1502": "Subprograms call each other in a circle, so a stack has no bound.",
+    "RV-1503": "A call goes through a pointer, so what it takes of a stack is not known.",
+    "RV-1504": "A frame has a size that is computed at run time, and no bound is known.",
 }
 """Every code with what it says; docs/errors.md is written from this table."""
 

@@ -3,7 +3,8 @@
 The one source of `ravenchart explain` and docs/errors.md, beside the table of meanings in
 `gen.diagnostics`. ``bases`` holds correct models. An entry of ``NN.yaml`` names one of them,
 makes of it the corrected model (``also``) and of that the wrong one (``wrong``). Each edit is
-a pair: text that stands once in the model, and its replacement. Tests apply all of them.
+a pair: text that stands once in the model, and its replacement. Tests apply all of them. An entry
+without ``base`` has a reason alone.
 """
 
 from __future__ import annotations
@@ -29,12 +30,15 @@ AROUND = 2
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What a code means, why it matters, and two models: with the error and without."""
+    """What a code means, why it matters, and two models: with the error and without.
+
+    A code that is not about a model has none.
+    """
 
     code: str
     why: str
-    wrong: str
-    corrected: str
+    wrong: str | None
+    corrected: str | None
 
     @property
     def meaning(self) -> str:
@@ -43,6 +47,8 @@ class Explanation:
 
     def difference(self) -> tuple[str, ...]:
         """The correction: lines to remove (-) and to add (+), with some lines around them."""
+        if self.wrong is None or self.corrected is None:
+            return ()
         made = difflib.unified_diff(
             self.wrong.splitlines(), self.corrected.splitlines(), lineterm="", n=AROUND
         )
@@ -62,9 +68,12 @@ def explanations() -> dict[str, Explanation]:
 
 
 def _explanation(code: str, entry: dict[str, Any]) -> Explanation:
+    why = " ".join(entry["why"].split())
+    if "base" not in entry:
+        return Explanation(code, why, None, None)
     corrected = edited(_base(entry["base"]), entry.get("also", ()))
     wrong = edited(corrected, entry["wrong"])
-    return Explanation(code, " ".join(entry["why"].split()), wrong, corrected)
+    return Explanation(code, why, wrong, corrected)
 
 
 def edited(model: str, edits: Iterable[Sequence[str]]) -> str:
@@ -88,7 +97,9 @@ def text(code: str) -> str:
     found = explanations().get(code)
     if found is not None:
         lines += ["", *textwrap.wrap(found.why, WIDTH)]
-        lines += ["", "Remove the lines with -, add the lines with +:", "", *found.difference()]
+        difference = found.difference()
+        if difference:
+            lines += ["", "Remove the lines with -, add the lines with +:", "", *difference]
     return "\n".join(lines) + "\n"
 
 
@@ -110,5 +121,7 @@ def page() -> str:
             lines += ["", f"### {code}", "", CODES[code]]
             found = explanations().get(code)
             if found is not None:
-                lines += [found.why, "", "```diff", *found.difference(), "```"]
+                lines.append(found.why)
+                difference = found.difference()
+                lines += ["", "```diff", *difference, "```"] if difference else []
     return "\n".join(lines) + "\n"

@@ -20,9 +20,10 @@ from ravenchart.gen.emit.program import (
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
 from ravenchart.proof.proving import Task
+from ravenchart.stacks.report import Memory
 from ravenchart.tools import toolchain
 
-from . import images, targets
+from . import images, stacks, targets
 from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {
@@ -97,9 +98,11 @@ class Program:
         registers: str = "simulated",
         warn: Callable[[str], None] = to_standard_error,
         board: targets.Board | None = None,
+        stacks_needed: bool = True,
     ) -> Path:
         """Compile it; the path of the executable. ToolFailed with the compiler's words, or
-        where the memory of the target has no room for it.
+        where the memory of the target has no room for it. Refused where a stack is too small;
+        without ``stacks_needed`` nobody looks.
 
         ``warn`` gets the compiler's warnings. Without a ``board`` it is for this machine.
 
@@ -119,13 +122,54 @@ class Program:
         if board:
             variables |= board.scenario()
             options = [*board.options(), *options]
-        warnings = toolchain.run("gprbuild", options, self.project.parent, variables)
-        if warnings.strip():
-            warn(warnings.rstrip())
+        options += ["-cargs:Ada", stacks.CALL_GRAPHS, "-gargs"]
         made = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+
+        def compiled(*more: str) -> None:
+            said = toolchain.run("gprbuild", [*options, *more], self.project.parent, variables)
+            if said.strip():
+                warn(said.rstrip())
+
+        compiled()
         if target.facts.memory:
             images.check(made, target)
+        if stacks_needed:
+            if stacks.without_graph(stacks.objects_of(made)):
+                compiled("-f")  # objects of another build, which asked for no call graphs
+                stacks.must_have_graphs(stacks.objects_of(made))
+            self._examine(made, mode, target, board)
         return made
+
+    def digests(self) -> dict[str, str]:
+        """SHA-256 of each of its Ada sources, by the name from the folder of the model."""
+        return stacks.digests((self.generated, *self._user_folders()), self.checked.folder)
+
+    def memory(self, made: Path) -> Memory:
+        """The stacks and the memory of a program that was built."""
+        return stacks.kept(made)
+
+    def _examine(
+        self, made: Path, mode: str, target: targets.Target, board: targets.Board | None
+    ) -> None:
+        """Refused where a stack is too small or has no bound."""
+        if stacks.is_known(made, target):
+            return
+        stacks.keep(
+            made,
+            stacks.examine(
+                stacks.Made(
+                    self.part,
+                    made,
+                    stacks.objects_of(made),
+                    target,
+                    mode,
+                    f"{board.compiler}-" if board else "",
+                    self.checked.sources,
+                    self.digests(),
+                    self.checked.folder,
+                )
+            ),
+        )
 
     def _check_addresses(self) -> None:
         """Refused where a device with registers has no address."""

@@ -68,6 +68,37 @@ class Emulator(_Form):
     hint: str
 
 
+class InterruptStack(_Form):
+    """Where interrupts are handled: the symbols around it, how many of it there are, the handlers.
+
+    ``frame``: bytes that each level takes for itself.
+    """
+
+    first: str
+    last: str
+    count: int = Field(ge=1)
+    root: str
+    frame: int = Field(ge=0)
+
+
+class Interrupted(_Form):
+    """What an interrupt takes of the stack of its task: a frame, and what is called from there."""
+
+    frame: int = Field(ge=0)
+    calls: tuple[str, ...]
+
+
+class Stacks(_Form):
+    """What is known of stacks beside the program: see docs/memory.md."""
+
+    library: int | None = Field(default=None, gt=0)
+    interrupted: Interrupted | None = None
+    environment: tuple[str, str] | None = None
+    on_end: tuple[str, ...] = ()
+    pointers: dict[str, tuple[str, ...]] = {}
+    interrupts: InterruptStack | None = None
+
+
 class TargetForm(_Form):
     """``target.toml``."""
 
@@ -77,6 +108,7 @@ class TargetForm(_Form):
     tick: PositiveSpan | None = None
     overheads: Overheads | None = None
     memory: dict[str, Region] = {}
+    stacks: Stacks = Stacks()
     can: tuple[CanController, ...] = ()
     emulator: Emulator | None = None
 

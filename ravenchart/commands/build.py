@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
+from pathlib import Path
 
 from ravenchart.building import generation, programs
+from ravenchart.building.stacks import write
 from ravenchart.failures import OK
 from ravenchart.terminal import progress
 
@@ -27,6 +29,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
         "--registers", choices=programs.REGISTERS, default="simulated",
         help="simulated: the bodies in simulated/; hardware: at the addresses of the devices",
     )  # fmt: skip
+    sub.add_argument(
+        "--memory", type=Path, metavar="FILE",
+        help="write the stacks and the memory there; of several nodes FILE-NODE for each",
+    )  # fmt: skip
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -36,9 +42,18 @@ def execute(options: argparse.Namespace) -> int:
     generated = common.tell_written(generation.write_program(checked), options.answer)
     answer = options.answer.result = BuildResult(generated, [])
     warn = partial(say, options.answer, severity="warning")
-    for made in programs.programs_of(checked):
+    found = programs.programs_of(checked)
+    for made in found:
         with progress(f"compile {made.node}"):
             program = made.build(options.mode, options.driver, options.registers, warn, board)
-        answer.programs.append(Built(made.node, str(program)))
-        print(f"built {program}")
+        memory = made.memory(program)
+        answer.programs.append(Built(made.node, str(program), memory))
+        if options.memory:
+            write(memory, _file(options.memory, made.node if len(found) > 1 else ""))
+        print(f"built {program}\n  {memory.shown()}")
     return OK
+
+
+def _file(path: Path, node: str) -> Path:
+    """The file of a node: that which is given, or one beside it with the name of the node."""
+    return path.with_name(f"{path.stem}-{node}{path.suffix}") if node else path

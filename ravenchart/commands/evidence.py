@@ -42,6 +42,10 @@ def add_sources(sub: argparse.ArgumentParser) -> None:
         help="the proof record that `prove --record` wrote; for several nodes, once for each",
     )  # fmt: skip
     sub.add_argument(
+        "--memory", type=Path, metavar="FILE", action="append", default=[],
+        help="stacks and memory as `build --memory` wrote them; for several nodes, once for each",
+    )  # fmt: skip
+    sub.add_argument(
         "--tests", type=Path, metavar="FILE", help="results of tests in the form of JUnit"
     )
     sub.add_argument(
@@ -57,7 +61,9 @@ def gathered(options: argparse.Namespace) -> Facts:
     model: Path = options.model
     try:
         with progress(f"check {model.name}"):
-            found = facts.gather(model, options.driver, options.record, options.tests)
+            found = facts.gather(
+                model, options.driver, options.record, options.tests, memory=options.memory
+            )
     except Refused:
         common.checked(options, deadlines=False)  # tells the same with the path as given
         raise

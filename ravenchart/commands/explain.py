@@ -42,7 +42,7 @@ def execute(options: argparse.Namespace) -> int:
     if not options.wrong and not options.corrected:
         sys.stdout.write(explanations.text(code))
         return OK
-    if found is None:
+    if found is None or found.wrong is None or found.corrected is None:
         raise Refused(f"ravenchart: error: {code} has no example model yet")
     sys.stdout.write(found.wrong if options.wrong else found.corrected)
     return OK

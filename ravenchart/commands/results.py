@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ravenchart.described import Described
+from ravenchart.stacks.report import Memory
 
 
 @dataclass(slots=True)
@@ -59,6 +60,8 @@ class Built(Described):
     """The name of the node."""
     program: str
     """The executable."""
+    memory: Memory
+    """Its stacks and its memory."""
 
 
 @dataclass(slots=True)

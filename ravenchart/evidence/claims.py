@@ -18,6 +18,7 @@ from . import records
 from .bounds import bounds
 from .claim import NO_RECORD, Claim, Kind, Pairs, Shown, own_tool, verdict_of
 from .facts import Facts, Node
+from .memory import stacks
 from .records import Record
 from .results import FAILED, SKIPPED
 
@@ -32,7 +33,7 @@ def claims(facts: Facts) -> tuple[Claim, ...]:
         *_behaviour(facts),
         *bounds(facts),
         *_runtime(facts),
-        *_stacks(facts),
+        *stacks(facts),
         _tests(facts),
     )
 
@@ -368,18 +369,6 @@ def _runtime(facts: Facts) -> Iterator[Claim]:
             record.name.removesuffix(".toml"), Kind.RUNTIME, (facts.checked.system.name,),
             f"{statement} ({record.name})", theorem + counts, "proof", record.tool, verdict,
             tuple(problems), ((f"record {record.name}", record.digest), *record.sources),
-        )  # fmt: skip
-
-
-def _stacks(facts: Facts) -> Iterator[Claim]:
-    for one in facts.checked.system.processors:
-        yield Claim(
-            f"stack-{one.name}", Kind.MEMORY, (one.name,),
-            f"The stack of {one.name} is at most {one.stack_bytes:,} bytes",
-            "declared in the model. No recursion and no heap in the generated code; the depth "
-            "itself is neither measured nor proved (ASM-004).",
-            "declaration", "none", Shown.USERS,
-            ("measure it, for example with gnatstack or -fstack-usage",), facts.sources,
         )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ravenchart.described import Described
+from ravenchart.stacks.report import Memory
 
 FORMAT = 1
 """The version of the file: raised when a key goes or changes its meaning."""
@@ -212,5 +213,7 @@ class Evidence(Described):
     """Of compiler, prover and runtime."""
     faults: list[Fault]
     """The fault matrix; empty where it is not at hand."""
+    memory: list[Memory]
+    """Stacks and memory of each build whose record is given."""
     files: list[str]
     """The other files of the folder."""

@@ -15,12 +15,14 @@ from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.building import checking, generation, programs
 from ravenchart.building.checking import Checked
 from ravenchart.building.programs import Program
+from ravenchart.building.stacks import read_record
 from ravenchart.failures import Refused
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
 from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark
+from ravenchart.stacks.report import Memory
 
 from . import records
 from .records import Record
@@ -70,6 +72,8 @@ class Facts:
     links: tuple[Link, ...]
     tests: tuple[Test, ...] | None
     """Results of tests, where some were given."""
+    memory: tuple[Memory, ...] = ()
+    """Records of builds: stacks and memory."""
 
 
 def gather(
@@ -78,6 +82,7 @@ def gather(
     given: Sequence[Path] = (),
     tests: Path | None = None,
     patience: float = PATIENCE,
+    memory: Sequence[Path] = (),
 ) -> Facts:
     """What is at hand of a model; Refused where it has errors other than missed deadlines."""
     folder = model.parent
@@ -107,6 +112,7 @@ def gather(
         sources,
         links(read_model(main, read).forms),
         None if tests is None else junit(tests),
+        tuple(read_record(one) for one in memory),
     )
 
 

@@ -136,6 +136,7 @@ def _document(
         standards.standards(found, trace),
         standards.problems(),
         _faults(),
+        list(facts.memory),
         [name for name in names if name != DATA],
     )
 

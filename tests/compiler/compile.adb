@@ -100,6 +100,11 @@ procedure Compile is
      (Head (To_String (Object), Length (Object) - 1) & "ali");
    --  The path of the ALI file.
 
+   function Graph return String is
+     (Head (To_String (Object), Length (Object) - 1) & "ci");
+   --  The path of the call graph, which an option asks for. In one that was
+   --  stored, files are where they were compiled first.
+
    ------------
    -- Called --
    ------------
@@ -358,6 +363,9 @@ procedure Compile is
       end loop;
       Files.Write (Ali, To_String (Text));
       Files.Copy (Result & ".o", To_String (Object));
+      if Exists (Result & ".ci") then
+         Files.Copy (Result & ".ci", Graph);
+      end if;
       Files.Touch (Result & ".read");
    end Restore;
 
@@ -387,6 +395,9 @@ procedure Compile is
       begin
          Files.Copy (Ali, Result & ".ali");
          Files.Copy (To_String (Object), Result & ".o");
+         if Exists (Graph) then
+            Files.Copy (Graph, Result & ".ci");
+         end if;
          Files.Write (Result & ".read", To_String (Read));
       end;
    end Store;

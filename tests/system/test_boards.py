@@ -13,11 +13,13 @@ from pathlib import Path
 import pytest
 
 from ravenchart import command_line
-from ravenchart.building import targets
+from ravenchart.building import checking, programs, targets
 from ravenchart.failures import Unusable
 from ravenchart.paths import ROOT
 from ravenchart.running import boards
+from ravenchart.stacks import symbols
 from ravenchart.tools import toolchain
+from tests.support import board_stacks
 
 EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian_robot")
 BOARD = "zynqmp"
@@ -64,6 +66,29 @@ def test_every_bound_holds_on_the_board(
     assert "verdict: PASS" in printed
     assert OBSERVED.findall(printed)
     assert "withheld" not in printed
+
+
+def test_no_stack_is_deeper_than_its_bound(board: targets.Board, tmp_path: Path) -> None:
+    checked = checking.check(ROOT / "examples" / "cartesian_robot" / "model.yaml")
+    program = programs.programs_of(checked)[0]
+    image = program.build("release", board=board)
+    listing = subprocess.run(
+        [f"{board.compiler}-nm", "-S", image], capture_output=True, text=True, check=True
+    )
+    found = symbols.read(listing.stdout)
+    emulator = board.target.facts.emulator
+    assert emulator is not None
+    words = boards.command(board, emulator, image, tmp_path / "serial.txt", 3_600.0)
+    end = max(one.at + one.size for one in found if one.kind in "bB" and one.size)
+    used = board_stacks.depths(board_stacks.memory_after(words, 10.0, end, tmp_path), found)
+    bounds = {one.task: one for one in program.memory(image).stacks}
+    tasks = {f"cartesian_robot__{n}__processor__processorTKB": n for n in
+             ("reception", "trajectory", "control", "supervision")}  # fmt: skip
+    assert tasks.keys() <= used.keys()
+    for body, task in tasks.items():
+        assert 256 < used[body] <= bounds[task].bound, (task, used[body], bounds[task].bound)
+        assert bounds[task].path[-1].function != "the run-time library"  # its code is counted
+    assert bounds["interrupts"].size == 32_768
 
 
 def test_the_driver_of_a_can_controller_against_a_peer(

@@ -173,7 +173,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, bool], Bui
             checked = checking.check(model)
             generation.write_program(checked)
             program = programs.programs_of(checked)[0]
-            made[mode, supervised] = checked, program, program.build(mode)
+            image = program.build(mode, stacks_needed=False)  # one fault is recursion
+            made[mode, supervised] = checked, program, image
         return made[mode, supervised]
 
     return build
@@ -273,7 +274,8 @@ def test_a_processor_that_was_silent_and_comes_back_goes_on_in_the_grace(
     program = programs.programs_of(checked)[0]
     monkeypatch.setenv("RAVENCHART_TEST_FAULT", "busy")
     trace = program.generated / "trace.json"
-    result = run.run_alone(program.build(), trace, SECONDS, tmp_path / "report")
+    image = program.build(stacks_needed=False)
+    result = run.run_alone(image, trace, SECONDS, tmp_path / "report")
     #  it has lost its urgency, but none of its protected objects
     assert "processor_3 is silent" in result.failures[0]
     assert not any("has ended" in failure for failure in result.failures), result.failures
@@ -306,6 +308,7 @@ def test_the_command_fails_and_its_last_lines_have_the_reason(
 ) -> None:
     model = built("checks", True)[0].path
     monkeypatch.setenv("RAVENCHART_TEST_FAULT", "assert")
+    monkeypatch.setattr(programs.Program, "_examine", lambda *_: None)  # one fault is recursion
     assert main(["run", str(model), "--seconds", "2", "--report", str(tmp_path / "report")]) == 1
     last = capsys.readouterr().out.rstrip().splitlines()[-2:]
     assert any("verdict: FAIL" in line and "ASSERTION_ERROR" in line for line in last)

@@ -77,6 +77,17 @@ def test_another_text_option_or_file_that_is_read_is_compiled(call: Call, home: 
     assert stored(home) == 4
 
 
+def test_a_call_graph_is_copied_with_its_object(call: Call, home: Path, tmp_path: Path) -> None:
+    for folder in ("plain", "first", "second"):
+        options = () if folder == "plain" else ("-fcallgraph-info=su",)
+        assert call(folder, *options).returncode == 0
+    assert stored(home) == 2
+    assert not (tmp_path / "plain" / "user.ci").exists()
+    first, second = (tmp_path / f / "user.ci" for f in ("first", "second"))
+    assert "(static)" in first.read_text() and first.read_text() == second.read_text()
+    assert second.stat().st_mtime_ns >= second.with_suffix(".ali").stat().st_mtime_ns
+
+
 def test_what_prints_anything_is_compiled_each_time(call: Call, home: Path) -> None:
     warned = USER.replace("with Limits;", "with Limits; with Ada.Text_IO;")
     for folder in ("a", "b"):

@@ -37,7 +37,7 @@ def test_a_wrong_model_is_an_answer_with_located_diagnostics(
     tmp_path: Path, capsys: PRINTED
 ) -> None:
     wrong = tmp_path / "wrong.yaml"
-    wrong.write_text(explanations()["RV-0305"].wrong)
+    wrong.write_text(explanations()["RV-0305"].wrong or "")
     answer = answered(capsys, "check", wrong, status=1)
     (found,) = answer["diagnostics"]
     assert (found["code"], found["severity"], found["file"]) == ("RV-0305", "error", str(wrong))
@@ -56,7 +56,7 @@ def test_more_errors_than_are_printed_are_all_in_the_answer(
 
 def test_standard_error_is_the_same_as_without(tmp_path: Path, capsys: PRINTED) -> None:
     wrong = tmp_path / "wrong.yaml"
-    wrong.write_text(explanations()["RV-0305"].wrong)
+    wrong.write_text(explanations()["RV-0305"].wrong or "")
     assert main(["check", str(wrong)]) == 1
     plain = capsys.readouterr().err
     assert main(["check", str(wrong), "--json"]) == 1

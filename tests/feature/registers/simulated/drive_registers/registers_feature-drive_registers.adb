@@ -42,8 +42,9 @@ is
       begin
          if Value /= Models (Unit).Control then
             Models (Unit).Control := Value;
-            GNAT.IO.Put_Line
-              (GNAT.IO.Standard_Error, Unit'Image & " CONTROL" & Value'Image);
+            GNAT.IO.Put (GNAT.IO.Standard_Error, Unit'Image);
+            GNAT.IO.Put (GNAT.IO.Standard_Error, " CONTROL");
+            GNAT.IO.Put_Line (GNAT.IO.Standard_Error, Value'Image);
          end if;
       end Set_Control;
 
@@ -52,8 +53,9 @@ is
       begin
          if Value /= Models (Unit).Dac then
             Models (Unit).Dac := Value;
-            GNAT.IO.Put_Line
-              (GNAT.IO.Standard_Error, Unit'Image & " DAC" & Value'Image);
+            GNAT.IO.Put (GNAT.IO.Standard_Error, Unit'Image);
+            GNAT.IO.Put (GNAT.IO.Standard_Error, " DAC");
+            GNAT.IO.Put_Line (GNAT.IO.Standard_Error, Value'Image);
          end if;
          Models (Unit).Count := Models (Unit).Count + Value - 512;
       end Set_Dac;
