@@ -164,8 +164,10 @@ package body Driver is
       Xcan_Core.Write (Registers.Icr, Registers.Transmit_Empty);
       Xcan_Core.Read (Registers.Isr, Causes);
       if (Causes and Registers.Transmit_Empty) /= 0 then
-         Upper.Count (Upper.Sent, By => Event_Count (P.Pending));
-         P.Pending := 0;
+         if P.Pending > 0 then
+            Upper.Count (Upper.Sent, By => Event_Count (P.Pending));
+            P.Pending := 0;
+         end if;
          for Nth in 1 .. Registers.Fifo_Depth loop
             Upper.Take_Queued (F, Status);
             exit when Status = Queueing.Empty;
