@@ -5,7 +5,6 @@
 --  given. With "print" as the argument: sealed frames of every setting, a
 --  line each, for a comparison with another implementation.
 
-with Ada.Command_Line;
 with Ada.Text_IO;
 with Aes_Cmac;
 with Example_Key;
@@ -16,6 +15,7 @@ with Random_Numbers;
 with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Authentication;
 with Ravenchart.Can.Fd_Frames;
+with Trials;
 
 procedure Test_Authentication is
    use Example_Key;
@@ -463,21 +463,17 @@ procedure Test_Authentication is
       end loop;
    end Print;
 
-   Times : Positive := 10;
 begin
-   if Ada.Command_Line.Argument_Count = 1 then
-      if Ada.Command_Line.Argument (1) = "print" then
-         Print;
-         return;
-      end if;
-      Times := Positive'Value (Ada.Command_Line.Argument (1));
+   if Trials.Prints then
+      Print;
+      return;
    end if;
    Check_Layout;
    Check_Freshness;
    Check_Statuses;
    for S of Settings loop
       for Kind in Attack loop
-         Check_Attacks (S, Kind, Times);
+         Check_Attacks (S, Kind, Trials.Times);
       end loop;
    end loop;
    Facts.Finish;

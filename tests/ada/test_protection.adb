@@ -6,7 +6,6 @@
 --  finds as many, else two. With "print" as the argument: protected frames of
 --  every setting, a line each, for a comparison with another implementation.
 
-with Ada.Command_Line;
 with Ada.Text_IO;
 with Facts;
 with Hex_Frames;
@@ -15,6 +14,7 @@ with Random_Numbers;
 with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Protection;
+with Trials;
 
 procedure Test_Protection is
    use Interfaces;
@@ -425,25 +425,21 @@ procedure Test_Protection is
       end loop;
    end Print;
 
-   Times : Positive := 10;
 begin
-   if Ada.Command_Line.Argument_Count = 1 then
-      if Ada.Command_Line.Argument (1) = "print" then
-         Print;
-         return;
-      end if;
-      Times := Positive'Value (Ada.Command_Line.Argument (1));
+   if Trials.Prints then
+      Print;
+      return;
    end if;
    Check_Examples;
    Check_Statuses;
    for S of Settings loop
       for Kind in Fault loop
-         Check_Faults (S, Kind, Times);
+         Check_Faults (S, Kind, Trials.Times);
       end loop;
       if S.Length <= 8 then
          Check_Patterns
-           (S, (if Times >= 1_000 then Found_Bits (S.Kind) else 2));
-         Check_Noise (S, 100 * Times);
+           (S, (if Trials.Times >= 1_000 then Found_Bits (S.Kind) else 2));
+         Check_Noise (S, 100 * Trials.Times);
       end if;
    end loop;
    Facts.Finish;

@@ -30,6 +30,13 @@ is
    function Image (Port : Interfaces.Unsigned_16) return String;
    --  In decimal.
 
+   procedure Open_Stream
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      File     : out C_Int);
+   --  A socket for the port that Variable names; negative without it.
+
    procedure Hurry (File : C_Int);
    --  Small records shall not wait for more.
 
@@ -76,6 +83,28 @@ is
       return Text (Text'First + 1 .. Text'Last);
    end Image;
 
+   -----------------
+   -- Open_Stream --
+   -----------------
+
+   procedure Open_Stream
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      File     : out C_Int)
+   is
+      Sound : Boolean;
+   begin
+      File := -1;
+      Read_Port (Variable, Default, Port, Sound);
+      if Sound then
+         File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+         if File < 0 then
+            Complain ("no socket: the system has none left");
+         end if;
+      end if;
+   end Open_Stream;
+
    -----------
    -- Hurry --
    -----------
@@ -97,18 +126,12 @@ is
       Length  : aliased C_Int := Address_Length;
       Address : aliased Socket_Address;
       Port    : Interfaces.Unsigned_16;
-      Sound   : Boolean;
       File    : C_Int;
       Result  : C_Int;
    begin
       Server := No_Socket;
-      Read_Port ("RAVENCHART_CAN_PORT", 0, Port, Sound);
-      if not Sound then
-         return;
-      end if;
-      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      Open_Stream ("RAVENCHART_CAN_PORT", 0, Port, File);
       if File < 0 then
-         Complain ("no socket: the system has none left");
          return;
       end if;
       Result := C_Set_Option
@@ -157,18 +180,12 @@ is
    procedure Connect (Client : out Socket) is
       Address : aliased Socket_Address;
       Port    : Interfaces.Unsigned_16;
-      Sound   : Boolean;
       File    : C_Int;
       Result  : C_Int;
    begin
       Client := No_Socket;
-      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
-      if not Sound then
-         return;
-      end if;
-      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      Open_Stream ("RAVENCHART_BUS_PORT", Bus_Port, Port, File);
       if File < 0 then
-         Complain ("no socket: the system has none left");
          return;
       end if;
       Address := Address_Of (Port);
