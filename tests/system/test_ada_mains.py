@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 MAINS = (
     "test_store",
@@ -52,9 +52,7 @@ LIMIT = 300.0
 def mode(request: pytest.FixtureRequest) -> str:
     """Both builds of the tests."""
     chosen: str = request.param
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr"]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": chosen, "CAN_DRIVER": "loopback"})
+    built(chosen, "loopback")
     return chosen
 
 
@@ -79,10 +77,7 @@ def test_the_supervisor_ends_a_program_whose_main_program_does_not(mode: str) ->
 @pytest.mark.parametrize("mode", ["checks", "release"])
 @pytest.mark.parametrize(("driver", "main"), OF_DRIVERS)
 def test_every_fact_of_a_driver_holds(mode: str, driver: str, main: str) -> None:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", main]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": driver})
-    _holds(ROOT / "obj" / f"tests-{mode}-{driver}" / "bin" / main)
+    _holds(built(mode, driver, main) / main)
 
 
 def _holds(program: Path) -> None:

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
 from tests.hardware.driver_cases import LIMIT, Driver, started
+from tests.support.ada_programs import built
 
 SPAN = 0x4000
 """Bytes from one core of a card to the next."""
@@ -44,10 +43,7 @@ class Card:
 @pytest.fixture(scope="module", params=["checks", "release"])
 def program(request: pytest.FixtureRequest) -> Path:
     """It echoes, in both builds."""
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
-    variables = {"MODE": request.param, "CAN_DRIVER": "ctucanfd"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
-    return ROOT / "obj" / f"tests-{request.param}-ctucanfd" / "bin" / "can_echo"
+    return built(request.param, "ctucanfd", "can_echo") / "can_echo"
 
 
 @pytest.fixture
