@@ -53,11 +53,12 @@ DRIVERS = tuple(programs.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
 GENERIC_BODIES = {
-    "ravenchart-can-controllers.adb",
+    "ravenchart-can-connections.adb",
+    "ravenchart-can-controllers-driver.adb",
     "ravenchart-can-ctu_cores.adb",
     "ravenchart-can-xcan_cores.adb",
 }
-"""Of these the instances are proved: of the first that below, of the others that it brings."""
+"""Generics and a subunit of one: proved with the instance below, or with one that it brings."""
 INSTANCES = ("instance_bus.ads", "instance_program.adb")
 """An instance, and the program with its tasks and those of the processors."""
 BUS = "bus"

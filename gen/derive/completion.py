@@ -5,44 +5,27 @@ All times in ns, every figure on the safe side.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence, Set
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.commands import Remote, RemoteRead
-from ravenchart.gen.model.component import Activity
-from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import (
     PROBE,
     SUPERVISOR,
     Bus,
-    Instance,
-    Message,
     Node,
     Processor,
     SharedObject,
     Slot,
     System,
     Task,
-    Work,
 )
 
-from .calls import (
-    callers,
-    callers_of,
-    calls_from_afar,
-    readers_through,
-    receivers,
-    repliers,
-    replies_read,
-    rows_of,
-)
 from .distribution import as_one, part_of, without_idle_buses
+from .senders import sender_of, sending_rows
+from .sharing import objects_on_node
 from .ways import routed
-
-MAIN = "main"
-"""The environment task: priority 0, below all tasks, and not among them."""
 
 FRAME_DISTANCE_BITS = 47
 """Bit times between the beginnings of two frames, at least: a CAN 2.0A data frame with an
@@ -197,238 +180,7 @@ def driver_core(system: System, bus: Bus, node: str) -> int:
     return 1
 
 
-def sender_of(system: System, message: Message) -> str | None:
-    """The processor whose row sends a message; None for one from outside."""
-    for row in sending_rows(system, message):
-        return system.processor_of(row).name
-    return None
-
-
-def sending_rows(system: System, message: Message) -> tuple[str, ...]:
-    """The rows that send a message: one, by the rules."""
-    if message.source is None:
-        return ()
-    source = system.instance(message.source.instance)
-    if message.call is not None and message.is_reply:
-        return (message.call.served,)
-    if message.controls:
-        return (f"{source.name}.ports",)
-    return tuple(
-        f"{source.name}.{item.name}"
-        for item in source.component.runnables()
-        if message.source.port in (item.writes if message.every else item.sends)
-    )
-
-
-# --- Shared objects ----------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class _Sharing:
-    """Who calls what, worked out over a system whose priorities are known."""
-
-    system: System
-    priorities: dict[str, int]
-
-    def made(self, element: str, users: Iterable[str]) -> SharedObject:
-        """The object with these users, each once, and the ceiling that they need."""
-        once = tuple(dict.fromkeys(users))
-        node = self.system.nodes[0]
-        ceiling = max((self.priorities[user] for user in once), default=0)
-        return SharedObject(element, node.name, once, ceiling, node.critical_section)
-
-    def runs(self, instance: str, name: str) -> str:
-        """The processor that runs a row."""
-        return self.system.processor_of(f"{instance}.{name}").name
-
-    def of_instance(self, instance: Instance) -> Iterable[SharedObject]:
-        """The objects of one instance: mailboxes and boards, data, regions."""
-        component = instance.component
-        runnables = component.runnables()
-        for port in component.inputs():
-            handler = self.runs(instance.name, "ports")
-            element = f"{instance.name}.{port.name}"
-            yield self.made(
-                f"{element}.mailbox", [*self.writers(instance.name, port.name), handler]
-            )
-            readers = [self.runs(instance.name, r.name) for r in runnables if port.name in r.reads]
-            if readers:
-                yield self.made(element, [handler, *readers])
-        for data in component.data:
-            users = [self.runs(instance.name, name) for name in component.users(data.name)]
-            through = readers_through(self.system, instance.name, data.name)
-            users += [self.system.processor_of(row).name for row in through]
-            written = any(data.name in item.writes for item in runnables)
-            if written and len(users) > 1:  # otherwise it is a constant, or its writer's own
-                yield self.made(f"{instance.name}.{data.name}", users)
-        yield from self.of_commands(instance)
-        for region in component.regions:
-            own = self.runs(instance.name, region.name)
-            readers = [
-                self.runs(instance.name, item.name)
-                for item in runnables
-                if region.name in item.reads or _works_in(item, region.name)
-            ]
-            yield self.made(f"{instance.name}.{region.name}", [own, *readers])
-            if region.events():
-                #  every event goes through one procedure: who raises any is taken to raise all
-                raisers = [
-                    user for one in component.regions for user in self.raisers(instance, one)
-                ]
-                yield self.made(f"{instance.name}.{region.name}.queue", [own, *raisers])
-            for activity, _ in component.completing(region.name):
-                users = [own, self.runs(instance.name, activity.name)]
-                yield self.made(f"{instance.name}.{activity.name}.visit", users)
-                yield self.made(f"{instance.name}.{activity.name}.done", users)
-
-    def of_commands(self, instance: Instance) -> Iterable[SharedObject]:
-        """The queues of requests of an instance, and the boards of replies to its own."""
-        for provided in instance.component.provides:
-            if provided.server is not None:
-                server = self.runs(instance.name, provided.server)
-                rows = [
-                    row
-                    for b in callers_of(self.system, instance.name, provided)
-                    for row in rows_of(self.system, b)
-                ]
-                for message in calls_from_afar(self.system, instance.name, provided):
-                    rows += receivers(self.system, message.name)
-                users = [self.system.processor_of(row).name for row in rows]
-                yield self.made(f"{instance.name}.{provided.name}.queue", [*users, server])
-        for binding in self.system.bindings:
-            remote = binding.provider
-            if binding.instance == instance.name and isinstance(remote, Remote) and remote.reply:
-                rows = [*rows_of(self.system, binding), *receivers(self.system, remote.reply)]
-                users = [self.system.processor_of(row).name for row in rows]
-                yield self.made(f"{instance.name}.{binding.need.name}.call", users)
-            if binding.instance == instance.name and isinstance(remote, RemoteRead):
-                rows = [*rows_of(self.system, binding), *receivers(self.system, remote.message)]
-                users = [self.system.processor_of(row).name for row in rows]
-                yield self.made(f"{instance.name}.{binding.need.name}.read", users)
-        for item in replies_read(instance.component):
-            binding = next(
-                b
-                for b in self.system.bindings
-                if b.instance == instance.name and b.need.reply_item == item
-            )
-            users = [self.runs(instance.name, name) for name in instance.component.users(item)]
-            writers = (self.system.processor_of(r).name for r in repliers(self.system, binding))
-            yield self.made(f"{instance.name}.{item}", [*writers, *users])
-
-    def devices(self) -> Iterable[SharedObject]:
-        """The devices that several tasks call: inside one, a driver works its longest.
-
-        The main program starts a device and makes it safe; so does a supervisor in its place.
-        """
-        supervisors = [f"{n.name}.{SUPERVISOR}" for n in self.system.nodes if n.supervision]
-        for device in self.system.devices:
-            if device.type is None:
-                continue
-            users = [self.system.processor_of(row).name for row in callers(self.system, device)]
-            life = device.type.lifecycle
-            if life.given:
-                users += [MAIN, *(supervisors if life.make_safe is not None else ())]
-            if len(set(users)) > 1:
-                made = self.made(device.name, users)
-                longest = max(*(one.wcet for one in device.provides), life.make_safe or Ns(0))
-                yield replace(made, section=max(made.section, longest))
-
-    def writers(self, instance: str, port: str) -> Iterable[str]:
-        """The processors that put values into an input port's mailbox."""
-        for connection in self.system.connections:
-            if (connection.target.instance, connection.target.port) == (instance, port):
-                source = self.system.instance(connection.source.instance)
-                for sender in source.component.runnables():
-                    if connection.source.port in sender.sends:
-                        yield self.runs(source.name, sender.name)
-        for message in self.system.messages:
-            if any((end.instance, end.port) == (instance, port) for end in message.targets):
-                yield from (p.name for p in self.system.processors if p.released_by == message.bus)
-
-    def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
-        """The tasks that may put an event into a region's queue."""
-        return self.offering(instance, set(region.events()), region.name)
-
-    def requesting(self, bus: Bus) -> Iterable[str]:
-        """The tasks that may request recovery on a bus: all that raise any event of an instance."""
-        for name in dict.fromkeys(name for name, _ in bus.recovers_on):
-            instance = self.system.instance(name)
-            yield from self.offering(instance, {e.name for e in instance.component.events})
-
-    def offering(self, instance: Instance, named: set[str], own: str = "") -> Iterable[str]:
-        """The tasks that raise one of these events, for the region ``own`` or for whomever."""
-        component = instance.component
-        for item in component.runnables():
-            overflow = item.on_overflow if isinstance(item, Region) else None
-            if named & set(item.raises):
-                yield self.runs(instance.name, item.name)
-            if overflow in named and isinstance(item, Region):
-                # the event is raised by whoever fills that queue, or by the region itself
-                yield self.runs(instance.name, item.name)
-                if item.name != own:
-                    yield from self.raisers_once(instance, item)
-        for need in component.needs:
-            binding = self.system.bound[instance.name, need.name]
-            is_remote = isinstance(binding.provider, Remote)
-            if need.on_full in named or (is_remote and need.on_timeout in named):
-                rows = rows_of(self.system, binding)
-                yield from (self.system.processor_of(row).name for row in rows)
-            if isinstance(binding.provider, RemoteRead) and need.on_timeout in named:
-                yield self.runs(instance.name, binding.provider.watcher)
-            if need.on_reply in named:
-                rows = repliers(self.system, binding)
-                yield from (self.system.processor_of(row).name for row in rows)
-        for port in component.inputs():
-            if named & {port.on_arrival, port.on_stale, port.on_overflow}:
-                yield self.runs(instance.name, "ports")
-        yield from self.raisers_outside(instance, named)
-
-    def raisers_outside(self, instance: Instance, named: Set[str]) -> Iterable[str]:
-        """The tasks that raise one of these events themselves: processors, supervisors, main."""
-
-        def raised(events: Iterable[tuple[str, str]]) -> bool:
-            return any(one == instance.name and event in named for one, event in events)
-
-        for processor in self.system.processors:
-            watched = {slot.owner for slot in processor.slots if slot.work is Work.BUS_WATCH}
-            of_buses = (p for bus in self.system.buses if bus.name in watched for p in bus.raises)
-            heard = {s.owner for s in processor.slots if s.work is Work.BUS_RECEIVE}
-            refused = (
-                pair
-                for bus in self.system.buses
-                if bus.name in heard
-                for pair in self.system.refusals(bus)
-            )
-            if raised((*processor.raises, *of_buses, *refused)):
-                yield processor.name
-            supervisor = self.supervisor(processor)
-            if supervisor is not None and raised(processor.on_silence):
-                yield supervisor
-        if raised(self.system.shutdown.raises):
-            yield MAIN
-
-    def supervisor(self, processor: Processor) -> str | None:
-        """The task that supervises a processor, if one does."""
-        element = f"{processor.node}.{SUPERVISOR}"
-        return element if element in self.priorities else None
-
-    def raisers_once(self, instance: Instance, region: Region) -> Iterable[str]:
-        """As `raisers`, without following overflows further."""
-        quiet = replace(
-            instance,
-            component=replace(
-                instance.component,
-                regions=tuple(replace(r, on_overflow=None) for r in instance.component.regions),
-            ),
-        )
-        yield from self.raisers(quiet, region)
-
-
-def _works_in(item: Region | Activity, region: str) -> bool:
-    """Whether an activity works only in a state of that region."""
-    return (
-        isinstance(item, Activity) and item.while_in is not None and item.while_in.region == region
-    )
+# --- Programs ----------------------------------------------------------------------
 
 
 def programs(system: System) -> tuple[System, ...]:
@@ -449,13 +201,13 @@ def _program(system: System, node: Node) -> System:
     """The part of a system on a node, with its tasks and objects."""
     part = part_of(system, node)
     part = replace(part, tasks=tuple(task for task in system.tasks if task.node == node.name))
-    return replace(part, objects=_objects(part))
+    return replace(part, objects=objects_on_node(part))
 
 
 def on_one_node(system: System) -> System:
     """The same components on one node, with the objects that they share there."""
     one = as_one(system)
-    return one if one is system else replace(one, objects=_objects(one))
+    return one if one is system else replace(one, objects=objects_on_node(one))
 
 
 def objects_of(system: System) -> tuple[SharedObject, ...]:
@@ -466,7 +218,7 @@ def objects_of(system: System) -> tuple[SharedObject, ...]:
     """
     parts = programs(system)
     if len(parts) == 1:
-        return _objects(parts[0])
+        return objects_on_node(parts[0])
     own = {instance.name for instance in system.instances} | {node.name for node in system.nodes}
     own |= {processor.name for processor in system.processors}
     return tuple(
@@ -474,60 +226,8 @@ def objects_of(system: System) -> tuple[SharedObject, ...]:
         if item.element.partition(".")[0] in own
         else replace(item, element=f"{item.node}.{item.element}")
         for part in parts
-        for item in _objects(part)
+        for item in objects_on_node(part)
     )
-
-
-def _objects(system: System) -> tuple[SharedObject, ...]:
-    """The protected objects of one node. The users of `health` and `trace` are all processors."""
-    tasks = system.tasks
-    sharing = _Sharing(system, {task.element: task.priority for task in tasks} | {MAIN: 0})
-    objects: list[SharedObject] = []
-    for instance in system.instances:
-        objects.extend(sharing.of_instance(instance))
-    objects.extend(sharing.devices())
-    for bus in system.buses:
-        senders = [
-            system.processor_of(row).name
-            for message in system.messages
-            if message.bus == bus.name
-            for row in sending_rows(system, message)
-        ]
-        senders += [
-            processor.name
-            for processor in system.processors
-            for slot in processor.slots
-            if slot.owner == bus.name and slot.work is Work.BUS_WATCH
-        ]
-        senders += sharing.requesting(bus)
-        receivers = [p.name for p in system.processors if p.released_by == bus.name]
-        drivers = [t.element for t in tasks if t.element.startswith(f"{bus.name}.driver_")]
-        objects.append(sharing.made(f"{bus.name}.transmit", [*senders, *drivers]))
-        objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
-        for message in system.messages:
-            if message.bus == bus.name and message.transport is not None:
-                rows = sending_rows(system, message) or [f"{message.targets[0].instance}.ports"]
-                ends = [system.processor_of(row).name for row in rows]
-                objects.append(sharing.made(f"{message.element}.flow", [*ends, *receivers]))
-    for processor in system.processors:
-        watched_by = sharing.supervisor(processor)
-        users = [processor.name, *([] if watched_by is None else [watched_by])]
-        objects.append(sharing.made(f"{processor.name}.monitor", users))
-    kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
-    for core in sorted({1, *(processor.core for processor in system.processors)}):
-        here = [processor.name for processor in system.processors if processor.core == core]
-        if core == 1:
-            here += [t.element for t in tasks if t.element.endswith(f".{SUPERVISOR}")]
-        for name in kept:
-            #  The main program runs on the first core, and looks at the others' at the end.
-            own, users = (name, [*here, MAIN]) if core == 1 else (f"{name}_{core}", here)
-            objects.append(sharing.made(own, users))
-    for node in system.nodes:
-        for name, kind in ((SUPERVISOR, node.supervision), (PROBE, node.probe)):
-            element = f"{node.name}.{name}"
-            if kind is not None:
-                objects.append(sharing.made(f"{element}.board", [element, MAIN]))
-    return tuple(objects)
 
 
 def completed(system: System) -> System:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Message, Processor, Slot, System, Work
 
-from .completion import sending_rows
+from .senders import sending_rows
 
 
 def with_macs(system: System) -> System:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.origins import Origin
@@ -105,6 +105,32 @@ def database_text_problem_of(text: str) -> str | None:
     if not (text.isascii() and text.isprintable()) or '"' in text or "\\" in text:
         return 'the name of a value in databases is printable ASCII, without `"` and `\\`'
     return None
+
+
+class InDatabases(Protocol):
+    """An element that CAN databases may call by a name of its own."""
+
+    @property
+    def database_name(self) -> str | None:
+        """The name that the model gives for databases, if it does."""
+
+    @property
+    def in_database(self) -> str:
+        """The name in databases."""
+
+
+Named = TypeVar("Named", bound=InDatabases)
+
+
+def alike_in_databases(
+    elements: Iterable[Named], taken: Iterable[str] = ()
+) -> Iterator[tuple[Named, Named | None]]:
+    """Each element whose `database_name` another one has; None for one of the names ``taken``."""
+    known: dict[str, Named | None] = dict.fromkeys(taken)
+    for one in sorted(elements, key=lambda one: one.database_name is not None):
+        other = known.setdefault(one.in_database, one)
+        if one.database_name is not None and other is not one:
+            yield one, other
 
 
 def meant(name: str, known: Iterable[str]) -> str | None:

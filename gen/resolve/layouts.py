@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ravenchart.gen.files.schema_frames import MessageForm, SignalForm
-from ravenchart.gen.language.names import Findings, meant
+from ravenchart.gen.language.names import Findings, alike_in_databases, meant
 from ravenchart.gen.language.terms import EnumerationType, IntegerType, ScalarType, Type
 from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
 from ravenchart.gen.model.protection import PROFILES
@@ -282,16 +282,13 @@ class _Maker:
     def named_once(self, signals: tuple[Signal, ...]) -> bool:
         """Whether databases can tell the signals of the message by their names."""
         before = self.findings.count()
-        known = dict.fromkeys(self._added, "a signal of the protection")
-        for signal in sorted(signals, key=lambda one: one.database_name is not None):
-            other = known.setdefault(signal.in_database, own := f"`{signal.name}`")
-            if signal.database_name is not None and other != own:
-                message = f"{own} and {other} of {self.name} are both named "
-                message += f"`{signal.in_database}` in the database"
-                key = next(k for k in self.form.signals or {} if k.lower() == signal.name.lower())
-                hint = "give one of them another `database_name`"
-                at = self._at(key, "database_name")
-                self.findings.error(DATABASE, at, message, hint=hint)
+        for signal, other in alike_in_databases(signals, self._added):
+            alike = "a signal of the protection" if other is None else f"`{other.name}`"
+            message = f"`{signal.name}` and {alike} of {self.name} are both named "
+            message += f"`{signal.in_database}` in the database"
+            key = next(k for k in self.form.signals or {} if k.lower() == signal.name.lower())
+            hint = "give one of them another `database_name`"
+            self.findings.error(DATABASE, self._at(key, "database_name"), message, hint=hint)
         return self.findings.count() == before
 
     @property

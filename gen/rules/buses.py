@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.language.names import alike_in_databases
 from ravenchart.gen.model.system import Bus, Message, Node, Slot, System, Work
 from ravenchart.gen.resolve.authentication import AUTHENTICATION
 from ravenchart.gen.resolve.layouts import DATABASE
@@ -159,10 +160,8 @@ def names_in_databases(system: System) -> Iterator[Diagnostic]:
 
 def _named_alike(elements: Sequence[Message | Node], place: str) -> Iterator[Diagnostic]:
     """An error for each with a `database_name` that another one of them has in databases."""
-    known: dict[str, Message | Node] = {}
-    for one in sorted(elements, key=lambda one: one.database_name is not None):
-        other = known.setdefault(one.in_database, one)
-        if one.database_name is not None and other is not one:
+    for one, other in alike_in_databases(elements):
+        if other is not None:
             text = f"{one.name} and {other.name} are both named `{one.in_database}` in {place}"
             notes = [(other.origin, f"{other.name} is declared here")]
             hint = "give one of them another `database_name`"

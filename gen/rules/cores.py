@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.completion import MAIN
+from ravenchart.gen.derive.sharing import MAIN
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.system import System
 

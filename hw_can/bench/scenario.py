@@ -6,14 +6,13 @@ unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from ravenchart.gen.diagnostics import error, render
 from ravenchart.gen.files.located import grow
@@ -22,32 +21,16 @@ from ravenchart.gen.origins import Origin
 
 from .plant import Axis
 from .protection import Wrong
+from .quantities import Length, Speed, Time
 from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
 from .reading import Path as Place
 from .replay import fault_of_log
-
-_QUANTITY = re.compile(r"(-?\d+(?:\.\d+)?) ?([a-z/]+)")
-_LENGTHS = {"um": 1e-6, "mm": 1e-3, "m": 1.0}
-_SPEEDS = {"um/s": 1e-6, "mm/s": 1e-3, "m/s": 1.0}
-_TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 class ScenarioError(Exception):
     """A scenario that cannot be run: every mistake, with file, line, column, code and hint."""
 
 
-def _quantity(value: object, units: Mapping[str, float]) -> float:
-    """A number with one of ``units``, in the unit whose factor is 1."""
-    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-    if match is None or match[2] not in units:
-        known = [*units]
-        raise ValueError(f"a number and one of {', '.join(known)}, such as `5 {known[1]}`")
-    return float(match[1]) * units[match[2]]
-
-
-Length = Annotated[float, BeforeValidator(lambda value: _quantity(value, _LENGTHS))]
-Speed = Annotated[float, BeforeValidator(lambda value: _quantity(value, _SPEEDS))]
-Time = Annotated[float, BeforeValidator(lambda value: _quantity(value, _TIMES)), Field(ge=0)]
 Scalar = bool | int | str
 Signal = Annotated[str, Field(pattern=r"^\w+\.\w+$")]
 """``message.field``"""

@@ -1,4 +1,5 @@
---  A CAN controller. Its body is a driver, chosen by the project file.
+--  A CAN controller. The subunit Driver of its body is a driver, chosen by the
+--  project file.
 --
 --  Guarantees   frames leave in the order sent, or where the driver's
 --               transmit buffers are by priority the most urgent first, and

@@ -62,18 +62,8 @@ is
        and then Fits (Roles, B, S)
        and then Roles (Winner) = Sender,
      Post   =>
-       B.Times = B.Times'Old
-       and then B.Line = B.Line'Old
-       and then Result.Start = Now
-       and then Result.Finish in Now .. B.Free_At (S)
-       and then Result.Struck <= B.Free_At (S)
-       and then
-         (for all T in Segment =>
-            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
-       and then
-         (for all N in Node_Index =>
-            (if B.Nodes'Old (N).Segment /= S
-             then B.Nodes (N) = B.Nodes'Old (N)))
+       Is_Same_Beyond (B, B'Old, S)
+       and then Is_In_Time (Result, Now, B.Free_At (S))
        and then Result.Winner = Winner
        and then Result.Frame = Offers (Winner).Frame
        and then Result.Ended /= Silence
@@ -103,16 +93,7 @@ is
      Global => null,
      Pre    => B.Free_At (S) = Now and then Fits (Roles, B, S),
      Post   =>
-       B.Times = B.Times'Old
-       and then B.Line = B.Line'Old
-       and then Now <= B.Free_At (S)
-       and then
-         (for all T in Segment =>
-            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
-       and then
-         (for all N in Node_Index =>
-            (if B.Nodes'Old (N).Segment /= S
-             then B.Nodes (N) = B.Nodes'Old (N)));
+       Is_Same_Beyond (B, B'Old, S) and then Now <= B.Free_At (S);
    --  A start of frame, and then nobody sends: the sixth recessive bit behind
    --  it is a stuff error for everyone.
 
@@ -121,16 +102,7 @@ is
      Global => null,
      Pre    => B.Free_At (S) = Now,
      Post   =>
-       B.Times = B.Times'Old
-       and then B.Line = B.Line'Old
-       and then Now <= B.Free_At (S)
-       and then
-         (for all T in Segment =>
-            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
-       and then
-         (for all N in Node_Index =>
-            (if B.Nodes'Old (N).Segment /= S
-             then B.Nodes (N) = B.Nodes'Old (N)));
+       Is_Same_Beyond (B, B'Old, S) and then Now <= B.Free_At (S);
    --  A dominant bus: whoever begins to send loses arbitration, so that all
    --  are receivers, and count.
 
@@ -148,18 +120,8 @@ is
          (Outcome'(Start => Now, Finish => Now, Struck => Now,
                    others => <>)),
      Post   =>
-       B.Times = B.Times'Old
-       and then B.Line = B.Line'Old
-       and then Result.Start = Now
-       and then Result.Finish in Now .. B.Free_At (S)
-       and then Result.Struck <= B.Free_At (S)
-       and then
-         (for all T in Segment =>
-            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
-       and then
-         (for all N in Node_Index =>
-            (if B.Nodes'Old (N).Segment /= S
-             then B.Nodes (N) = B.Nodes'Old (N)))
+       Is_Same_Beyond (B, B'Old, S)
+       and then Is_In_Time (Result, Now, B.Free_At (S))
        and then
          (for all N in Node_Index =>
             not Result.Sent (N) and then not Result.Heard (N))

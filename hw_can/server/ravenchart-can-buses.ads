@@ -106,6 +106,29 @@ is
    --  frame as valid one bit before its transmitter: so a frame that ended in
    --  an error frame may have been heard.
 
+   function Is_Same_Beyond
+     (B, Before : Bus; S : Segment) return Boolean
+   is (B.Times = Before.Times
+       and then B.Line = Before.Line
+       and then
+         (for all T in Segment =>
+            (if T /= S then B.Free_At (T) = Before.Free_At (T)))
+       and then
+         (for all N in Node_Index =>
+            (if Before.Nodes (N).Segment /= S
+             then B.Nodes (N) = Before.Nodes (N))))
+   with Ghost, Global => null;
+   --  Is the bus as before, but for segment S and the nodes on it?
+
+   function Is_In_Time
+     (Result : Outcome; Now, Free_At : Nanoseconds) return Boolean
+   is (Result.Start = Now
+       and then Result.Finish in Now .. Free_At
+       and then Result.Struck <= Free_At)
+   with Ghost, Global => null;
+   --  Do the instants of Result lie between Now and the time from which the
+   --  segment is free?
+
    procedure Pass (B : in out Bus; S : Segment; Now : Nanoseconds)
    with
      Global => null,
@@ -153,18 +176,8 @@ is
      Global => null,
      Pre    => B.Free_At (S) = Now,
      Post   =>
-       B.Times = B.Times'Old
-       and then B.Line = B.Line'Old
-       and then Result.Start = Now
-       and then Result.Finish in Now .. B.Free_At (S)
-       and then Result.Struck <= B.Free_At (S)
-       and then
-         (for all T in Segment =>
-            (if T /= S then B.Free_At (T) = B.Free_At'Old (T)))
-       and then
-         (for all N in Node_Index =>
-            (if B.Nodes'Old (N).Segment /= S
-             then B.Nodes (N) = B.Nodes'Old (N)))
+       Is_Same_Beyond (B, B'Old, S)
+       and then Is_In_Time (Result, Now, B.Free_At (S))
        and then
          (for all N in Node_Index =>
             (if Result.Sent (N)

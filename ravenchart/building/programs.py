@@ -28,9 +28,9 @@ from .checking import Checked, is_usual
 
 DRIVER_FOLDERS = {
     "loopback": ("drivers/loopback",),
-    "slcan": ("drivers/slcan", "drivers/tcp"),
-    "bus": ("drivers/bus", "drivers/tcp"),
-    "socketcan": ("drivers/socketcan",),
+    "slcan": ("drivers/slcan", "drivers/tcp", "drivers/sockets"),
+    "bus": ("drivers/bus", "drivers/tcp", "drivers/sockets"),
+    "socketcan": ("drivers/socketcan", "drivers/sockets"),
     "ctucanfd": ("drivers/ctucanfd",),
     "xilinx": ("drivers/xilinx",),
 }

@@ -41,7 +41,7 @@ def _driver(*names: str) -> Touched:
 
 
 WHERE: Mapping[str, Touched] = {
-    "ASM-005": _driver("slcan", "bus"),
+    "ASM-005": _driver("slcan", "bus", "socketcan"),
     "ASM-007": _never,  # withdrawn
     "ASM-010": _never,  # the bus server: a bench
     "ASM-011": _driver("socketcan"),

@@ -20,7 +20,7 @@ from ravenchart.proof.ages import AGES
 RECORDS = ROOT / "proofs" / "records"
 """Of the examples and of the runtime: a folder for each age of gnatprove."""
 ADA = (".ads", ".adb")
-CONTROLLERS = "ravenchart-can-controllers.adb"
+DRIVER = "ravenchart-can-controllers-driver.adb"
 """The body of a CAN driver, which a program with a bus instantiates."""
 UNKNOWN_TOOL = "gnatprove, version not recorded"
 
@@ -133,7 +133,7 @@ def judged(record: Record, problems: Iterable[str]) -> Record:
 def missing(program: Program, record: Record, driver: str) -> Iterator[str]:
     """Sources of a program that the record does not have, with its CAN driver."""
     recorded = {name for name, _ in record.sources}
-    body = f"hw_can/{DRIVER_FOLDERS[driver][0]}/{CONTROLLERS}"
+    body = f"hw_can/{DRIVER_FOLDERS[driver][0]}/{DRIVER}"
     if program.part.messages and body not in recorded:
         yield f"the driver {driver} is not in the proof record"
     for path in own_sources(program):

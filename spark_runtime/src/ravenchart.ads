@@ -32,6 +32,11 @@ is
    with Global => null;
    --  One more, and no more than the last value.
 
+   function Sum (A, B : Event_Count) return Event_Count
+   is (if A > Event_Count'Last - B then Event_Count'Last else A + B)
+   with Global => null;
+   --  Both together, and no more than the last value.
+
    type Freshness is (Never_Received, Fresh, Stale);
    --  What an input port knows about the value it holds.
 

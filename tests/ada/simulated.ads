@@ -5,11 +5,15 @@ with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
 with Ravenchart.Can.Bus_Nodes;
 with Ravenchart.Can.Buses;
+with Ravenchart.Can.Fault_Confinement;
 with Ravenchart.Can.Line_Events;
 with Ravenchart.Can.Networks;
 
 package Simulated is
    use Ravenchart.Can;
+
+   Bit : constant Ravenchart.Nanoseconds := 2_000;
+   --  At 500 kbit/s.
 
    Net      : Networks.Network;
    Result   : Buses.Outcome;
@@ -30,5 +34,21 @@ package Simulated is
    procedure Happen
      (Kind : Line_Events.Event_Kind; Node : Bus_Nodes.Node_Index := 1);
    --  Something happens to the line; who babbles sends identifier 0.
+
+   function Plain
+     (Id : Identifier; Data : Interfaces.Unsigned_64 := 0)
+      return Bus_Frames.Bus_Frame
+   is (Family => Bus_Frames.Classic,
+       Plain  => Data_Frame (Id, Ravenchart.Can.Standard, 8, Data));
+   --  A classic frame of eight bytes.
+
+   function Transmit_Errors (I : Bus_Nodes.Node_Index) return Error_Count
+   is (Fault_Confinement.Transmit_Errors (Net.Bus.Nodes (I).Confinement));
+
+   function Receive_Errors (I : Bus_Nodes.Node_Index) return Error_Count
+   is (Fault_Confinement.Receive_Errors (Net.Bus.Nodes (I).Confinement));
+
+   function State (I : Bus_Nodes.Node_Index) return Controller_State
+   is (Fault_Confinement.State (Net.Bus.Nodes (I).Confinement));
 
 end Simulated;

@@ -1,39 +1,31 @@
---  Authentication: the published MACs, what stands where in a frame, and
---  attacks between sender and receiver.
+--  Authentication: what stands where in a frame, and attacks between sender
+--  and receiver.
 --
 --  The first argument is how many attacks of each kind are tried, 10 unless
 --  given. With "print" as the argument: sealed frames of every setting, a
 --  line each, for a comparison with another implementation.
 
-with Ada.Command_Line;
 with Ada.Text_IO;
 with Aes_Cmac;
+with Example_Key;
 with Facts;
+with Hex_Frames;
 with Interfaces;
+with Random_Numbers;
 with Ravenchart.Can.Any_Frames;
 with Ravenchart.Can.Authentication;
 with Ravenchart.Can.Fd_Frames;
+with Trials;
 
 procedure Test_Authentication is
+   use Example_Key;
    use Interfaces;
+   use Random_Numbers;
    use Ravenchart.Can.Any_Frames;
    use Ravenchart.Can.Authentication;
    use Ravenchart.Can.Fd_Frames;
 
    Base : constant Ravenchart.Can.Frame_Format := Ravenchart.Can.Standard;
-
-   Key : constant Tag_Bytes :=
-     (16#2B#, 16#7E#, 16#15#, 16#16#, 16#28#, 16#AE#, 16#D2#, 16#A6#,
-      16#AB#, 16#F7#, 16#15#, 16#88#, 16#09#, 16#CF#, 16#4F#, 16#3C#);
-   --  That of the examples of RFC 4493.
-
-   Seed : Unsigned_64 := 1;
-
-   function Random return Unsigned_64;
-   --  The next number of a linear congruential generator.
-
-   function Random (First, Last : Natural) return Natural
-   is (First + Natural (Random mod Unsigned_64 (Last - First + 1)));
 
    Settings : constant array (Positive range <>) of Setting :=
      ((16#0123#, 8, 1, 3),
@@ -81,9 +73,6 @@ procedure Test_Authentication is
    is (Natural'Image (S.Length) & Natural'Image (S.Freshness_Bytes)
        & Natural'Image (S.Mac_Bytes));
 
-   procedure Check_Macs;
-   --  The examples of RFC 4493.
-
    procedure Check_Layout;
    --  Where everything stands.
 
@@ -97,16 +86,6 @@ procedure Test_Authentication is
    --  Attacks of one kind, with good frames between them.
 
    procedure Print;
-
-   ------------
-   -- Random --
-   ------------
-
-   function Random return Unsigned_64 is
-   begin
-      Seed := Seed * 6_364_136_223_846_793_005 + 1_442_695_040_888_963_407;
-      return Rotate_Left (Seed, 31);
-   end Random;
 
    ------------
    -- Sealed --
@@ -156,50 +135,6 @@ procedure Test_Authentication is
       F.Fd.Bytes (Bit / 8) :=
         F.Fd.Bytes (Bit / 8) xor Shift_Left (1, Bit mod 8);
    end Flip;
-
-   ----------------
-   -- Check_Macs --
-   ----------------
-
-   procedure Check_Macs is
-      Message : constant Input_Bytes :=
-        (16#6B#, 16#C1#, 16#BE#, 16#E2#, 16#2E#, 16#40#, 16#9F#, 16#96#,
-         16#E9#, 16#3D#, 16#7E#, 16#11#, 16#73#, 16#93#, 16#17#, 16#2A#,
-         16#AE#, 16#2D#, 16#8A#, 16#57#, 16#1E#, 16#03#, 16#AC#, 16#9C#,
-         16#9E#, 16#B7#, 16#6F#, 16#AC#, 16#45#, 16#AF#, 16#8E#, 16#51#,
-         16#30#, 16#C8#, 16#1C#, 16#46#, 16#A3#, 16#5C#, 16#E4#, 16#11#,
-         16#E5#, 16#FB#, 16#C1#, 16#19#, 16#1A#, 16#0A#, 16#52#, 16#EF#,
-         16#F6#, 16#9F#, 16#24#, 16#45#, 16#DF#, 16#4F#, 16#9B#, 16#17#,
-         16#AD#, 16#2B#, 16#41#, 16#7B#, 16#E6#, 16#6C#, 16#37#, 16#10#,
-         others => 0);
-
-      procedure Hold (Length : Natural; Expected : Tag_Bytes);
-
-      procedure Hold (Length : Natural; Expected : Tag_Bytes) is
-         Found : constant Mac_Answer := Aes_Cmac.Cmac (Key, (Length, Message));
-      begin
-         Facts.Check
-           ("RFC 4493, a message of" & Natural'Image (Length) & " bytes",
-            Found.Is_Known and then Found.Tag = Expected);
-      end Hold;
-   begin
-      Hold
-        (0,
-         (16#BB#, 16#1D#, 16#69#, 16#29#, 16#E9#, 16#59#, 16#37#, 16#28#,
-          16#7F#, 16#A3#, 16#7D#, 16#12#, 16#9B#, 16#75#, 16#67#, 16#46#));
-      Hold
-        (16,
-         (16#07#, 16#0A#, 16#16#, 16#B4#, 16#6B#, 16#4D#, 16#41#, 16#44#,
-          16#F7#, 16#9B#, 16#DD#, 16#9D#, 16#D0#, 16#4A#, 16#28#, 16#7C#));
-      Hold
-        (40,
-         (16#DF#, 16#A6#, 16#67#, 16#47#, 16#DE#, 16#9A#, 16#E6#, 16#30#,
-          16#30#, 16#CA#, 16#32#, 16#61#, 16#14#, 16#97#, 16#C8#, 16#27#));
-      Hold
-        (64,
-         (16#51#, 16#F0#, 16#BE#, 16#BF#, 16#7E#, 16#3B#, 16#9D#, 16#92#,
-          16#FC#, 16#49#, 16#74#, 16#17#, 16#79#, 16#36#, 16#3C#, 16#FE#));
-   end Check_Macs;
 
    ------------------
    -- Check_Layout --
@@ -510,7 +445,6 @@ procedure Test_Authentication is
    -----------
 
    procedure Print is
-      Hex : constant String := "0123456789abcdef";
    begin
       for S of Settings loop
          for I in 1 .. 200 loop
@@ -519,37 +453,27 @@ procedure Test_Authentication is
                  Shift_Right (Random, Random (0, 63));
                Frame : constant Any_Frame :=
                  Sealed (S, Random (0, 1_000_000), Value);
-               Line  : String (1 .. 2 * S.Length);
             begin
-               for J in 0 .. S.Length - 1 loop
-                  Line (2 * J + 1) := Hex (Natural (Byte (Frame, J) / 16) + 1);
-                  Line (2 * J + 2) :=
-                    Hex (Natural (Byte (Frame, J) and 15) + 1);
-               end loop;
                Ada.Text_IO.Put_Line
                  (S.Data_Id'Image & S.Freshness_Bytes'Image
-                  & S.Mac_Bytes'Image & Value'Image & " " & Line);
+                  & S.Mac_Bytes'Image & Value'Image & " "
+                  & Hex_Frames.Image (Frame, S.Length));
             end;
          end loop;
       end loop;
    end Print;
 
-   Times : Positive := 10;
 begin
-   if Ada.Command_Line.Argument_Count = 1 then
-      if Ada.Command_Line.Argument (1) = "print" then
-         Print;
-         return;
-      end if;
-      Times := Positive'Value (Ada.Command_Line.Argument (1));
+   if Trials.Prints then
+      Print;
+      return;
    end if;
-   Check_Macs;
    Check_Layout;
    Check_Freshness;
    Check_Statuses;
    for S of Settings loop
       for Kind in Attack loop
-         Check_Attacks (S, Kind, Times);
+         Check_Attacks (S, Kind, Trials.Times);
       end loop;
    end loop;
    Facts.Finish;

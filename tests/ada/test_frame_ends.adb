@@ -22,21 +22,9 @@ procedure Test_Frame_Ends is
    use type Buses.Ending;
    use type Bus_Frames.Bus_Frame;
 
-   Bit : constant Nanoseconds := 2_000;
-
-   function Plain (Id : Identifier) return Bus_Frames.Bus_Frame
-   is (Family => Bus_Frames.Classic,
-       Plain  => Data_Frame (Id, Ravenchart.Can.Standard, 8, 0));
-
    function Bits_Of (Frame : Bus_Frames.Bus_Frame) return Nanoseconds
    is (Nanoseconds (Wire.Length (Bus_Frames.Image_Of (Frame))) - 3);
    --  Up to the last bit of the end of frame.
-
-   function Transmit_Errors (I : Node_Index) return Error_Count
-   is (Fault_Confinement.Transmit_Errors (Net.Bus.Nodes (I).Confinement));
-
-   function Receive_Errors (I : Node_Index) return Error_Count
-   is (Fault_Confinement.Receive_Errors (Net.Bus.Nodes (I).Confinement));
 
    function Listeners return Natural;
    --  How many have heard the last frame.

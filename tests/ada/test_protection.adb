@@ -1,36 +1,29 @@
---  End-to-end protection: the published check values, error patterns one by
---  one, and faults of the way between sender and receiver.
+--  End-to-end protection: error patterns one by one, and faults of the way
+--  between sender and receiver.
 --
 --  The first argument is how many faults of each kind are injected, 10 unless
 --  given; from 1_000 on the error patterns have three bits where the profile
 --  finds as many, else two. With "print" as the argument: protected frames of
 --  every setting, a line each, for a comparison with another implementation.
 
-with Ada.Command_Line;
 with Ada.Text_IO;
 with Facts;
+with Hex_Frames;
 with Interfaces;
+with Random_Numbers;
 with Ravenchart.Can.Any_Frames;
-with Ravenchart.Can.Data_Crcs;
 with Ravenchart.Can.Fd_Frames;
 with Ravenchart.Can.Protection;
+with Trials;
 
 procedure Test_Protection is
    use Interfaces;
+   use Random_Numbers;
    use Ravenchart.Can;
    use Ravenchart.Can.Any_Frames;
-   use Ravenchart.Can.Data_Crcs;
    use Ravenchart.Can.Protection;
 
    Base : constant Frame_Format := Ravenchart.Can.Standard;
-
-   Seed : Unsigned_64 := 1;
-
-   function Random return Unsigned_64;
-   --  The next number of a linear congruential generator.
-
-   function Random (First, Last : Natural) return Natural
-   is (First + Natural (Random mod Unsigned_64 (Last - First + 1)));
 
    Ids : constant Id_List :=
      (16#01#, 16#D3#, 16#2A#, 16#97#, 16#6C#, 16#45#, 16#B8#, 16#0F#,
@@ -87,9 +80,6 @@ procedure Test_Protection is
    is (Profile'Image (S.Kind) & " " & Id_Mode'Image (S.Mode)
        & Natural'Image (S.Length));
 
-   procedure Check_Crcs;
-   --  The values of SWS_CRCLibrary.
-
    procedure Check_Examples;
    --  The examples of PRS_E2EProtocol: all data 0, two frames.
 
@@ -107,16 +97,6 @@ procedure Test_Protection is
 
    procedure Print;
 
-   ------------
-   -- Random --
-   ------------
-
-   function Random return Unsigned_64 is
-   begin
-      Seed := Seed * 6_364_136_223_846_793_005 + 1_442_695_040_888_963_407;
-      return Rotate_Left (Seed, 31);
-   end Random;
-
    ----------
    -- Flip --
    ----------
@@ -130,53 +110,6 @@ procedure Test_Protection is
            F.Fd.Bytes (Bit / 8) xor Shift_Left (1, Bit mod 8);
       end if;
    end Flip;
-
-   ----------------
-   -- Check_Crcs --
-   ----------------
-
-   procedure Check_Crcs is
-      Digits_1_To_9 : constant Fd_Frames.Fd_Bytes :=
-        (16#31#, 16#32#, 16#33#, 16#34#, 16#35#, 16#36#, 16#37#, 16#38#,
-         16#39#, others => 0);
-      Sample        : constant Fd_Frames.Fd_Bytes :=
-        (16#33#, 16#22#, 16#55#, 16#AA#, 16#BB#, 16#CC#, 16#DD#, 16#EE#,
-         16#FF#, others => 0);
-      Ones          : constant Fd_Frames.Fd_Bytes := (others => 16#FF#);
-
-      function Eight
-        (Kind : Crc_Kind; Item : Fd_Frames.Fd_Bytes; Past : Natural)
-         return Register
-      is (Shift_Right (Run (Kind, 16#FF00#, Item, 0, Past), 8) xor 16#FF#);
-
-      function Sixteen
-        (Item : Fd_Frames.Fd_Bytes; Past : Natural) return Register
-      is (Run (Crc_16_Ccitt, 16#FFFF#, Item, 0, Past));
-   begin
-      Facts.Check
-        ("CRC-8 SAE J1850 of 123456789",
-         Eight (Crc_8_J1850, Digits_1_To_9, 9) = 16#4B#);
-      Facts.Check
-        ("CRC-8 SAE J1850 of the published samples",
-         Eight (Crc_8_J1850, Sample, 9) = 16#CB#
-         and then Eight (Crc_8_J1850, Ones, 4) = 16#74#
-         and then Eight (Crc_8_J1850, (others => 0), 4) = 16#59#);
-      Facts.Check
-        ("CRC-8H2F of 123456789",
-         Eight (Crc_8_H2f, Digits_1_To_9, 9) = 16#DF#);
-      Facts.Check
-        ("CRC-8H2F of the published samples",
-         Eight (Crc_8_H2f, Sample, 9) = 16#11#
-         and then Eight (Crc_8_H2f, Ones, 4) = 16#6C#
-         and then Eight (Crc_8_H2f, (others => 0), 4) = 16#12#);
-      Facts.Check
-        ("CRC-16 CCITT of 123456789", Sixteen (Digits_1_To_9, 9) = 16#29B1#);
-      Facts.Check
-        ("CRC-16 CCITT of the published samples",
-         Sixteen (Sample, 9) = 16#F53F#
-         and then Sixteen (Ones, 4) = 16#1D0F#
-         and then Sixteen ((others => 0), 4) = 16#84C0#);
-   end Check_Crcs;
 
    --------------------
    -- Check_Examples --
@@ -471,7 +404,6 @@ procedure Test_Protection is
    -----------
 
    procedure Print is
-      Hex : constant String := "0123456789abcdef";
    begin
       for Index in Settings'Range loop
          declare
@@ -481,44 +413,33 @@ procedure Test_Protection is
             for I in 1 .. 300 loop
                declare
                   Frame : Any_Frame := Blank (S, Random);
-                  Line  : String (1 .. 2 * S.Length);
                begin
                   Protect (State, S, Frame);
-                  for J in 0 .. S.Length - 1 loop
-                     Line (2 * J + 1) :=
-                       Hex (Natural (Byte (Frame, J) / 16) + 1);
-                     Line (2 * J + 2) :=
-                       Hex (Natural (Byte (Frame, J) and 15) + 1);
-                  end loop;
                   Ada.Text_IO.Put_Line
                     (Profile'Image (S.Kind) & " " & Id_Mode'Image (S.Mode)
-                     & Unsigned_16'Image (S.Data_Id) & " " & Line);
+                     & Unsigned_16'Image (S.Data_Id) & " "
+                     & Hex_Frames.Image (Frame, S.Length));
                end;
             end loop;
          end;
       end loop;
    end Print;
 
-   Times : Positive := 10;
 begin
-   if Ada.Command_Line.Argument_Count = 1 then
-      if Ada.Command_Line.Argument (1) = "print" then
-         Print;
-         return;
-      end if;
-      Times := Positive'Value (Ada.Command_Line.Argument (1));
+   if Trials.Prints then
+      Print;
+      return;
    end if;
-   Check_Crcs;
    Check_Examples;
    Check_Statuses;
    for S of Settings loop
       for Kind in Fault loop
-         Check_Faults (S, Kind, Times);
+         Check_Faults (S, Kind, Trials.Times);
       end loop;
       if S.Length <= 8 then
          Check_Patterns
-           (S, (if Times >= 1_000 then Found_Bits (S.Kind) else 2));
-         Check_Noise (S, 100 * Times);
+           (S, (if Trials.Times >= 1_000 then Found_Bits (S.Kind) else 2));
+         Check_Noise (S, 100 * Trials.Times);
       end if;
    end loop;
    Facts.Finish;

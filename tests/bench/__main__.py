@@ -18,7 +18,7 @@ from ravenchart.building import checking, generation
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 from . import buses as bench_buses
 from . import charts as bench_charts
@@ -44,10 +44,7 @@ def median_ms(work: Callable[[], object]) -> float:
 
 def runtime_operations() -> None:
     """The Ada bench, built with -O2 and checks off."""
-    where = ROOT / "tests" / "ada"
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "bench_runtime.adb"]
-    toolchain.run("gprbuild", options, where, {"MODE": "release", "CAN_DRIVER": "loopback"})
-    program = ROOT / "obj" / "tests-release-loopback" / "bin" / "bench_runtime"
+    program = built("release", "loopback", "bench_runtime") / "bench_runtime"
     print("runtime (-O2, ceiling locking; medians):")
     done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=True)
     for line in done.stdout.splitlines():

@@ -20,9 +20,8 @@ from dataclasses import dataclass
 import can
 
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 PINGS = 500
 """Frames whose latency is taken, one by one."""
@@ -113,10 +112,7 @@ def virtual() -> Iterator[Ends]:
 @contextmanager
 def slcan() -> Iterator[Ends]:
     """The Ada echo with the slcan driver, built with -O2 and checks off."""
-    where = ROOT / "tests" / "ada"
-    options = ["-p", "-q", "-P", "tests.gpr", f"{ECHO}.adb"]
-    toolchain.run("gprbuild", options, where, {"MODE": "release", "CAN_DRIVER": "slcan"})
-    program = ROOT / "obj" / "tests-release-slcan" / "bin" / ECHO
+    program = built("release", "slcan", ECHO) / ECHO
     environment = {**os.environ, "RAVENCHART_CAN_PORT": "0"}
     with subprocess.Popen(
         [program, "0"], env=environment, stdout=subprocess.PIPE, text=True

@@ -23,13 +23,11 @@ from pathlib import Path
 from cantools.database import Database, DecodeError
 from cantools.database.can import Message as DbcMessage
 
-from ravenchart.building import checking, generation
+from ravenchart.building import checking
 from ravenchart.databases import database, exporting
 from ravenchart.failures import Failure, Refused
-from ravenchart.gen.derive.completion import programs
-from ravenchart.gen.emit.program import folder_of, generate
 from ravenchart.gen.model.system import Message, System
-from tests.support.codec_runner import Runner, literal
+from tests.support.codec_runner import Runner, literal, runners_of
 
 FRAMES = 20
 """Random frames for each message."""
@@ -91,20 +89,7 @@ def _parts(text: str) -> Iterator[str]:
 def _built(text: str, folder: Path) -> list[Runner]:
     """The codecs of a model as programs."""
     folder.mkdir()
-    checked = _checked(text, folder)
-    files = generate(checked.system, generation.claims(checked))
-    runners = []
-    for part in programs(checked.system):
-        at = folder_of(part, checked.system)
-        own = {n.removeprefix(at): t for n, t in files.items() if n.startswith(at)}
-        place = folder / part.nodes[0].name
-        place.mkdir()
-        for name, content in own.items():
-            if "/" not in name:
-                (place / name).write_text(content, encoding="utf-8")
-        if part.messages:
-            runners.append(Runner.built(part, place, place))
-    return runners
+    return [runner for _, runner in runners_of(_checked(text, folder), folder)]
 
 
 def _random_frame(drawn: random.Random, message: Message) -> bytes:

@@ -27,18 +27,20 @@ from ravenchart.hw_can.bench.bus_records import (
     greeting_data,
 )
 
+from .listening import Listener
+
 NAME = "stand-in"
 
 
-class BusServer:
-    """Listens on a free port of this machine; one thread for each client."""
+class BusServer(Listener):
+    """A stand-in for the bus server."""
 
     def __init__(self, *, fd: bool = True, version: int = VERSION, first: bytes = b"") -> None:
         """``first`` is said in place of a welcome."""
+        super().__init__()
         self._flags = int(Flag.FD) if fd else 0
         self._version, self.first = version, first
-        self._socket = socket.create_server(("127.0.0.1", 0))
-        self.channel = f"127.0.0.1:{self._socket.getsockname()[1]}"
+        self.channel = self.address
         self.confirms = True
         self.silent = False
         """Nobody is welcomed, nor refused: behind ``first`` there is nothing."""
@@ -52,7 +54,7 @@ class BusServer:
         self._lock = threading.Lock()
         self._start = time.time_ns()
         self._joined = 0
-        threading.Thread(target=self._accept, daemon=True).start()
+        self.listen()
 
     @property
     def now(self) -> int:
@@ -70,26 +72,9 @@ class BusServer:
             for link, _ in self.clients.values():
                 link.sendall(octets)
 
-    def cut(self) -> None:
-        """Drop every client without a word."""
+    def _links(self) -> list[socket.socket]:
         with self._lock:
-            for link, _ in self.clients.values():
-                with suppress(OSError):
-                    link.shutdown(socket.SHUT_RDWR)
-
-    def close(self) -> None:
-        """End, without a word to anybody."""
-        with suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
-        self._socket.close()
-        self.cut()
-
-    def _accept(self) -> None:
-        with suppress(OSError):
-            while True:
-                link, _ = self._socket.accept()
-                link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                threading.Thread(target=self._serve, args=(link,), daemon=True).start()
+            return [link for link, _ in self.clients.values()]
 
     def _serve(self, link: socket.socket) -> None:
         node = 0

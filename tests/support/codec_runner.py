@@ -8,12 +8,15 @@ valid and the values in them. Enumerations are given by position.
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ravenchart.building import checking, generation
+from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
+from ravenchart.gen.emit.program import folder_of, generate
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.signals import Signal
 from ravenchart.gen.model.system import Message, System
@@ -147,6 +150,27 @@ class Runner:
         number = self.system.messages.index(message)
         answers = self._answers([f"U {number} {' '.join(map(str, f))}" for f in frames])
         return [tuple(values) if valid else None for valid, *values in answers]
+
+
+def runners_of(
+    checked: checking.Checked, folder: Path, machine: Machine = HERE
+) -> Iterator[tuple[Path, Runner]]:
+    """The codecs of each node of a model that has some, and their folder below ``folder``.
+
+    The folder has the databases of the model too.
+    """
+    files = generate(checked.system, generation.claims(checked))
+    databases = {name: text for name, text in files.items() if name.endswith(".dbc")}
+    for part in programs(checked.system):
+        if part.messages:
+            at = folder_of(part, checked.system)
+            own = {n.removeprefix(at): t for n, t in files.items() if n.startswith(at)}
+            place = folder / part.nodes[0].name
+            place.mkdir(parents=True)
+            for name, text in {**own, **databases}.items():
+                if "/" not in name:
+                    (place / name).write_text(text, encoding="utf-8")
+            yield place, Runner.built(part, place, place, machine)
 
 
 def boundaries(signal: Signal) -> list[int]:

@@ -75,7 +75,7 @@ def record(home: Path, units: Sequence[str] = UNITS, outside: Iterable[str] = ()
     """The record of the program that is there."""
     checked = checking.check(home / "model.yaml", deadlines=False)
     (program,) = programs.programs_of(checked)
-    driver = ROOT / "hw_can" / "drivers" / "slcan" / records.CONTROLLERS
+    driver = ROOT / "hw_can" / "drivers" / "slcan" / records.DRIVER
     sources = [*records.own_sources(program), program.project, driver]
     (home / "proof.toml").write_text(_text(sources, units, outside), encoding="utf-8")
 

@@ -3,43 +3,27 @@
 from __future__ import annotations
 
 import socket
-import threading
 from contextlib import suppress
+
+from .listening import Listener
 
 FRAMES = b"tTrRdDbB"
 
 
-class SlcanRelay:
-    """Listens on a free port of this machine; one thread for each client."""
+class SlcanRelay(Listener):
+    """An adapter for each TCP client."""
 
     def __init__(self) -> None:
-        self._socket = socket.create_server(("127.0.0.1", 0))
-        self.channel = f"socket://127.0.0.1:{self._socket.getsockname()[1]}"
+        super().__init__()
+        self.channel = f"socket://{self.address}"
         self._clients: list[socket.socket] = []
-        threading.Thread(target=self._accept, daemon=True).start()
+        self.listen()
 
-    def cut(self) -> None:
-        """Drop every client without a word."""
-        for link in self._clients:
-            with suppress(OSError):
-                link.shutdown(socket.SHUT_RDWR)
-
-    def close(self) -> None:
-        """End."""
-        with suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
-        self._socket.close()
-        self.cut()
-
-    def _accept(self) -> None:
-        with suppress(OSError):
-            while True:
-                link, _ = self._socket.accept()
-                link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                self._clients.append(link)
-                threading.Thread(target=self._serve, args=(link,), daemon=True).start()
+    def _links(self) -> list[socket.socket]:
+        return self._clients
 
     def _serve(self, link: socket.socket) -> None:
+        self._clients.append(link)
         rest = b""
         with suppress(OSError):
             while data := link.recv(4096):

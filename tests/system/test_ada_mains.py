@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 from tests.support.modes import MODES
 
 MAINS = (
@@ -23,11 +23,14 @@ MAINS = (
     "test_wire",
     "test_fault_confinement",
     "test_fault_notices",
+    "test_data_crcs",
     "test_protection",
+    "test_cmac",
     "test_authentication",
     "test_transmissions",
     "test_iso_tp",
     "test_bus",
+    "test_bus_faults",
     "test_frame_ends",
     "test_processors",
     "test_supervision",
@@ -50,9 +53,7 @@ LIMIT = 300.0
 def mode(request: pytest.FixtureRequest) -> str:
     """Both builds of the tests."""
     chosen: str = request.param
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr"]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": chosen, "CAN_DRIVER": "loopback"})
+    built(chosen, "loopback")
     return chosen
 
 
@@ -77,10 +78,7 @@ def test_the_supervisor_ends_a_program_whose_main_program_does_not(mode: str) ->
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize(("driver", "main"), OF_DRIVERS)
 def test_every_fact_of_a_driver_holds(mode: str, driver: str, main: str) -> None:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", main]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": driver})
-    _holds(ROOT / "obj" / f"tests-{mode}-{driver}" / "bin" / main)
+    _holds(built(mode, driver, main) / main)
 
 
 def _holds(program: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -13,8 +12,7 @@ import pytest
 
 from ravenchart.analysis.system.observed import Observation
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import ran
 from tests.support.on_bus import Play, runner
 from tests.support.secoc import PUMP, VALVE, Secured
 
@@ -31,15 +29,8 @@ SENT = {
 """What the controller sends, by identifier: with the last freshness value of an earlier run."""
 
 
-def _built(mode: str) -> Path:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "test_authentication.adb"]
-    scenario = {"MODE": mode, "CAN_DRIVER": "loopback"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", scenario)
-    return ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "test_authentication"
-
-
 def test_an_independent_implementation_seals_every_frame_so() -> None:
-    done = subprocess.run([_built("release"), "print"], capture_output=True, text=True, timeout=60)
+    done = ran("test_authentication", "print", timeout=60)
     lines = [line.split() for line in done.stdout.splitlines()]
     assert len(lines) == 5 * 200
     for data_id, freshness, mac, value, text in lines:
@@ -51,7 +42,7 @@ def test_an_independent_implementation_seals_every_frame_so() -> None:
 
 def test_of_many_attacks_of_each_kind_none_succeeds() -> None:
     times = "100000" if "RAVENCHART_LONG_TESTS" in os.environ else "1000"
-    done = subprocess.run([_built("release"), times], capture_output=True, text=True)
+    done = ran("test_authentication", times)
     assert (done.returncode, "not ok" in done.stdout) == (0, False), done.stdout
 
 

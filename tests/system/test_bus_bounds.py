@@ -12,8 +12,7 @@ import pytest
 from ravenchart.analysis.core.bus import Bus, Errors, Frame
 from ravenchart.analysis.core.can import analyse, load
 from ravenchart.analysis.core.frames import classic_bits, rank
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 BIT = 2_000
 SECOND = 10**9
@@ -38,10 +37,7 @@ class Message:
 
 @pytest.fixture(scope="module")
 def program() -> Path:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "bus_load.adb"]
-    names = {"MODE": "release", "CAN_DRIVER": "loopback"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", names)
-    return ROOT / "obj" / "tests-release-loopback" / "bin" / "bus_load"
+    return built("release", "loopback", "bus_load") / "bus_load"
 
 
 def messages(seed: int, share: float) -> list[Message]:

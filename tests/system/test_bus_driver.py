@@ -11,32 +11,24 @@ import pytest
 
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.bus_records import Flag, Kind, Record, Status, encode
-from ravenchart.paths import ROOT
 from ravenchart.running.server import running
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 from tests.support.bus_server import BusServer
 from tests.support.can_bus import started
 from tests.support.can_frames import FD_LENGTHS, WAIT, taken
 from tests.support.can_node import JOINED, node
 from tests.support.faults import shows
 
+MAINS = ("can_echo", "test_bus_members")
 MOST_OPEN = 8
 DEPTH = 1000
 """Requests that the driver has open, and frames that its transmit queue holds (nodes.ads)."""
 
 
-def built(mode: str) -> Path:
-    """Where the programs of this mode are."""
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb", "test_bus_members.adb"]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": "bus"})
-    return ROOT / "obj" / f"tests-{mode}-bus" / "bin"
-
-
 @pytest.fixture(scope="module")
 def echo() -> Path:
     """The program, with every contract executed."""
-    return built("checks") / "can_echo"
+    return built("checks", "bus", *MAINS) / "can_echo"
 
 
 def order_burst(bus: can.BusABC, length: int) -> None:
@@ -52,7 +44,7 @@ def counted(messages: list[can.Message]) -> list[int]:
 
 @pytest.mark.parametrize("mode", ["checks", "release"])
 def test_every_fact_of_a_member_holds(mode: str) -> None:
-    program = built(mode) / "test_bus_members"
+    program = built(mode, "bus", *MAINS) / "test_bus_members"
     done = subprocess.run([program], capture_output=True, text=True, timeout=40, check=False)
     facts = [line for line in done.stdout.splitlines() if line.startswith(("ok ", "not ok "))]
     assert facts, done.stdout + done.stderr

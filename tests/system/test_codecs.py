@@ -16,17 +16,16 @@ from cantools.database import Database
 from cantools.database.can import Message as DbcMessage
 
 from ravenchart.building import checking, generation
-from ravenchart.gen.derive.completion import programs
-from ravenchart.gen.emit.program import folder_of, generate
+from ravenchart.gen.emit.program import generate
 from ravenchart.gen.language.terms import IntegerType
 from ravenchart.gen.language.units import count_of
 from ravenchart.gen.model.authentication import FRESHNESS, MAC, REST
 from ravenchart.gen.model.signals import Signal
-from ravenchart.gen.model.system import Message, System
+from ravenchart.gen.model.system import Message
 from ravenchart.hw_can.bench.protection import HEADER
 from ravenchart.paths import ROOT
 from tests.hardware.machines import HERE, OTHERS, Machine
-from tests.support.codec_runner import Runner, Values, boundaries, literal
+from tests.support.codec_runner import Runner, Values, boundaries, literal, runners_of
 from tests.support.elsewhere import needed
 
 FEATURES = ROOT / "tests" / "feature"
@@ -60,31 +59,19 @@ ELSEWHERE = [
 class Peer:
     """The program of a node, for one machine, and the database of the model's bus."""
 
-    def __init__(self, part: System, files: dict[str, str], folder: Path, machine: Machine) -> None:
-        self.system = part
-        for name, text in files.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        self.runner = Runner.built(part, folder, folder, machine)
-        database = cantools.database.load_file(folder / f"{part.buses[0].name}.dbc", strict=True)
+    def __init__(self, runner: Runner, folder: Path) -> None:
+        self.runner = runner
+        self.system = runner.system
+        file = folder / f"{self.system.buses[0].name}.dbc"
+        database = cantools.database.load_file(file, strict=True)
         assert isinstance(database, Database)
         self.database = database
 
 
 def made(model: Path, folder: Path, machine: Machine = HERE) -> list[Peer]:
     """The peers of a model: one for each node whose program has codecs."""
-    checked = checking.check(model)
-    files = generate(checked.system, generation.claims(checked))
-    databases = {name: text for name, text in files.items() if name.endswith(".dbc")}
-    peers = []
-    for part in programs(checked.system):
-        if part.messages:
-            at = folder_of(part, checked.system)
-            own = {n.removeprefix(at): t for n, t in files.items() if n.startswith(at)}
-            place = folder / part.nodes[0].name
-            place.mkdir(parents=True)
-            own = {n: t for n, t in own.items() if "/" not in n}
-            peers.append(Peer(part, {**own, **databases}, place, machine))
-    return peers
+    found = runners_of(checking.check(model), folder, machine)
+    return [Peer(runner, place) for place, runner in found]
 
 
 PEERS = [(case, HERE) for case in CASES]

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
 from tests.hardware.driver_cases import LIMIT, Driver, started
+from tests.support.ada_programs import built
 from tests.support.modes import MODES
 
 SPAN = 0x4000
@@ -45,10 +44,7 @@ class Card:
 @pytest.fixture(scope="module", params=MODES)
 def program(request: pytest.FixtureRequest) -> Path:
     """It echoes, in both builds."""
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
-    variables = {"MODE": request.param, "CAN_DRIVER": "ctucanfd"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
-    return ROOT / "obj" / f"tests-{request.param}-ctucanfd" / "bin" / "can_echo"
+    return built(request.param, "ctucanfd", "can_echo") / "can_echo"
 
 
 @pytest.fixture

@@ -16,6 +16,7 @@ from ravenchart.command_line import main
 from ravenchart.databases.database import Periods, imported
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 COUNT = 4_000
 """Random raw bits of each width, and as many numbers."""
@@ -64,10 +65,7 @@ def expected(raw: int, width: int) -> tuple[list[str], float | None]:
 @pytest.mark.parametrize("mode", ["checks", "release"])
 @pytest.mark.parametrize("width", [32, 64])
 def test_raw_bits_are_the_numbers_that_struct_has(mode: str, width: int) -> None:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "float_lines.adb"]
-    variables = {"MODE": mode, "CAN_DRIVER": "loopback"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
-    program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "float_lines"
+    program = built(mode, "loopback", "float_lines") / "float_lines"
     given = patterns(width)
     rows = (str(raw) if width == 32 else f"{raw >> 32} {raw & 0xFFFFFFFF}" for raw in given)
     done = subprocess.run(

@@ -11,8 +11,7 @@ from pathlib import Path
 import isotp
 import pytest
 
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 LENGTHS = (1, 7, 8, 13, 14, 19, 20, 62, 63, 64)
 
@@ -20,11 +19,7 @@ LENGTHS = (1, 7, 8, 13, 14, 19, 20, 62, 63, 64)
 @pytest.fixture(scope="module")
 def program() -> Path:
     """Both ends, as a program."""
-    mode = "checks"
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "iso_tp_line.adb"]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": "loopback"})
-    return ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "iso_tp_line"
+    return built("checks", "loopback", "iso_tp_line") / "iso_tp_line"
 
 
 class Ends:

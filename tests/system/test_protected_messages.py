@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import time
 from collections.abc import Callable
 from itertools import pairwise
@@ -23,7 +22,7 @@ from ravenchart.hw_can.bench.protection import Wrong
 from ravenchart.paths import ROOT
 from ravenchart.running.result import RunResult
 from ravenchart.running.runs import controller, run_controller
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import ran
 from tests.support.on_bus import runner
 
 pytestmark = pytest.mark.live
@@ -50,15 +49,8 @@ def intact(profile: str, mode: str, data_id: int, data: bytes) -> bool:
     return e2e.p05.e2e_p05_check(kept, data_id, length=size)
 
 
-def _built(mode: str) -> Path:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "test_protection.adb"]
-    scenario = {"MODE": mode, "CAN_DRIVER": "loopback"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", scenario)
-    return ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "test_protection"
-
-
 def test_an_independent_implementation_accepts_every_protected_frame() -> None:
-    done = subprocess.run([_built("release"), "print"], capture_output=True, text=True, timeout=60)
+    done = ran("test_protection", "print", timeout=60)
     lines = [line.split() for line in done.stdout.splitlines()]
     assert len(lines) == 10 * 300
     for profile, mode, data_id, text in lines:
@@ -70,7 +62,7 @@ def test_an_independent_implementation_accepts_every_protected_frame() -> None:
 
 def test_of_many_faults_of_each_kind_none_is_used() -> None:
     times = "100000" if "RAVENCHART_LONG_TESTS" in os.environ else "1000"
-    done = subprocess.run([_built("release"), times], capture_output=True, text=True)
+    done = ran("test_protection", times)
     assert (done.returncode, "not ok" in done.stdout) == (0, False), done.stdout
 
 

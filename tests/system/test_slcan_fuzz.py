@@ -14,8 +14,7 @@ import subprocess
 import pytest
 from can.util import dlc2len
 
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 from tests.support.modes import MODES
 
 STRINGS = 10_000_000 if "RAVENCHART_LONG_TESTS" in os.environ else 200_000
@@ -56,10 +55,7 @@ def meaning(line: bytes) -> str:
 
 @pytest.mark.parametrize("mode", MODES)
 def test_what_is_accepted_is_written_as_it_was_read(mode: str) -> None:
-    options = ["-p", "-q", "-P", "tests.gpr", "slcan_fuzz.adb"]
-    where = ROOT / "tests" / "ada"
-    toolchain.run("gprbuild", options, where, {"MODE": mode, "CAN_DRIVER": "loopback"})
-    program = ROOT / "obj" / f"tests-{mode}-loopback" / "bin" / "slcan_fuzz"
+    program = built(mode, "loopback", "slcan_fuzz") / "slcan_fuzz"
     done = subprocess.run(
         [program, str(STRINGS), str(SHOWN)], capture_output=True, text=True, check=False
     )

@@ -14,8 +14,7 @@ from pathlib import Path
 import can
 import pytest
 
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 from tests.support.can_frames import FD_LENGTHS, WAIT
 
 LIMIT = 20.0
@@ -59,10 +58,7 @@ class Adapter:
 
 @pytest.fixture(scope="module")
 def program() -> Path:
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "can_echo.adb"]
-    variables = {"MODE": "checks", "CAN_DRIVER": "slcan"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", variables)
-    return ROOT / "obj" / "tests-checks-slcan" / "bin" / "can_echo"
+    return built("checks", "slcan", "can_echo") / "can_echo"
 
 
 @contextmanager

@@ -7,8 +7,7 @@ import subprocess
 import pytest
 
 from ravenchart.analysis.core.frames import FD_SIZES, Bits, classic_bits, fd_bits
-from ravenchart.paths import ROOT
-from ravenchart.tools import toolchain
+from tests.support.ada_programs import built
 
 CASES = [
     (kind, extended, length)
@@ -31,10 +30,7 @@ every bit as free, but those around the identifier break the pattern that stuffs
 @pytest.fixture(scope="module")
 def measured() -> Measured:
     """What `test_wire` prints: heads of every pattern, each with the data that stuffs most."""
-    options = ["-p", "-q", "-j0", "-P", "tests.gpr", "test_wire.adb"]
-    names = {"MODE": "release", "CAN_DRIVER": "loopback"}
-    toolchain.run("gprbuild", options, ROOT / "tests" / "ada", names)
-    program = ROOT / "obj" / "tests-release-loopback" / "bin" / "test_wire"
+    program = built("release", "loopback", "test_wire") / "test_wire"
     done = subprocess.run([program], capture_output=True, text=True, timeout=40, check=True)
     found: Measured = {}
     for line in done.stdout.splitlines():

@@ -15,9 +15,7 @@ import pytest
 
 from ravenchart.analysis.present import report
 from ravenchart.behaviour import rules
-from ravenchart.building import checking, programs
 from ravenchart.command_line import main
-from ravenchart.commands.prove import record_of
 from ravenchart.evidence import facts, folder, ledger, records, standards
 from ravenchart.evidence.claim import Kind
 from ravenchart.gen.diagnostics import warning
@@ -481,21 +479,3 @@ def test_every_fault_of_the_matrix_is_in_the_folder(home: Path) -> None:
     text = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
     rows = [line for line in text.splitlines() if line.startswith("| ")]
     assert len(made(home).evidence.faults) == len(rows) - 2
-
-
-def test_prove_writes_a_record_for_each_of_several_nodes() -> None:
-    path = Path("out/proof.toml")
-    assert record_of(path, "drive", several=True) == Path("out/proof-drive.toml")
-    assert record_of(path, "drive", several=False) == path
-
-
-def test_each_of_two_programs_has_the_record_that_was_made_of_it() -> None:
-    model = ROOT / "examples" / "two_nodes" / "model.yaml"
-    checked = checking.check(model)
-    drive, panel = programs.programs_of(checked)[::-1]
-    found = {one.node: records.of_example(one) for one in (drive, panel)}
-    for program in (drive, panel):
-        path = found[program.node]
-        assert path is not None and path.stem == f"two_nodes-{program.node}"
-        assert records.belongs(path, program)
-        assert not any(records.belongs(path, one) for one in (drive, panel) if one != program)

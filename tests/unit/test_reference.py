@@ -55,10 +55,10 @@ def test_the_reference_says_of_nodes_and_connections_what_the_loader_takes() -> 
 
 def test_the_page_of_drivers_says_what_the_loopback_driver_does() -> None:
     source = (
-        ROOT / "hw_can" / "drivers" / "loopback" / "ravenchart-can-controllers.adb"
+        ROOT / "hw_can" / "drivers" / "loopback" / "ravenchart-can-controllers-driver.adb"
     ).read_text()
     assert "which receives what it sends" in " ".join(source.replace("--", " ").split())
-    assert "Accepts (Any_Frames.Id (F)" in source
+    assert "Upper.Receive (F);" in source, "the part of every driver that has the acceptance filter"
     line = next(
         line
         for line in (ROOT / "docs" / "drivers.md").read_text().splitlines()

@@ -10,7 +10,8 @@ is
        M.Count = M.Count'Old - 1
        and then M.Here = M.Here'Old
        and then M.Last = M.Last'Old
-       and then M.Counts = M.Counts'Old;
+       and then M.Transmit_Errors = M.Transmit_Errors'Old
+       and then M.Receive_Errors = M.Receive_Errors'Old;
    --  The request of this number is open no more; the others keep their
    --  order.
 
@@ -25,24 +26,6 @@ is
       M.Count          := M.Count + 1;
       M.Open (M.Count) := Number;
    end Ask;
-
-   ----------------
-   -- Count_Lost --
-   ----------------
-
-   procedure Count_Lost (M : in out Member) is
-   begin
-      M.Counts.Lost_Out := Next (M.Counts.Lost_Out);
-   end Count_Lost;
-
-   --------------------
-   -- Count_Received --
-   --------------------
-
-   procedure Count_Received (M : in out Member) is
-   begin
-      M.Counts.Received := Next (M.Counts.Received);
-   end Count_Received;
 
    ------------
    -- Settle --
@@ -72,26 +55,15 @@ is
    begin
       Then_Do := Consequence_Of (M, A);
       case Then_Do is
-         when Note_Joined    =>
+         when Note_Joined             =>
             M.Here := Joined;
-         when End_Connection =>
-            if A.Kind /= Closed then
-               M.Counts.Rejected_Lines := Next (M.Counts.Rejected_Lines);
-            end if;
-         when Carry_On | Take_Frame | Ask_Recovery =>
-            case A.Kind is
-               when State_Told =>
-                  M.Counts.Transmit_Errors := A.Transmit_Errors;
-                  M.Counts.Receive_Errors  := A.Receive_Errors;
-               when Confirmed  =>
-                  Settle (M, A.Number);
-                  M.Counts.Sent := Next (M.Counts.Sent);
-               when Refused    =>
-                  Settle (M, A.Number);
-                  M.Counts.Lost_Out := Next (M.Counts.Lost_Out);
-               when others     =>
-                  null;
-            end case;
+         when Note_State              =>
+            M.Transmit_Errors := A.Transmit_Errors;
+            M.Receive_Errors  := A.Receive_Errors;
+         when Count_Sent | Count_Lost =>
+            Settle (M, A.Number);
+         when Carry_On | Take_Frame | End_Connection | Break_Off =>
+            null;
       end case;
    end Hear;
 
@@ -99,14 +71,13 @@ is
    -- Leave --
    -----------
 
-   procedure Leave (M : in out Member) is
+   procedure Leave (M : in out Member; Lost : out Open_Count) is
    begin
-      M.Counts.Lost_Out :=
-        Sum (M.Counts.Lost_Out, Event_Count (M.Count));
-      M.Counts.Transmit_Errors := 0;
-      M.Counts.Receive_Errors  := 0;
-      M.Count := 0;
-      M.Here  := Away;
+      Lost := M.Count;
+      M.Count           := 0;
+      M.Here            := Away;
+      M.Transmit_Errors := 0;
+      M.Receive_Errors  := 0;
    end Leave;
 
 end Ravenchart.Can.Bus_Members;

@@ -1,5 +1,5 @@
 --  A node of a served bus, as it knows itself: whether it has joined, which
---  of its requests are open, and what was counted.
+--  of its requests are open, and its error counters.
 --
 --  Guarantees   at most Most_Open requests are open, each under a number of
 --               its own; each ends as sent or lost, and what a server must
@@ -31,11 +31,12 @@ is
    type Presence is (Away, Joined);
 
    type Member is record
-      Here   : Presence := Away;
-      Count  : Open_Count := 0;
-      Open   : Number_List := (others => 1);
-      Last   : Request_Number := 1;
-      Counts : Counters;
+      Here            : Presence := Away;
+      Count           : Open_Count := 0;
+      Open            : Number_List := (others => 1);
+      Last            : Request_Number := 1;
+      Transmit_Errors : Error_Count := 0;
+      Receive_Errors  : Error_Count := 0;
    end record
    with Predicate => (if Here = Away then Count = 0);
    --  The first Count numbers of Open are those of requests that are open,
@@ -44,7 +45,7 @@ is
    function State (M : Member) return Controller_State
    is (if M.Here = Away then Stopped
        else Fault_Confinement.State_For
-              (M.Counts.Transmit_Errors, M.Counts.Receive_Errors))
+              (M.Transmit_Errors, M.Receive_Errors))
    with Global => null;
    --  As its counters say (ISO 11898-1).
 
@@ -77,55 +78,31 @@ is
        and then
          (for all I in 1 .. M.Count - 1 => M.Open (I) = M.Open'Old (I))
        and then M.Here = M.Here'Old
-       and then M.Counts = M.Counts'Old;
+       and then M.Transmit_Errors = M.Transmit_Errors'Old
+       and then M.Receive_Errors = M.Receive_Errors'Old;
    --  A frame is to be sent, as the request of this number.
 
-   function Sum (A, B : Event_Count) return Event_Count
-   is (if A > Event_Count'Last - B then Event_Count'Last else A + B)
-   with Global => null;
-   --  Both together, and no more than the last value.
-
-   procedure Count_Lost (M : in out Member)
-   with
-     Global => null,
-     Post   =>
-       M.Counts.Lost_Out = Next (M.Counts.Lost_Out'Old)
-       and then M.Here = M.Here'Old
-       and then M.Count = M.Count'Old
-       and then M.Open = M.Open'Old;
-   --  A frame was given up before it was asked for.
-
-   procedure Count_Received (M : in out Member)
-   with
-     Global => null,
-     Post   =>
-       M.Counts.Received = Next (M.Counts.Received'Old)
-       and then M.Here = M.Here'Old
-       and then M.Count = M.Count'Old
-       and then M.Open = M.Open'Old;
-   --  A frame was accepted.
-
    type Consequence is
-     (Carry_On, Note_Joined, Take_Frame, Ask_Recovery, End_Connection);
-   --  What a node does about what it has heard.
+     (Carry_On, Note_Joined, Note_State, Take_Frame, Count_Sent, Count_Lost,
+      End_Connection, Break_Off);
+   --  What a node does about what it has heard. Break_Off: a server must not
+   --  say that, or does not take the node in.
 
    function Consequence_Of (M : Member; A : Answer) return Consequence
-   is (if M.Here = Away
-       then (if A.Kind = Taken_In then Note_Joined else End_Connection)
+   is (if A.Kind = Closed then End_Connection
+       elsif M.Here = Away
+       then (if A.Kind = Taken_In then Note_Joined else Break_Off)
        else
          (case A.Kind is
-            when Frame_Came                               => Take_Frame,
-            when State_Told                               =>
-              (if Fault_Confinement.State_For
-                    (A.Transmit_Errors, A.Receive_Errors) = Bus_Off
-               then Ask_Recovery
-               else Carry_On),
-            when Confirmed | Refused                      =>
-              (if Is_Open (M, A.Number) then Carry_On
-               else End_Connection),
-            when Noted                                    => Carry_On,
-            when Taken_In | Closed | Turned_Away | Broken =>
-              End_Connection))
+            when Frame_Came  => Take_Frame,
+            when State_Told  => Note_State,
+            when Confirmed   =>
+              (if Is_Open (M, A.Number) then Count_Sent else Break_Off),
+            when Refused     =>
+              (if Is_Open (M, A.Number) then Count_Lost else Break_Off),
+            when Noted       => Carry_On,
+            when Closed      => End_Connection,
+            when Taken_In | Turned_Away | Broken => Break_Off))
    with Global => null;
    --  A welcome comes first and once; only open requests are answered.
 
@@ -139,37 +116,26 @@ is
        and then M.Here =
          (if Then_Do = Note_Joined then Joined else M.Here'Old)
        and then
-         (if Then_Do = Carry_On and then A.Kind in Confirmed | Refused
+         (if Then_Do in Count_Sent | Count_Lost
           then M.Count = M.Count'Old - 1
           else M.Count = M.Count'Old and then M.Open = M.Open'Old)
-       and then M.Counts.Sent =
-         (if Then_Do = Carry_On and then A.Kind = Confirmed
-          then Next (M.Counts.Sent'Old) else M.Counts.Sent'Old)
-       and then M.Counts.Lost_Out =
-         (if Then_Do = Carry_On and then A.Kind = Refused
-          then Next (M.Counts.Lost_Out'Old) else M.Counts.Lost_Out'Old)
-       and then M.Counts.Rejected_Lines =
-         (if Then_Do = End_Connection and then A.Kind /= Closed
-          then Next (M.Counts.Rejected_Lines'Old)
-          else M.Counts.Rejected_Lines'Old)
        and then
-         (if Then_Do /= End_Connection and then A.Kind = State_Told
-          then M.Counts.Transmit_Errors = A.Transmit_Errors
-               and then M.Counts.Receive_Errors = A.Receive_Errors
-          else M.Counts.Transmit_Errors = M.Counts.Transmit_Errors'Old
-               and then
-                 M.Counts.Receive_Errors = M.Counts.Receive_Errors'Old);
+         (if Then_Do = Note_State
+          then M.Transmit_Errors = A.Transmit_Errors
+               and then M.Receive_Errors = A.Receive_Errors
+          else M.Transmit_Errors = M.Transmit_Errors'Old
+               and then M.Receive_Errors = M.Receive_Errors'Old);
    --  The server has said A.
 
-   procedure Leave (M : in out Member)
+   procedure Leave (M : in out Member; Lost : out Open_Count)
    with
      Global => null,
      Post   =>
        State (M) = Stopped
        and then M.Count = 0
-       and then M.Counts.Lost_Out =
-         Sum (M.Counts.Lost_Out'Old, Event_Count (M.Count'Old))
-       and then M.Counts.Sent = M.Counts.Sent'Old;
-   --  The connection is gone, and with it what was asked for.
+       and then M.Transmit_Errors = 0
+       and then M.Receive_Errors = 0
+       and then Lost = M.Count'Old;
+   --  The connection is gone, and with it so many requests that were open.
 
 end Ravenchart.Can.Bus_Members;

@@ -6,21 +6,12 @@
 --  Timing       Receive waits for the bus; Send does not wait
 
 with Ravenchart.Can.Socket_Frames;
+with Ravenchart.Can.Sockets;
 
 package Ravenchart.Can.Raw_Sockets
-  with
-    SPARK_Mode,
-    Abstract_State =>
-      (Network with Synchronous,
-                    External => (Async_Readers, Async_Writers,
-                                 Effective_Reads, Effective_Writes)),
-    Initializes    => Network
+  with SPARK_Mode
 is
-   type Socket is range -1 .. 2**31 - 1;
-   --  A descriptor of the operating system.
-
-   No_Socket : constant Socket := -1;
-   --  What a failed call hands over.
+   use Sockets;
 
    type Outcome is (Done, Busy, Refused, Down, Gone);
    --  Busy: no room to send at present. Refused: the interface is not set up
@@ -47,9 +38,5 @@ is
      (To : Socket; Item : Socket_Frames.Item; Result : out Outcome)
    with Global => (In_Out => Network);
    --  Hand a frame to the interface's transmit queue.
-
-   procedure Close (Old : Socket)
-   with Global => (In_Out => Network);
-   --  Give Old back to the system.
 
 end Ravenchart.Can.Raw_Sockets;

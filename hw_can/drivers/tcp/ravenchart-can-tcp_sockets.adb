@@ -1,4 +1,4 @@
-with Interfaces.C.Strings;
+with Interfaces.C;
 with System;
 with Ravenchart.Can.Linux_Calls;
 
@@ -10,28 +10,8 @@ is
    use type Interfaces.C.long;
    use Linux_Calls;
 
-   Device_File : C_Int := -1
-   with Atomic;
-   --  The serial line, which takes no socket calls.
-
-   Complained : Boolean := False
-   with Atomic;
-   --  What fails is tried again; one message is enough.
-
    Bus_Port : constant := 29_536;
    --  Of a bus server that was told no other.
-
-   procedure Say (File : C_Int; Text : String);
-   --  Write Text to File, unbuffered.
-
-   function Setting (Name : String) return String;
-   --  What the environment says; nothing when it is not set.
-
-   function Speed_Command (Rate : Nominal_Rate) return String;
-   --  The command S of slcan; nothing where it has no digit for Rate.
-
-   function Data_Speed_Command (Bus : Bus_Setting) return String;
-   --  The command Y of slcan adapters with CAN FD; nothing without need.
 
    procedure Read_Port
      (Variable : String;
@@ -50,45 +30,15 @@ is
    function Image (Port : Interfaces.Unsigned_16) return String;
    --  In decimal.
 
+   procedure Open_Stream
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      File     : out C_Int);
+   --  A socket for the port that Variable names; negative without it.
+
    procedure Hurry (File : C_Int);
    --  Small records shall not wait for more.
-
-   ---------
-   -- Say --
-   ---------
-
-   procedure Say (File : C_Int; Text : String) is
-      Line    : constant String := Text & ASCII.LF;
-      Ignored : Interfaces.C.long;
-   begin
-      Ignored := C_Write (File, Line'Address, Line'Length);
-   end Say;
-
-   --------------
-   -- Complain --
-   --------------
-
-   procedure Complain (Reason : String) is
-   begin
-      if not Complained then
-         Complained := True;
-         Say (Standard_Error, "error: can: " & Reason);
-      end if;
-   end Complain;
-
-   -------------
-   -- Setting --
-   -------------
-
-   function Setting (Name : String) return String is
-      use type Interfaces.C.Strings.chars_ptr;
-      Found : constant Interfaces.C.Strings.chars_ptr :=
-        C_Get_Environment (Interfaces.C.To_C (Name));
-   begin
-      return
-        (if Found = Interfaces.C.Strings.Null_Ptr then ""
-         else Interfaces.C.Strings.Value (Found));
-   end Setting;
 
    ---------------
    -- Read_Port --
@@ -133,6 +83,28 @@ is
       return Text (Text'First + 1 .. Text'Last);
    end Image;
 
+   -----------------
+   -- Open_Stream --
+   -----------------
+
+   procedure Open_Stream
+     (Variable : String;
+      Default  : Interfaces.Unsigned_16;
+      Port     : out Interfaces.Unsigned_16;
+      File     : out C_Int)
+   is
+      Sound : Boolean;
+   begin
+      File := -1;
+      Read_Port (Variable, Default, Port, Sound);
+      if Sound then
+         File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+         if File < 0 then
+            Complain ("no socket: the system has none left");
+         end if;
+      end if;
+   end Open_Stream;
+
    -----------
    -- Hurry --
    -----------
@@ -154,18 +126,12 @@ is
       Length  : aliased C_Int := Address_Length;
       Address : aliased Socket_Address;
       Port    : Interfaces.Unsigned_16;
-      Sound   : Boolean;
       File    : C_Int;
       Result  : C_Int;
    begin
       Server := No_Socket;
-      Read_Port ("RAVENCHART_CAN_PORT", 0, Port, Sound);
-      if not Sound then
-         return;
-      end if;
-      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      Open_Stream ("RAVENCHART_CAN_PORT", 0, Port, File);
       if File < 0 then
-         Complain ("no socket: the system has none left");
          return;
       end if;
       Result := C_Set_Option
@@ -187,97 +153,9 @@ is
          Result := C_Close (File);
          return;
       end if;
-      Say
-        (Standard_Output,
-         "can: slcan on 127.0.0.1:" & Image (C_To_Network (Address.Port)));
+      Announce ("slcan on 127.0.0.1:" & Image (C_To_Network (Address.Port)));
       Server := Socket (File);
    end Open_Server;
-
-   --------------------
-   -- Ask_For_Device --
-   --------------------
-
-   procedure Ask_For_Device (Wanted : out Boolean) is
-   begin
-      Wanted := Setting ("RAVENCHART_CAN_DEVICE") /= "";
-   end Ask_For_Device;
-
-   -------------------
-   -- Speed_Command --
-   -------------------
-
-   function Speed_Command (Rate : Nominal_Rate) return String is
-      Usual : constant array (Character range '0' .. '8') of Nominal_Rate :=
-        (10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000,
-         800_000, 1_000_000);
-   begin
-      for Digit in Usual'Range loop
-         if Usual (Digit) = Rate then
-            return "S" & Digit & ASCII.CR;
-         end if;
-      end loop;
-      return "";
-   end Speed_Command;
-
-   ------------------------
-   -- Data_Speed_Command --
-   ------------------------
-
-   function Data_Speed_Command (Bus : Bus_Setting) return String
-   is (if Bus.Takes_Fd
-         and then Bus.Data_Rate in 1_000_000 .. 8_000_000
-         and then Bus.Data_Rate mod 1_000_000 = 0
-       then "Y" & Character'Val
-                    (Character'Pos ('0') + Bus.Data_Rate / 1_000_000)
-            & ASCII.CR
-       else "");
-
-   -----------------
-   -- Open_Device --
-   -----------------
-
-   procedure Open_Device (Bus : Bus_Setting; Device : out Socket) is
-      Path    : constant String := Setting ("RAVENCHART_CAN_DEVICE");
-      Speed   : constant String := Setting ("RAVENCHART_CAN_SPEED");
-      C_Path  : constant String := Path & ASCII.NUL;
-      Line    : aliased Line_Settings := (others => 0);
-      Rate    : constant String :=
-        (if Speed = "" then Speed_Command (Bus.Bit_Rate)
-         else "S" & Speed & ASCII.CR);
-      Opening : constant String :=
-        "C" & ASCII.CR & Rate & Data_Speed_Command (Bus) & "O" & ASCII.CR;
-      File    : C_Int;
-      Result  : C_Int;
-   begin
-      Device := No_Socket;
-      if Speed'Length > 1 or else (for some C of Speed => C not in '0' .. '8')
-      then
-         Complain ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
-         return;
-      end if;
-      File := C_Open
-        (C_Path'Address, Both_Directions + No_Terminal + Close_On_Exec);
-      if File < 0 then
-         Complain (Path & " cannot be opened: trying again");
-         return;
-      end if;
-      Result := C_Get_Line (File, Line'Address);
-      if Result = 0 then
-         C_Make_Raw (Line'Address);
-         Result := C_Set_Line (File, At_Once, Line'Address);
-      end if;
-      if Result /= 0
-        or else C_Write (File, Opening'Address, Opening'Length)
-                /= Opening'Length
-      then
-         Complain (Path & " is no serial line: trying again");
-         Result := C_Close (File);
-         return;
-      end if;
-      Device_File := File;
-      Say (Standard_Output, "can: slcan on " & Path);
-      Device := Socket (File);
-   end Open_Device;
 
    -------------------
    -- Accept_Client --
@@ -302,18 +180,12 @@ is
    procedure Connect (Client : out Socket) is
       Address : aliased Socket_Address;
       Port    : Interfaces.Unsigned_16;
-      Sound   : Boolean;
       File    : C_Int;
       Result  : C_Int;
    begin
       Client := No_Socket;
-      Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
-      if not Sound then
-         return;
-      end if;
-      File := C_Socket (Internet, Stream + Close_On_Exec, 0);
+      Open_Stream ("RAVENCHART_BUS_PORT", Bus_Port, Port, File);
       if File < 0 then
-         Complain ("no socket: the system has none left");
          return;
       end if;
       Address := Address_Of (Port);
@@ -339,9 +211,7 @@ is
    begin
       Read_Port ("RAVENCHART_BUS_PORT", Bus_Port, Port, Sound);
       if Sound then
-         Say
-           (Standard_Output,
-            "can: joined the bus at 127.0.0.1:" & Image (Port));
+         Announce ("joined the bus at 127.0.0.1:" & Image (Port));
       end if;
    end Announce_Joined;
 
@@ -432,17 +302,17 @@ is
       Result : Interfaces.C.long;
    begin
       while Sent < Copy'Length loop
-         Result :=
-           (if C_Int (To) = Device_File
-            then C_Write
+         Result := C_Send
+           (C_Int (To),
+            Copy (Copy'First + Sent)'Address,
+            Interfaces.C.size_t (Copy'Length - Sent),
+            No_Signal);
+         if Result < 0 and then C_Error = Not_A_Socket then
+            Result := C_Write
               (C_Int (To),
                Copy (Copy'First + Sent)'Address,
-               Interfaces.C.size_t (Copy'Length - Sent))
-            else C_Send
-              (C_Int (To),
-               Copy (Copy'First + Sent)'Address,
-               Interfaces.C.size_t (Copy'Length - Sent),
-               No_Signal));
+               Interfaces.C.size_t (Copy'Length - Sent));
+         end if;
          exit when Result <= 0;
          Sent := Sent + Natural (Result);
       end loop;
@@ -458,18 +328,5 @@ is
    begin
       Ignored := C_Shutdown (C_Int (Partner), Both_Ways);
    end Break_Off;
-
-   -----------
-   -- Close --
-   -----------
-
-   procedure Close (Partner : Socket) is
-      Ignored : C_Int;
-   begin
-      if C_Int (Partner) = Device_File then
-         Device_File := -1;
-      end if;
-      Ignored := C_Close (C_Int (Partner));
-   end Close;
 
 end Ravenchart.Can.Tcp_Sockets;

@@ -8,21 +8,12 @@
 --               other side
 
 with Interfaces;
+with Ravenchart.Can.Sockets;
 
 package Ravenchart.Can.Tcp_Sockets
-  with
-    SPARK_Mode,
-    Abstract_State =>
-      (Network with Synchronous,
-                    External => (Async_Readers, Async_Writers,
-                                 Effective_Reads, Effective_Writes)),
-    Initializes    => Network
+  with SPARK_Mode
 is
-   type Socket is range -1 .. 2**31 - 1;
-   --  A descriptor of the operating system.
-
-   No_Socket : constant Socket := -1;
-   --  What a failed call hands over.
+   use Sockets;
 
    type Octets is array (Positive range <>) of Interfaces.Unsigned_8;
 
@@ -39,18 +30,6 @@ is
    with Global => (In_Out => Network);
    --  Listen on the port that RAVENCHART_CAN_PORT names, or on one that the
    --  system chooses, and announce it on standard output.
-
-   procedure Ask_For_Device (Wanted : out Boolean)
-   with Global => (In_Out => Network);
-   --  Does RAVENCHART_CAN_DEVICE name a serial line, to be used instead?
-
-   procedure Open_Device (Bus : Bus_Setting; Device : out Socket)
-   with Global => (In_Out => Network);
-   --  Open that line as it is set, without echo and translation; tell the
-   --  slcan adapter there its bit rates and to open its channel, and announce
-   --  it on standard output. Its commands S and Y have digits for usual bit
-   --  rates alone, and Y is told where CAN FD frames switch to a whole number
-   --  of Mbit/s; the digit that RAVENCHART_CAN_SPEED names goes before.
 
    procedure Accept_Client (Server : Socket; Client : out Socket)
    with Global => (In_Out => Network);
@@ -75,11 +54,6 @@ is
    --  What RAVENCHART_BUS_NAME says, cut off behind 17 characters; nothing
    --  when it is not set.
 
-   procedure Complain (Reason : String)
-   with Global => (In_Out => Network);
-   --  Say on standard error what is wrong: the first time only, as most is
-   --  tried again.
-
    procedure Receive
      (From : Socket; Bytes : out Chunk; Last : out Chunk_Length)
    with Global => (In_Out => Network);
@@ -102,15 +76,11 @@ is
    procedure Send (To : Socket; Bytes : Octets; Done : out Boolean)
    with Global => (In_Out => Network);
    --  Send all of Bytes, as soon as the other side takes them; not Done when
-   --  it has gone.
+   --  it has gone. Receive and Send serve a serial line as well.
 
    procedure Break_Off (Partner : Socket)
    with Global => (In_Out => Network);
    --  End the connection, and with it a call that waits; Partner stays
    --  valid.
-
-   procedure Close (Partner : Socket)
-   with Global => (In_Out => Network);
-   --  Give Partner back to the system.
 
 end Ravenchart.Can.Tcp_Sockets;

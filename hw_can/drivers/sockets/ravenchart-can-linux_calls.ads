@@ -1,4 +1,5 @@
---  What the drivers by TCP ask of Linux: calls of the C library, and numbers.
+--  What the drivers by sockets and serial lines ask of Linux: calls of the C
+--  library, and numbers.
 --
 --  Guarantees   none: callers keep to the manual pages, sections 2 and 3
 --  Tasking      each call is independent
@@ -97,6 +98,16 @@ is
      (Name : Interfaces.C.char_array) return Interfaces.C.Strings.chars_ptr
    with Import, Convention => C, External_Name => "getenv";
 
+   function C_Error return C_Int
+   with Import, Convention => C, External_Name => "__get_errno";
+   --  errno of the calling task, by the Ada run-time library.
+
+   function Setting (Name : String) return String;
+   --  What the environment says; nothing when it is not set.
+
+   procedure Print (File : C_Int; Text : String);
+   --  Write Text and the end of a line to File, unbuffered.
+
    function C_To_Network
      (Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_16
    with Import, Convention => C, External_Name => "htons";
@@ -107,7 +118,9 @@ is
    with Import, Convention => C, External_Name => "htonl";
 
    Internet        : constant C_Int := 2;
+   Can_Family      : constant C_Int := 29;
    Stream          : constant C_Int := 1;
+   Raw_Socket      : constant C_Int := 3;
    Close_On_Exec   : constant C_Int := 8#2000000#;
    Socket_Level    : constant C_Int := 1;
    Reuse_Address   : constant C_Int := 2;
@@ -116,10 +129,19 @@ is
    No_Delay        : constant C_Int := 1;
    No_Signal       : constant C_Int := 16#4000#;
    Wait_For_All    : constant C_Int := 16#100#;
+   No_Wait         : constant C_Int := 16#40#;
    Both_Ways       : constant C_Int := 2;
    Standard_Output : constant C_Int := 1;
    Standard_Error  : constant C_Int := 2;
    Local_Host      : constant := 16#7F00_0001#;
+
+   Interrupted     : constant C_Int := 4;
+   Try_Again       : constant C_Int := 11;
+   Invalid         : constant C_Int := 22;
+   Not_A_Socket    : constant C_Int := 88;
+   Network_Down    : constant C_Int := 100;
+   No_Room         : constant C_Int := 105;
+   --  Values of errno.
 
    Both_Directions : constant C_Int := 2;
    No_Terminal     : constant C_Int := 8#400#;

@@ -12,25 +12,18 @@
 --  is looked for every second.
 
 with Ada.Real_Time;
-with Ravenchart.Blackboards;
 with Ravenchart.Epochs;
-with Ravenchart.Queues;
 with Ravenchart.Can.Ctu_Core;
 with Ravenchart.Can.Ctu_Frames;
 with Ravenchart.Can.Ctu_Hosts;
 with Ravenchart.Can.Ctu_Registers;
-with Ravenchart.Can.Received_Frames;
 
-package body Ravenchart.Can.Controllers
-  with
-    SPARK_Mode,
-    Refined_State =>
-      (State   => (Transmit.State, Receive.State, Board.State, Poller),
-       Wake_Up => (Receive.Wake_Up, Asked, Recovery_Asked))
-is
+separate (Ravenchart.Can.Controllers)
+package body Driver is
+   pragma Refined_State ((State => Poller));
+
    use type Ada.Real_Time.Time;
    use type Ctu_Registers.Buffer_State;
-   use type Queueing.Put_Status;
    use type Queueing.Take_Status;
 
    package Registers renames Ctu_Registers;
@@ -46,29 +39,6 @@ is
      (if Setting.Data_Rate = 0
       then Nominal else Registers.Hertz (Setting.Data_Rate));
 
-   package Transmit is new Queues
-     (Element_Type => Any_Frames.Any_Frame,
-      Null_Element => Any_Frames.Null_Any_Frame,
-      Capacity     => Transmit_Depth,
-      Ceiling      => Transmit_Ceiling,
-      Policy       => Queueing.Reject_Newest);
-
-   package Receive is new Received_Frames
-     (Capacity => Receive_Depth, Ceiling => Receive_Ceiling);
-
-   type Standing is record
-      Log    : Fault_Notices.Fault_Log;
-      Counts : Counters;
-   end record;
-   --  What others are told.
-
-   Initially : constant Standing := (others => <>);
-
-   package Board is new Blackboards
-     (Element_Type => Standing,
-      Initial      => Initially,
-      Ceiling      => Transmit_Ceiling);
-
    type Phase is (Absent, In_Reset, Running);
    --  Of the core.
 
@@ -77,24 +47,14 @@ is
    type Progress is record
       Core     : Phase := Absent;
       Retry_In : Look_Count := 0;
-      Queued   : Boolean := False;
+      State    : Controller_State := Stopped;
       Rescued  : Boolean := False;
       Oldest   : Registers.Buffer := 1;
       Pending  : Natural range 0 .. 4 := 0;
    end record;
-   --  Looks until a core is looked for, or asked to recover, again; whether
-   --  the transmit queue may hold a frame; whether recovery was requested
-   --  since the core is bus-off; and the buffers that wait to be sent, from
-   --  Oldest on.
-
-   Asked : Boolean := False
-   with Atomic;
-   --  True when a frame was queued since the transmit queue was found empty;
-   --  to look at this costs no lock.
-
-   Recovery_Asked : Boolean := False
-   with Atomic;
-   --  True when recovery was requested since the core was last looked at.
+   --  Looks until a core is looked for, or asked to recover, again; the state
+   --  of the core when last looked at; whether recovery was requested since
+   --  it is bus-off; and the buffers that wait to be sent, from Oldest on.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -104,20 +64,8 @@ is
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
    --  Serves the core.
 
-   function Sum (A, B : Event_Count) return Event_Count
-   is (if A > Event_Count'Last - B then Event_Count'Last else A + B)
-   with Global => null;
-   --  No more than the last value.
-
-   procedure Take_Queued
-     (F      : out Any_Frames.Any_Frame;
-      P      : in out Progress;
-      Status : out Queueing.Take_Status)
-   with Global => (In_Out => (Transmit.State, Asked));
-   --  The oldest frame of the transmit queue, if there is one.
-
-   procedure Give_Up (P : in out Progress; Counts : in out Counters)
-   with Global => (In_Out => (Transmit.State, Asked));
+   procedure Give_Up
+   with Global => (In_Out => (Upper.State, Upper.Wake_Up));
    --  There is nothing to send to.
 
    procedure Look_For (P : in out Progress)
@@ -130,70 +78,47 @@ is
      Global => (In_Out => (Ctu_Core.Registers, Ctu_Hosts.Console));
    --  Give it its bit rates, and let it join the bus.
 
-   procedure Note_Errors (S : in out Standing; P : in out Progress)
-   with Global => (In_Out => (Ctu_Core.Registers, Recovery_Asked));
+   procedure Note_Errors (P : in out Progress)
+   with
+     Global => (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up));
    --  How it stands; from bus-off, ask for recovery when the setting or a
    --  request says so. One that has just been enabled is off too, and is
    --  always asked: it needs no more than the bus to be idle.
 
-   procedure Receive_Frames (Counts : in out Counters)
+   procedure Receive_Frames
    with
      Global =>
-       (In_Out => (Ctu_Core.Registers, Receive.State, Receive.Wake_Up),
+       (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Take what has come.
 
-   procedure Send_Frames (P : in out Progress; Counts : in out Counters)
-   with Global => (In_Out => (Ctu_Core.Registers, Transmit.State, Asked));
+   procedure Send_Frames (P : in out Progress)
+   with
+     Global => (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up));
    --  See what was sent, and fill the buffers again.
 
-   procedure Serve (S : in out Standing; P : in out Progress)
+   procedure Serve (P : in out Progress)
    with
      Global =>
-       (In_Out => (Ctu_Core.Registers, Transmit.State, Asked,
-                   Recovery_Asked, Receive.State, Receive.Wake_Up),
+       (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  One look at a core that runs.
-
-   -----------------
-   -- Take_Queued --
-   -----------------
-
-   procedure Take_Queued
-     (F      : out Any_Frames.Any_Frame;
-      P      : in out Progress;
-      Status : out Queueing.Take_Status)
-   is
-      Is_Asked : constant Boolean := Asked;
-   begin
-      if Is_Asked then
-         Asked    := False;
-         P.Queued := True;
-      end if;
-      if P.Queued then
-         Transmit.Take (F, Status);
-         P.Queued := Status = Queueing.Taken;
-      else
-         F      := Any_Frames.Null_Any_Frame;
-         Status := Queueing.Empty;
-      end if;
-   end Take_Queued;
 
    -------------
    -- Give_Up --
    -------------
 
-   procedure Give_Up (P : in out Progress; Counts : in out Counters) is
+   procedure Give_Up is
       F      : Any_Frames.Any_Frame;
       Status : Queueing.Take_Status;
    begin
       for Nth in 1 .. Transmit_Depth loop
          pragma Warnings
            (GNATprove, Off, """F"" is set by*", Reason => "it is lost");
-         Take_Queued (F, P, Status);
+         Upper.Take_Queued (F, Status);
          pragma Warnings (GNATprove, On, """F"" is set by*");
          exit when Status = Queueing.Empty;
-         Counts.Lost_Out := Next (Counts.Lost_Out);
+         Upper.Count (Upper.Lost_Out);
       end loop;
    end Give_Up;
 
@@ -217,7 +142,7 @@ is
          Ctu_Hosts.Complain (Ctu_Hosts.No_Core);
       else
          Ctu_Core.Write (Registers.Mode_Settings, Registers.Reset);
-         P := (Core => In_Reset, Queued => P.Queued, others => <>);
+         P := (Core => In_Reset, State => P.State, others => <>);
          return;
       end if;
       P.Retry_In := Looks_A_Second;
@@ -262,27 +187,24 @@ is
    -- Note_Errors --
    -----------------
 
-   procedure Note_Errors (S : in out Standing; P : in out Progress) is
+   procedure Note_Errors (P : in out Progress) is
       Fault  : Registers.Word;
       Count  : Registers.Word;
-      Wanted : constant Boolean := Recovery_Asked;
+      Wanted : Boolean;
    begin
-      if Wanted then
-         Recovery_Asked := False;
-      end if;
-      P.Rescued :=
-        S.Log.State = Bus_Off and then (Wanted or else P.Rescued);
+      Upper.Take_Request (Wanted);
+      P.Rescued := P.State = Bus_Off and then (Wanted or else P.Rescued);
       Ctu_Core.Read (Registers.Fault_State, Fault);
       Ctu_Core.Read (Registers.Rec_Tec, Count);
-      S.Log :=
-        Fault_Notices.Noted
-          (S.Log, Registers.State_Of (Fault, Before => S.Log.State));
-      S.Counts.Receive_Errors  := Registers.Receive_Errors (Count);
-      S.Counts.Transmit_Errors := Registers.Transmit_Errors (Count);
+      P.State := Registers.State_Of (Fault, Before => P.State);
+      Upper.Note (P.State);
+      Upper.Note_Errors
+        (Transmit => Registers.Transmit_Errors (Count),
+         Receive  => Registers.Receive_Errors (Count));
       if not Registers.Is_Off (Fault) then
          P.Retry_In := 0;
       elsif Setting.Recovery = On_Request
-        and then S.Log.State = Bus_Off
+        and then P.State = Bus_Off
         and then not P.Rescued
       then
          P.Retry_In := 0;
@@ -298,26 +220,19 @@ is
    -- Receive_Frames --
    --------------------
 
-   procedure Receive_Frames (Counts : in out Counters) is
+   procedure Receive_Frames is
       State : Registers.Word;
       Item  : Ctu_Frames.Image;
-      F     : Any_Frames.Any_Frame;
    begin
       for Nth in 1 .. Frames_At_Once loop
          Ctu_Core.Read (Registers.Rx_Status_Settings, State);
          exit when Registers.Frames_Waiting (State) = 0;
          Ctu_Core.Read_Frame (Item);
-         F := Ctu_Frames.Any_Frame_Of (Item);
-         if Any_Frames.Fits (F, Setting)
-           and then Accepts (Any_Frames.Id (F), Any_Frames.Format (F))
-         then
-            Counts.Received := Next (Counts.Received);
-            Receive.Put (F);
-         end if;
+         Upper.Receive (Ctu_Frames.Any_Frame_Of (Item));
       end loop;
       Ctu_Core.Read (Registers.Status, State);
       if Registers.Is_Overrun (State) then
-         Counts.Lost_In := Next (Counts.Lost_In);
+         Upper.Count (Upper.Lost_In);
          Ctu_Core.Write (Registers.Command, Registers.Clear_Overrun);
       end if;
    end Receive_Frames;
@@ -326,7 +241,7 @@ is
    -- Send_Frames --
    -----------------
 
-   procedure Send_Frames (P : in out Progress; Counts : in out Counters) is
+   procedure Send_Frames (P : in out Progress) is
       Buffers : Registers.Word;
       Slot    : Registers.Buffer;
       F       : Any_Frames.Any_Frame;
@@ -337,9 +252,9 @@ is
          exit when P.Pending = 0
            or else not Registers.Is_Done (Buffers, P.Oldest);
          if Registers.State_Of (Buffers, P.Oldest) = Registers.Sent then
-            Counts.Sent := Next (Counts.Sent);
+            Upper.Count (Upper.Sent);
          else
-            Counts.Lost_Out := Next (Counts.Lost_Out);
+            Upper.Count (Upper.Lost_Out);
          end if;
          P.Oldest  := Registers.Next (P.Oldest);
          P.Pending := P.Pending - 1;
@@ -349,7 +264,7 @@ is
       Slot := P.Oldest;
       for Nth in Registers.Buffer loop
          if Natural (Nth) > P.Pending then
-            Take_Queued (F, P, Status);
+            Upper.Take_Queued (F, Status);
             exit when Status = Queueing.Empty;
             Ctu_Core.Write_Frame (Slot, Ctu_Frames.Image_Of (F));
             Ctu_Core.Write
@@ -364,19 +279,18 @@ is
    -- Serve --
    -----------
 
-   procedure Serve (S : in out Standing; P : in out Progress) is
+   procedure Serve (P : in out Progress) is
       Id : Registers.Word;
    begin
       Ctu_Core.Read (Registers.Device_Id_Version, Id);
       if Registers.Is_Core (Id) then
-         Note_Errors (S, P);
-         Receive_Frames (S.Counts);
-         Send_Frames (P, S.Counts);
+         Note_Errors (P);
+         Receive_Frames;
+         Send_Frames (P);
       else
-         S.Log             := Fault_Notices.Noted (S.Log, Stopped);
-         S.Counts.Lost_Out :=
-           Sum (S.Counts.Lost_Out, Event_Count (P.Pending));
-         P                 := (Queued => P.Queued, others => <>);
+         Upper.Note (Stopped);
+         Upper.Count (Upper.Lost_Out, By => Event_Count (P.Pending));
+         P := (others => <>);
       end if;
    end Serve;
 
@@ -388,13 +302,12 @@ is
       Due : Ada.Real_Time.Time := Epochs.Start;
       --  Frames that come before the processors run would find nobody.
       P   : Progress;
-      S   : Standing;
    begin
       loop
          delay until Due;
          case P.Core is
             when Absent =>
-               Give_Up (P, S.Counts);
+               Give_Up;
                if P.Retry_In = 0 then
                   Look_For (P);
                else
@@ -403,68 +316,10 @@ is
             when In_Reset =>
                Configure (P);
             when Running =>
-               Serve (S, P);
+               Serve (P);
          end case;
-         Board.Write (S);
          Due := Due + Ada.Real_Time.Milliseconds (1);
       end loop;
    end Poller;
 
-   procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
-   with Refined_Global => (In_Out => Transmit.State, Output => Asked)
-   is
-      Result : Queueing.Put_Status;
-   begin
-      Transmit.Put (F, Result);
-      Asked  := True;
-      Status :=
-        (if Result = Queueing.Rejected_Full then Rejected_Full else Queued);
-   end Send;
-
-   procedure Wait_Frame
-     (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
-   with Refined_Global => (In_Out => (Receive.State, Receive.Wake_Up))
-   is
-   begin
-      Receive.Wait (F, Stamp);
-   end Wait_Frame;
-
-   procedure Read_State (Now : out Controller_State)
-   with Refined_Global => Board.State
-   is
-      S : Standing;
-   begin
-      Board.Read (S);
-      Now := S.Log.State;
-   end Read_State;
-
-   procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
-   with Refined_Global => Board.State
-   is
-      S : Standing;
-   begin
-      Board.Read (S);
-      Log := S.Log;
-   end Read_Faults;
-
-   procedure Request_Recovery
-   with Refined_Global => (Output => Recovery_Asked)
-   is
-   begin
-      Recovery_Asked := True;
-   end Request_Recovery;
-
-   procedure Read_Counters (C : out Counters)
-   with Refined_Global => (Transmit.State, Receive.State, Board.State)
-   is
-      Not_Queued : constant Event_Count := Transmit.Lost;
-      Lost_In    : constant Event_Count := Receive.Lost;
-      S          : Standing;
-   begin
-      Board.Read (S);
-      C          := S.Counts;
-      C.Lost_Out := Sum (C.Lost_Out, Not_Queued);
-      C.Lost_In  := Sum (C.Lost_In, Lost_In);
-   end Read_Counters;
-
-end Ravenchart.Can.Controllers;
+end Driver;

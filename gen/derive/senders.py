@@ -1,0 +1,28 @@
+"""Which rows and processors send a message."""
+
+from __future__ import annotations
+
+from ravenchart.gen.model.system import Message, System
+
+
+def sender_of(system: System, message: Message) -> str | None:
+    """The processor whose row sends a message; None for one from outside."""
+    for row in sending_rows(system, message):
+        return system.processor_of(row).name
+    return None
+
+
+def sending_rows(system: System, message: Message) -> tuple[str, ...]:
+    """The rows that send a message: one, by the rules."""
+    if message.source is None:
+        return ()
+    source = system.instance(message.source.instance)
+    if message.call is not None and message.is_reply:
+        return (message.call.served,)
+    if message.controls:
+        return (f"{source.name}.ports",)
+    return tuple(
+        f"{source.name}.{item.name}"
+        for item in source.component.runnables()
+        if message.source.port in (item.writes if message.every else item.sends)
+    )

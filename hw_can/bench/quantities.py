@@ -1,0 +1,28 @@
+"""Quantities of a scenario, with their units (``430 mm``, ``1 mm/s``, ``8 s``), in m, m/s and s."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import BeforeValidator, Field
+
+_QUANTITY = re.compile(r"(-?\d+(?:\.\d+)?) ?([a-z/]+)")
+_LENGTHS = {"um": 1e-6, "mm": 1e-3, "m": 1.0}
+_SPEEDS = {"um/s": 1e-6, "mm/s": 1e-3, "m/s": 1.0}
+_TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
+
+
+def _quantity(value: object, units: Mapping[str, float]) -> float:
+    """A number with one of ``units``, in the unit whose factor is 1."""
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if match is None or match[2] not in units:
+        known = [*units]
+        raise ValueError(f"a number and one of {', '.join(known)}, such as `5 {known[1]}`")
+    return float(match[1]) * units[match[2]]
+
+
+Length = Annotated[float, BeforeValidator(lambda value: _quantity(value, _LENGTHS))]
+Speed = Annotated[float, BeforeValidator(lambda value: _quantity(value, _SPEEDS))]
+Time = Annotated[float, BeforeValidator(lambda value: _quantity(value, _TIMES)), Field(ge=0)]

@@ -1,0 +1,369 @@
+--  Driver "bus": a node of the simulated bus behind a bus server on this
+--  machine (docs/bus-protocol.md), as each other process that joins it.
+--
+--  Guarantees   whatever a server says or does, nothing is raised: the
+--               connection ends, and another is tried; frames go to the
+--               server in the order sent, Most_Open ahead of its answers
+--  Tasking      a reader, which joins and takes what the server says, and a
+--               writer, which waits for the transmit queue and for requests
+--               of recovery
+--  Timing       that of the server and of TCP: nothing here is real-time
+--  Assumptions  ASM-005, the socket calls do what their spec says; the
+--               server offers a node's oldest frame first, its default, or
+--               the most urgent of up to Most_Open (buffers by priority)
+--
+--  RAVENCHART_BUS_PORT and RAVENCHART_BUS_NAME say which server, and who
+--  joins. Sent counts what the bus has acknowledged, Rejected_Lines the
+--  connections that a server made impossible. A node that is bus-off asks for
+--  recovery as its setting says, and its transmit queue waits meanwhile; while
+--  there is no server, what is sent is lost.
+
+with Ada.Real_Time;
+with Ravenchart.Epochs;
+with Ravenchart.Can.Bus_Members;
+with Ravenchart.Can.Bus_Records.Client_Side;
+with Ravenchart.Can.Connections;
+with Ravenchart.Can.Sockets;
+with Ravenchart.Can.Tcp_Sockets;
+
+separate (Ravenchart.Can.Controllers)
+package body Driver is
+   pragma Refined_State
+     ((State => (Line.State, Line.Wake_Up, Membership, Reader, Writer)));
+
+   use type Queueing.Take_Status;
+   use type Sockets.Socket;
+
+   package Client_Side renames Bus_Records.Client_Side;
+
+   subtype Wire_Record is Tcp_Sockets.Octets (Bus_Records.Position);
+   --  A record as the socket calls take it.
+
+   package Line is new Connections (Ceiling => Transmit_Ceiling);
+   --  To the server.
+
+   type Permission is (Write, Wait, Give_Up);
+   --  What the writer does with a frame.
+
+   protected Membership
+     with Priority => Transmit_Ceiling
+   is
+      procedure Hear
+        (A : Client_Side.Answer; Then_Do : out Bus_Members.Consequence);
+      --  The server has said A.
+
+      procedure Begin_Request
+        (May    : out Permission;
+         Number : out Bus_Members.Request_Number);
+      --  May a frame be sent now, and under which number?
+
+      procedure Begin_Recovery (Asked : Boolean; May : out Boolean);
+      --  Is the server to be asked for recovery now? Asked: recovery was
+      --  requested. Of one bus-off it is asked once.
+
+      procedure Leave (Lost : out Bus_Members.Open_Count);
+      --  The connection is gone, with so many requests.
+
+      function Node return Bus_Members.Member;
+
+   private
+      Self    : Bus_Members.Member;
+      Rescued : Boolean := False;
+      --  True when the server was asked for recovery since bus-off.
+   end Membership;
+
+   Welcome_Limit : constant Tcp_Sockets.Patience := 2_000;
+   --  So long a server may take to answer hello.
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Reader
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Joins the bus, as often as it must.
+
+   task Writer
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Asks for what is in the transmit queue to be sent, and for recovery.
+
+   procedure Say_Hello (Server : Sockets.Socket; Done : out Boolean)
+   with Global => (In_Out => Sockets.Network);
+   --  Ask to be taken in, under the name that the environment gives.
+
+   procedure Write (Bytes : Bus_Records.Image)
+   with
+     Global =>
+       (In_Out => (Line.State, Line.Wake_Up, Sockets.Network));
+   --  Tell the server; the answer, or the end of the connection, shows what
+   --  becomes of it.
+
+   procedure Recover
+   with
+     Global =>
+       (In_Out => (Line.State, Line.Wake_Up, Membership, Upper.Wake_Up,
+                   Sockets.Network));
+   --  Ask for the way out of bus-off, if that is due.
+
+   procedure Ask_To_Send (F : Any_Frames.Any_Frame; May : out Permission)
+   with
+     Global =>
+       (In_Out => (Line.State, Line.Wake_Up, Membership, Upper.State,
+                   Sockets.Network));
+   --  Ask the server to send F, if that is allowed.
+
+   procedure Note_State
+   with Global => (In_Out => Upper.State, Input => Membership);
+   --  The node stands so.
+
+   procedure Serve (Server : Sockets.Socket; Announced : in out Boolean)
+   with
+     Global =>
+       (In_Out => (Membership, Upper.State, Upper.Wake_Up,
+                   Sockets.Network),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
+   --  Say hello, and take what the server says until the connection ends.
+
+   protected body Membership is
+
+      procedure Hear
+        (A : Client_Side.Answer; Then_Do : out Bus_Members.Consequence) is
+      begin
+         Bus_Members.Hear (Self, A, Then_Do);
+         Rescued := Rescued and then Bus_Members.State (Self) = Bus_Off;
+      end Hear;
+
+      procedure Begin_Request
+        (May    : out Permission;
+         Number : out Bus_Members.Request_Number) is
+      begin
+         Number := 1;
+         if Bus_Members.State (Self) = Stopped then
+            May := Give_Up;
+         elsif Bus_Members.May_Ask (Self) then
+            May := Write;
+            Bus_Members.Ask (Self, Number);
+         else
+            May := Wait;
+         end if;
+      end Begin_Request;
+
+      procedure Begin_Recovery (Asked : Boolean; May : out Boolean) is
+      begin
+         May :=
+           Bus_Members.State (Self) = Bus_Off
+           and then not Rescued
+           and then (Asked or else Setting.Recovery = Automatic);
+         Rescued := Rescued or else May;
+      end Begin_Recovery;
+
+      procedure Leave (Lost : out Bus_Members.Open_Count) is
+      begin
+         Bus_Members.Leave (Self, Lost);
+         Rescued := False;
+      end Leave;
+
+      function Node return Bus_Members.Member
+      is (Self);
+
+   end Membership;
+
+   ---------------
+   -- Say_Hello --
+   ---------------
+
+   procedure Say_Hello (Server : Sockets.Socket; Done : out Boolean) is
+      Default : constant String := "ravenchart";
+      Text    : Tcp_Sockets.Name_Text;
+      Last    : Tcp_Sockets.Name_Length;
+      Bytes   : Bus_Records.Image;
+   begin
+      Tcp_Sockets.Read_Name (Text, Last);
+      if Bus_Records.Is_Name (Text (1 .. Last)) then
+         Bytes := Client_Side.Hello (Text (1 .. Last), Setting.Takes_Fd);
+      else
+         if Last > 0 then
+            Sockets.Complain
+              ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;"
+               & " joining as " & Default);
+         end if;
+         Bytes := Client_Side.Hello (Default, Setting.Takes_Fd);
+      end if;
+      Tcp_Sockets.Send (Server, Wire_Record (Bytes), Done);
+   end Say_Hello;
+
+   -----------
+   -- Write --
+   -----------
+
+   procedure Write (Bytes : Bus_Records.Image) is
+      Server : Sockets.Socket;
+      Done   : Boolean;
+   begin
+      Line.Begin_Use (Server);
+      if Server /= Sockets.No_Socket then
+         Tcp_Sockets.Send (Server, Wire_Record (Bytes), Done);
+         if not Done then
+            Tcp_Sockets.Break_Off (Server);
+         end if;
+      end if;
+      Line.End_Use;
+   end Write;
+
+   -------------
+   -- Recover --
+   -------------
+
+   procedure Recover is
+      Asked : Boolean;
+      May   : Boolean;
+   begin
+      Upper.Take_Request (Asked);
+      Membership.Begin_Recovery (Asked, May);
+      if May then
+         Write (Client_Side.Recovery);
+      end if;
+   end Recover;
+
+   -----------------
+   -- Ask_To_Send --
+   -----------------
+
+   procedure Ask_To_Send (F : Any_Frames.Any_Frame; May : out Permission) is
+      Number : Bus_Members.Request_Number;
+   begin
+      Membership.Begin_Request (May, Number);
+      case May is
+         when Write   =>
+            Write (Client_Side.Request (F, Number));
+         when Wait    =>
+            null;
+         when Give_Up =>
+            Upper.Count (Upper.Lost_Out);
+      end case;
+   end Ask_To_Send;
+
+   ----------------
+   -- Note_State --
+   ----------------
+
+   procedure Note_State is
+      Node : constant Bus_Members.Member := Membership.Node;
+   begin
+      Upper.Note_Errors
+        (Transmit => Node.Transmit_Errors, Receive => Node.Receive_Errors);
+      Upper.Note (Bus_Members.State (Node));
+   end Note_State;
+
+   -----------
+   -- Serve --
+   -----------
+
+   procedure Serve (Server : Sockets.Socket; Announced : in out Boolean) is
+      Bytes   : Wire_Record;
+      Done    : Boolean;
+      A       : Client_Side.Answer;
+      Then_Do : Bus_Members.Consequence;
+      Joined  : Boolean := False;
+   begin
+      Tcp_Sockets.Limit_Wait (Server, Welcome_Limit);
+      Say_Hello (Server, Done);
+      while Done loop
+         Tcp_Sockets.Receive_All (Server, Bytes, Done);
+         exit when not Done;
+         A := Client_Side.Heard (Bus_Records.Image (Bytes));
+         Membership.Hear (A, Then_Do);
+         case Then_Do is
+            when Bus_Members.Note_Joined    =>
+               Joined := True;
+               Note_State;
+               Tcp_Sockets.Limit_Wait (Server, To => 0);
+               if not Announced then
+                  Tcp_Sockets.Announce_Joined;
+                  Announced := True;
+               end if;
+            when Bus_Members.Take_Frame     =>
+               Upper.Receive (A.Came);
+            when Bus_Members.Note_State     =>
+               Note_State;
+               Upper.Wake;
+            when Bus_Members.Count_Sent     =>
+               Upper.Count (Upper.Sent);
+               Upper.Wake;
+            when Bus_Members.Count_Lost     =>
+               Upper.Count (Upper.Lost_Out);
+               Upper.Wake;
+            when Bus_Members.Carry_On       =>
+               null;
+            when Bus_Members.End_Connection =>
+               exit;
+            when Bus_Members.Break_Off      =>
+               Upper.Count (Upper.Rejected_Line);
+               exit;
+         end case;
+      end loop;
+      if not Joined then
+         Sockets.Complain
+           ("the bus server does not take this node in: trying again");
+      end if;
+   end Serve;
+
+   ------------
+   -- Reader --
+   ------------
+
+   task body Reader is
+      Server    : Sockets.Socket;
+      Announced : Boolean := False;
+      Lost      : Bus_Members.Open_Count;
+   begin
+      delay until Epochs.Start;
+      --  Frames that come before the processors run would find nobody.
+      loop
+         Tcp_Sockets.Connect (Server);
+         if Server /= Sockets.No_Socket then
+            Line.Attach (Server);
+            Serve (Server, Announced);
+            --  The writer may be waiting for the server, or for an answer.
+            Line.Detach;
+            Membership.Leave (Lost);
+            Upper.Count (Upper.Lost_Out, By => Event_Count (Lost));
+            Note_State;
+            Upper.Wake;
+            Tcp_Sockets.Break_Off (Server);
+            Line.Wait_Unused;
+            Sockets.Close (Server);
+         end if;
+         Line.Pause (Milliseconds => 100);
+      end loop;
+   end Reader;
+
+   ------------
+   -- Writer --
+   ------------
+
+   task body Writer is
+      F      : Any_Frames.Any_Frame := Any_Frames.Null_Any_Frame;
+      Status : Queueing.Take_Status := Queueing.Empty;
+      --  F has yet to be sent while it is Taken.
+      May    : Permission;
+   begin
+      loop
+         Recover;
+         if Status = Queueing.Empty then
+            Upper.Take_Queued (F, Status);
+         end if;
+         if Status = Queueing.Empty then
+            Upper.Wait_Work;
+         else
+            Ask_To_Send (F, May);
+            if May = Wait then
+               Upper.Wait_Work;
+            else
+               Status := Queueing.Empty;
+            end if;
+         end if;
+      end loop;
+   end Writer;
+
+end Driver;

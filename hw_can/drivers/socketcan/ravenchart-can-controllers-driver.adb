@@ -1,0 +1,197 @@
+--  Driver "socketcan": a CAN interface of Linux, through a raw socket.
+--
+--  Guarantees   frames go to the interface in the order sent; one that it has
+--               no room for waits, and those behind it
+--  Tasking      a reader, which waits for frames and error reports, and a
+--               writer, which waits for the transmit queue
+--  Timing       that of Linux: nothing here is real-time
+--  Assumptions  ASM-011, the socket calls do what their spec says
+--
+--  The state follows the error reports: Error_Active when something was
+--  sent or received, Stopped while the interface is down or not there. The
+--  interface leaves bus-off by its own setting, restart-ms: a raw socket has
+--  no way to ask for it.
+
+with Ada.Real_Time;
+with Ravenchart.Epochs;
+with Ravenchart.Can.Connections;
+with Ravenchart.Can.Raw_Sockets;
+with Ravenchart.Can.Socket_Frames;
+with Ravenchart.Can.Sockets;
+
+separate (Ravenchart.Can.Controllers)
+package body Driver is
+   pragma Refined_State
+     ((State => (Line.State, Line.Wake_Up, Reader, Writer)));
+
+   use type Raw_Sockets.Outcome;
+   use type Sockets.Socket;
+
+   package Line is new Connections (Ceiling => Transmit_Ceiling);
+   --  To the interface.
+
+   pragma Warnings
+     (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
+      Reason => "ASM-004, stack use is not a matter of proof");
+
+   task Reader
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Takes what the interface receives.
+
+   task Writer
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Sends what is in the transmit queue.
+
+   procedure Note_Report (Report : Socket_Frames.Item)
+   with
+     Global => (In_Out => Upper.State),
+     Pre    => Socket_Frames.Is_Error (Report);
+   --  The interface has told how the controller stands.
+
+   procedure Take (Item : Socket_Frames.Item)
+   with
+     Global =>
+       (In_Out => (Upper.State, Upper.Wake_Up),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
+   --  A frame or an error report has come.
+
+   procedure Serve (Bus : Sockets.Socket)
+   with
+     Global =>
+       (In_Out => (Upper.State, Upper.Wake_Up, Sockets.Network),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
+   --  Take what comes until the socket is of no use any more.
+
+   procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean)
+   with
+     Global =>
+       (In_Out => (Line.State, Line.Wake_Up, Upper.State,
+                   Sockets.Network));
+   --  Try to send F once; Sent is False when it must wait.
+
+   -----------------
+   -- Note_Report --
+   -----------------
+
+   procedure Note_Report (Report : Socket_Frames.Item) is
+      Before : Controller_State;
+      After  : Controller_State;
+   begin
+      Upper.Read_State (Before);
+      After := Socket_Frames.State_After (Report, Before);
+      if After /= Before then
+         Upper.Note (After);
+      end if;
+      if Socket_Frames.Has_Counters (Report) then
+         Upper.Note_Errors
+           (Transmit => Error_Count (Report.Data (6)),
+            Receive  => Error_Count (Report.Data (7)));
+      end if;
+   end Note_Report;
+
+   ----------
+   -- Take --
+   ----------
+
+   procedure Take (Item : Socket_Frames.Item) is
+   begin
+      if Socket_Frames.Is_Error (Item) then
+         Note_Report (Item);
+      elsif Socket_Frames.Is_Frame (Item) then
+         Upper.Note_Traffic;
+         Upper.Receive (Socket_Frames.Any_Frame_Of (Item));
+      end if;
+   end Take;
+
+   -----------
+   -- Serve --
+   -----------
+
+   procedure Serve (Bus : Sockets.Socket) is
+      Item   : Socket_Frames.Item;
+      Result : Raw_Sockets.Outcome;
+   begin
+      loop
+         Raw_Sockets.Receive (Bus, Item, Result);
+         exit when Result = Raw_Sockets.Gone;
+         if Result = Raw_Sockets.Done then
+            Take (Item);
+         else
+            Upper.Note (Stopped);
+            Line.Pause (Milliseconds => 100);
+         end if;
+      end loop;
+   end Serve;
+
+   ---------
+   -- Put --
+   ---------
+
+   procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean) is
+      Bus    : Sockets.Socket;
+      Result : Raw_Sockets.Outcome := Raw_Sockets.Refused;
+   begin
+      Line.Begin_Use (Bus);
+      if Bus /= Sockets.No_Socket then
+         Raw_Sockets.Send (Bus, Socket_Frames.Item_Of (F), Result);
+      end if;
+      case Result is
+         when Raw_Sockets.Done                    =>
+            Upper.Count (Upper.Sent);
+            Upper.Note_Traffic;
+         when Raw_Sockets.Busy                    =>
+            null;
+         when Raw_Sockets.Refused                 =>
+            Upper.Count (Upper.Lost_Out);
+         when Raw_Sockets.Down | Raw_Sockets.Gone =>
+            Upper.Count (Upper.Lost_Out);
+            Upper.Note (Stopped);
+      end case;
+      Line.End_Use;
+      Sent := Result /= Raw_Sockets.Busy;
+   end Put;
+
+   ------------
+   -- Reader --
+   ------------
+
+   task body Reader is
+      Bus : Sockets.Socket;
+   begin
+      delay until Epochs.Start;
+      --  Frames that come before the processors run would find nobody.
+      loop
+         Raw_Sockets.Open (Setting.Takes_Fd, Bus);
+         if Bus = Sockets.No_Socket then
+            Line.Pause (Milliseconds => 1_000);
+         else
+            Line.Attach (Bus);
+            Upper.Note (Error_Active);
+            Serve (Bus);
+            Line.Detach;
+            Line.Wait_Unused;
+            Upper.Note (Stopped);
+            Sockets.Close (Bus);
+         end if;
+      end loop;
+   end Reader;
+
+   ------------
+   -- Writer --
+   ------------
+
+   task body Writer is
+      F    : Any_Frames.Any_Frame;
+      Sent : Boolean;
+   begin
+      loop
+         Upper.Wait_Queued (F);
+         loop
+            Put (F, Sent);
+            exit when Sent;
+            Line.Pause (Milliseconds => 1);
+         end loop;
+      end loop;
+   end Writer;
+
+end Driver;

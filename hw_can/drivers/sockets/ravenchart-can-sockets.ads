@@ -1,0 +1,35 @@
+--  What sockets of every kind have in common.
+--
+--  Guarantees   nothing is raised
+--  Tasking      the two tasks of a driver; each call is independent
+--  Timing       that of the system
+
+package Ravenchart.Can.Sockets
+  with
+    SPARK_Mode,
+    Abstract_State =>
+      (Network with Synchronous,
+                    External => (Async_Readers, Async_Writers,
+                                 Effective_Reads, Effective_Writes)),
+    Initializes    => Network
+is
+   type Socket is range -1 .. 2**31 - 1;
+   --  A descriptor of the operating system.
+
+   No_Socket : constant Socket := -1;
+   --  What a failed call hands over.
+
+   procedure Announce (Text : String)
+   with Global => (In_Out => Network);
+   --  Print Text to standard output.
+
+   procedure Complain (Reason : String)
+   with Global => (In_Out => Network);
+   --  Say on standard error what is wrong: the first time only, as most is
+   --  tried again.
+
+   procedure Close (Old : Socket)
+   with Global => (In_Out => Network);
+   --  Give Old back to the system.
+
+end Ravenchart.Can.Sockets;
