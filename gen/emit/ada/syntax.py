@@ -293,6 +293,13 @@ class UseType:
     name: str
 
 
+@frozen
+class UsePackage:
+    """``use name;``"""
+
+    name: str
+
+
 Decl = (
     EnumType
     | PlainType
@@ -304,6 +311,7 @@ Decl = (
     | Protected
     | Rename
     | UseType
+    | UsePackage
     | Pragma
     | Comment
 )
