@@ -118,8 +118,16 @@ def test_facts_that_hold_compile(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("number", "to", "words"),
     [
-        ("Low_Priority", "System.Default_Priority + 2", "cpu must keep the order of its priorities"),
-        ("Peer_Priority", "System.Default_Priority + 3", "cpu must keep the order of its priorities"),
+        (
+            "Low_Priority",
+            "System.Default_Priority + 2",
+            "cpu must keep the order of its priorities",
+        ),
+        (
+            "Peer_Priority",
+            "System.Default_Priority + 3",
+            "cpu must keep the order of its priorities",
+        ),
         ("Bus_A_Id", "16#21#", "bus must keep the order of its identifiers"),
         ("Bus_B_Id", "16#880000#", "bus must keep the order of its identifiers"),
         ("Low_B", "5_000", "low claims a wrong response time"),

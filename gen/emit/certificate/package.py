@@ -1,7 +1,7 @@
-"""The timing certificate: every term a named number, every claim checked by the compiler.
+"""The timing certificate: named numbers and static functions, every claim checked by the compiler.
 
-Named numbers are universal integers: exact, without a largest value, and known
-before anything runs. Each claim is a time within which something must be done, and
+Both are exact and known before anything runs; what is too much for a function is longer than
+any window. Each claim is a time within which something must be done, and
 beside it stands the demand that can arise within that time; the least time that
 holds its demand bounds the response, so a claim that holds its demand is no less.
 The recurrences are those of Joseph and Pandya 1986, Audsley et al. 1993 (tasks),
