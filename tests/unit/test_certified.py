@@ -161,3 +161,13 @@ def test_a_claim_is_exact_both_ways(by: int, tmp_path: Path) -> None:
     for number, element in (("Low_R", "low"), ("Bus_A_R", "bus.a"), ("Bus_C_R", "bus.c")):
         problem = f"{element} claims a wrong response time"
         assert problem in compiled(changed(sample(), number, by), tmp_path), number
+
+
+def test_a_certificate_grows_with_its_messages_and_not_with_their_square() -> None:
+    def lines(count: int) -> int:
+        messages = [message(f"m{n}", n, period=count * 2_000_000) for n in range(count)]
+        one = system([task("t", 1, 100_000, 10_000_000)], (), [bus()], messages)
+        return certificate(analyse(one)).count("\n")
+
+    few, more, most = (lines(count) for count in (10, 20, 40))
+    assert most - more <= 2.1 * (more - few)
